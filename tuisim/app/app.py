@@ -26,6 +26,7 @@ from tuisim.app.branch import branch_message
 from tuisim.app.debugger import AppDebugger
 from tuisim.app.editor.document import Document
 from tuisim.app.feed import Feed, PastView, Series, sample_series
+from tuisim.app.goals import AppGoals
 from tuisim.app.loader import PERIOD_S, Loader
 from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     from tuisim.app.panels.output import Output
     from tuisim.app.render.mat import Pixels
     from tuisim.core.field import Field
+    from tuisim.goals.files import GoalsFile
 
 AFTER_FIRST_PAINT_S = 0.05
 """Large data is sent this much later: the screen is painted more than once at startup."""
@@ -73,6 +75,8 @@ class AppSettings:
     """The world file that was opened, to be watched and saved again."""
     program: Program | None = None
     """None opens the app without a program."""
+    goals: GoalsFile | None = None
+    """The goals that runs are judged by."""
     replay: StoredRun | None = None
     """A stored run to show; spec and program are its own."""
     panels_on: frozenset[str] = field(default_factory=frozenset)
@@ -125,8 +129,15 @@ class LabApp(PanelMessages):
         self.past_view = PastView(self.panel_area, self.run_controller.timeline)
         self.feed: Feed | None = None
         self._drawn: object = None
+        self.goals = AppGoals(self, self.run_controller, self.panel_area, settings.goals)
         self.loader = Loader(
-            self, self.run_controller, self.panel_area, self.next_run_changed, self.mat_ready, settings.world_file
+            self,
+            self.run_controller,
+            self.panel_area,
+            self.goals,
+            self.next_run_changed,
+            self.mat_ready,
+            settings.world_file,
         )
         self.document = Document(self, self.run_controller, self.panel_area, self.loader)
         self.debugger = AppDebugger(self, self.run_controller, self.panel_area, self.document.lines, self._to_now)
@@ -250,6 +261,7 @@ class LabApp(PanelMessages):
             self._process(news)
             time_travel.advance_playback(self.workspace)
             self.debugger.poll()
+            self.goals.update()
             # A frame that has to wait counts as drawn.
             drew = not self.pacer.ready() or self.draw()
             if drew or news or self.debugger.busy:
@@ -439,6 +451,8 @@ class LabApp(PanelMessages):
         if message.panel in ("code", "debug"):
             self.debugger.mark()
             self.debugger.show()
+        if message.panel == "goals":
+            self.goals.show()
         self.panel_area.show_next_run(self.run_controller.next_run)
         self.call_after_refresh(self.draw, force=True)
 

@@ -22,11 +22,13 @@ from tuisim.runs.store import RunStore
 from tuisim.source import Program
 
 if TYPE_CHECKING:
+    from tuisim.app.goals import AppGoals
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.render.mat import Pixels
     from tuisim.app.run_controller import RunController
     from tuisim.app.services import AppServices
     from tuisim.core.spec import RunSpec
+    from tuisim.goals.files import GoalsFile
     from tuisim.runs.run_folder import StoredRun
 
 NOT_NOW = "Not available during a run: S stops it"
@@ -39,6 +41,7 @@ class Loader:
         app: Shows notices.
         run_controller: Gets the next run, its program and its mat.
         panel_area: Gets the panels, rays and pen trace that files ask for.
+        goals: Gets the goals of the worlds that are opened.
         on_change: Called after the next run has changed.
         on_mat: Called when a mat is ready, with its image unless that is shown already.
         world_file: The world file that was opened at the start.
@@ -49,12 +52,13 @@ class Loader:
         app: AppServices,
         run_controller: RunController,
         panel_area: PanelArea,
+        goals: AppGoals,
         on_change: Callable[[], None],
         on_mat: Callable[[Pixels | None], None],
         world_file: Path | None,
     ) -> None:
         self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
-        self._on_change, self._on_mat = on_change, on_mat
+        self._goals, self._on_change, self._on_mat = goals, on_change, on_mat
         self._watch = Watch()
         self._preparing = False
         """Whether the mat of the next run is being prepared."""
@@ -193,7 +197,7 @@ class Loader:
     def _open_world(self, path: str) -> None:
         before = self.world_file, self._world_settings, self._world_refers
         try:
-            named = self._read_world(Path(path))
+            named, goals = self._read_world(Path(path))
             program, magic = _read_program(named) if named else (self._run_controller.program, {})
             # A world file replaces everything: earlier choices do not show through.
             fresh = plans.with_choices(plans.plan_of(Settings()), magic)
@@ -203,15 +207,17 @@ class Loader:
             raise
         self._note_program(program, magic)
         self._load(plan, program)
+        self._goals.open(goals)
+        self._follow()
         self._app.say(f"{Path(path).name} is open" + (": R runs its program" if named else ""))
 
-    def _read_world(self, path: Path) -> str | None:
-        """Read a world file and remember its settings. Return the path of its program."""
-        from tuisim.config.worlds import load_world
+    def _read_world(self, path: Path) -> tuple[str | None, GoalsFile | None]:
+        """Read a world file and remember its settings. Return the path of its program, and its goals, if any."""
+        from tuisim.goals.files import load_task
 
-        world = load_world(path, self._run_controller.next_run.settings.mats)
-        self.world_file, self._world_settings, self._world_refers = path, world.settings, world.files
-        return _program_path(world.program) if world.program is not None else None
+        world, goals = load_task(path, self._run_controller.next_run.settings.mats)
+        self.world_file, self._world_settings, self._world_refers = world.path, world.settings, world.files
+        return _program_path(world.program) if world.program is not None else None, goals
 
     def _load(self, plan: NextRun, program: Program | None) -> None:
         self._run_controller.load(plan, program)
@@ -263,6 +269,7 @@ class Loader:
         run_controller, words = self._run_controller, self._run_controller.next_run.words
         paths = [Path(run_controller.program.path)] if run_controller.program and run_controller.program.path else []
         paths += [self.world_file, *self._world_refers] if self.world_file else []
+        paths += [self._goals.path] if self._goals.path else []
         paths += [Path(word).expanduser() for word in words.values() if means_file(word)]
         self._watch.follow(dict.fromkeys(paths))
 
@@ -317,8 +324,15 @@ class Loader:
             return True
         if path == self.world_file:
             before = self._world_settings
-            self._read_world(path)
+            _, goals = self._read_world(path)
             self._apply_changed(_differences(before, self._world_settings), program)
+            if goals is not None or path == self._goals.path:
+                self._goals.change(goals)
+            return True
+        if path == self._goals.path:
+            from tuisim.goals.files import load_goals
+
+            self._goals.change(load_goals(path))
             return True
         fields = [field for field, word in plan.words.items() if means_file(word) and Path(word).expanduser() == path]
         for field in fields:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from tuisim.app.panels.code import Code
     from tuisim.app.panels.controls import Controls
     from tuisim.app.panels.debug import Debug
+    from tuisim.app.panels.goals import Goals
     from tuisim.app.panels.obstacles import Obstacles
     from tuisim.app.panels.output import Output
     from tuisim.app.panels.world import World
@@ -79,6 +80,7 @@ class PanelArea(Container):
     debug: _Mounted[Debug] = _Mounted("debug")
     brick: _Mounted[Brick] = _Mounted("brick")
     obstacles: _Mounted[Obstacles] = _Mounted("obstacles")
+    goals: _Mounted[Goals] = _Mounted("goals")
 
     def shown(self, panel: str) -> bool:
         """Return whether a panel is on the screen."""

@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -17,6 +17,10 @@ from tuisim.config.command_line import Arguments, Value, argument, command, opti
 from tuisim.config.shared_options import shared_options
 from tuisim.errors import ConfigError
 
+if TYPE_CHECKING:
+    from tuisim.config.worlds import WorldFile
+    from tuisim.goals.files import GoalsFile
+
 VERSION = "%(prog)s %(version)s"
 
 
@@ -24,14 +28,20 @@ VERSION = "%(prog)s %(version)s"
 @command(
     argument("words", "[PROGRAM]", lambda: names_of("programs"), nargs=-1),
     option("--world", metavar="FILE", type=Value(), help="Use a world file; it may also precede the program."),
+    option(
+        "--goals",
+        metavar="FILE",
+        type=Value(names=lambda: names_of("goals")),
+        help="Judge the runs by a goals file, which may also precede the program.",
+    ),
     option("--run", metavar="RUN", help="Open a stored run, see `tuisim runs`."),
     *shared_options(names=names_of),
     passes_arguments=True,
     name="open",
     help="""Open the app.
 
-    A PROGRAM is a Python file, a notebook, one of its cells (FILE.ipynb#2), a world file or an example by name. The
-    words after -- are its arguments.
+    A PROGRAM is a Python file, a notebook, one of its cells (FILE.ipynb#2), a world or goals file, or an example by
+    name. The words after -- are its arguments.
 
     A program's magic line, such as `# %%sim_magic_preloaded -b Grey_bands`, can also hold options. The command line
     takes precedence over a world file, the world file over the magic line.
@@ -51,9 +61,11 @@ def open_app(**given: Any) -> int:
     if listed := to_list(arguments.words):
         print_list(arguments.words[0], listed)
         return 0
+    goals = _goals(arguments.goals)
     replay = None
     if arguments.run is None:
-        prepared = prepare_app(arguments.words, arguments)
+        prepared = prepare_app(_words(arguments, goals), arguments)
+        goals = goals or _goals_in(prepared.world, prepared.settings.mats)
     else:
         replay, prepared = prepare_replay(arguments.run, arguments.words, arguments)
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
@@ -67,7 +79,8 @@ def open_app(**given: Any) -> int:
         replay=replay,
         world_file=prepared.world.path if prepared.world else None,
         program=prepared.program,
-        panels_on=frozenset(settings.panels_on),
+        goals=goals,
+        panels_on=frozenset(settings.panels_on) | ({"goals"} if goals else set()),
         panels_off=frozenset(settings.panels_off),
         autorun=settings.autorun,
         quiet=settings.quiet,
@@ -78,6 +91,32 @@ def open_app(**given: Any) -> int:
     )
     with _drawing_on_stdout():
         return run_app(app_settings)
+
+
+def _goals(word: str | None) -> GoalsFile | None:
+    if word is None:
+        return None
+    from tuisim.goals.files import load_goals
+
+    return load_goals(word)
+
+
+def _goals_in(world: WorldFile | None, mats: str | None) -> GoalsFile | None:
+    if world is None:
+        return None
+    from tuisim.goals.files import load_task
+
+    return load_task(world.path, mats)[1]
+
+
+def _words(arguments: Arguments, goals: GoalsFile | None) -> tuple[str, ...]:
+    """Return the words of the command line; unless another world is named, with the goals file as the world."""
+    from tuisim.config.worlds import means_world
+
+    words: tuple[str, ...] = arguments.words
+    if goals is None or arguments.world or any(map(means_world, words)):
+        return words
+    return (str(goals.path), *words)
 
 
 @command(

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def names_of(field: str) -> Iterable[str]:
-    """Return the names of programs, or those that an option such as `background` accepts."""
+    """Return the names of programs, or of examples of goals, or those that an option such as `background` accepts."""
     match field:
         case "programs":
             from tuisim.config.program_file import programs
@@ -41,6 +41,10 @@ def names_of(field: str) -> Iterable[str]:
             return OBSTACLES
         case "profile":
             return PROFILES
+        case "goals":
+            from tuisim.goals.files import example_names
+
+            return example_names()
     return ()
 
 

@@ -89,7 +89,7 @@ def _world(words: Sequence[str], arguments: Arguments) -> WorldFile | None:
     named += [] if arguments.world is None else [arguments.world]
     if len(named) > 1:
         raise ConfigError(f"two worlds: {named[0]} and {named[1]}", "name one", key="--world")
-    return load_world(named[0], arguments.settings.get("mats")) if named else None
+    return load_world(find_program(named[0]), arguments.settings.get("mats")) if named else None
 
 
 def _prepared(word: str | None, world: WorldFile | None, arguments: Arguments) -> Prepared:

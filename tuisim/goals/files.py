@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ from typing import Any
 from tuisim.config import files
 from tuisim.config.files import Location
 from tuisim.config.folders import programs_folder
-from tuisim.config.worlds import means_world, world_from_table
+from tuisim.config.worlds import WorldFile, means_world, world_from_table
 from tuisim.errors import ConfigError, nearest
 from tuisim.goals.key_lines import line_of_key
 from tuisim.goals.picture import PictureTable, draw_from_table
@@ -70,8 +71,34 @@ def load_goals(path: Path | str) -> GoalsFile:
     if not means_world(path.name):
         raise ConfigError("is not a .toml file", "a goals file is TOML", file=str(path))
     data = files.read_file(path, ConfigError)
+    with _lines_in_errors(path):
+        return _goals_file(data, path, world_from_table(data, path))
+
+
+def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, GoalsFile | None]:
+    """Read a world file, with its goals if it has any.
+
+    Args:
+        path: The file, or `NAME_goals.toml` for one of `example_names`.
+        mats: A folder of mats, unless the file names one.
+
+    Raises:
+        ConfigError: it, or a file that it names, cannot be read or is wrong; the error names file, line and key.
+    """
+    path = _found(Path(path).expanduser())
+    if not means_world(path.name):
+        raise ConfigError("is not a .toml file", "a world file is TOML", file=str(path))
+    data = files.read_file(path, ConfigError)
+    with _lines_in_errors(path):
+        world = world_from_table(data, path, mats)
+        return world, _goals_file(data, path, world) if "goal" in data else None
+
+
+@contextmanager
+def _lines_in_errors(path: Path) -> Iterator[None]:
+    """Add the line to an error in a file that names only its key."""
     try:
-        return _goals_file(data, path)
+        yield
     except ConfigError as error:
         if error.file != str(path) or not error.key:
             raise
@@ -96,9 +123,8 @@ def _found(path: Path) -> Path:
     return programs_folder() / f"{name}{_EXAMPLE}" if name in example_names() else path
 
 
-def _goals_file(data: Any, path: Path) -> GoalsFile:
+def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile:
     at = Location(str(path))
-    world = world_from_table(data, path)
     if not data.get("goal"):
         raise at.at("goal").wrong("there are no goals", "begin each with a line [[goal]]")
     listed = files.entries(data["goal"], at.at("goal"), MAX_GOALS, "goals")

@@ -1,0 +1,161 @@
+"""The app's side of goals: judges the run in view while it runs, and passes the result to the panel."""
+
+from __future__ import annotations
+
+import math
+import time
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tuisim.app import background
+from tuisim.app.snapshot import RunPhase
+from tuisim.protocol import Unended
+from tuisim.runs.store import load_run
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from tuisim.app.panel_area import PanelArea
+    from tuisim.app.run_controller import RunController
+    from tuisim.app.services import AppServices
+    from tuisim.core.field import Field
+    from tuisim.errors import TuisimError
+    from tuisim.goals.files import GoalsFile
+    from tuisim.goals.judge import Judgement
+    from tuisim.goals.spec import Goal
+    from tuisim.runs.recorded_run import Recording
+
+PERIOD_S = 0.5
+"""Least time between two judgements of a run that goes on."""
+_SHARE = 0.1
+"""Largest share of the time that judging takes: a long recording is judged less often."""
+
+
+class AppGoals:
+    """The goals that are open in the app. While there are none, or their panel is closed, nothing is judged.
+
+    Args:
+        app: Shows errors.
+        run_controller: Has the run in view.
+        panel_area: Has the goals panel.
+        file: The goals file that was opened at the start, if any.
+    """
+
+    def __init__(
+        self, app: AppServices, run_controller: RunController, panel_area: PanelArea, file: GoalsFile | None
+    ) -> None:
+        self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
+        self._file = file
+        self._recording: Recording | None = None
+        """The run that `_judgements` are about."""
+        self._earlier: Recording | None = None
+        """A run of another task, which is not judged by these goals."""
+        self._judgements: tuple[Judgement, ...] = ()
+        self._judged: object = None
+        """How far the recording had been written when it was last judged, or is being judged."""
+        self._is_judging = False
+        self._next_s = 0.0
+
+    @property
+    def path(self) -> Path | None:
+        """The goals file that is open; None if there is none."""
+        return self._file.path if self._file else None
+
+    def open(self, file: GoalsFile | None) -> None:
+        """Open the goals of another task, or of none; its world must have been loaded already."""
+        recording = self._run_controller.timeline.recording
+        self._earlier = None if recording is None or self._is_of_task(recording) else recording
+        if file is not None:
+            self._panel_area.request({"goals": True})
+        self.change(file)
+
+    def _is_of_task(self, recording: Recording) -> bool:
+        """Return whether a run was on the mat and from the start of the next one."""
+        was, now = recording.spec.world, self._run_controller.next_run.spec.world
+        return (was.background, was.start) == (now.background, now.start)
+
+    def change(self, file: GoalsFile | None) -> None:
+        """Replace the goals by others of the same task; the run in view is judged again."""
+        self._file = file
+        self._forget()
+
+    def _forget(self) -> None:
+        self._judgements, self._judged, self._next_s = (), None, 0.0
+        self.show()
+
+    def show(self) -> None:
+        """Update the panel, which may have just been mounted."""
+        panel = self._panel_area.goals
+        if panel is None:
+            return
+        from tuisim.app.render.goals import GoalsView
+
+        if self._file is None:
+            panel.show_goals(GoalsView())
+            return
+        hint = ""
+        if self._recording is None:
+            hint = "R runs the program" if self._run_controller.program else "o opens a program"
+        panel.show_goals(GoalsView(self._file.title, self._file.goals, self._judgements, hint))
+
+    def update(self) -> None:
+        """Judge the run in view again, in the background, if it has gone on or has ended; never blocks."""
+        if self._file is None or not self._panel_area.shown("goals"):
+            return
+        recording = self._run_controller.timeline.recording
+        if recording is self._earlier:
+            recording = None
+        if recording is not self._recording:
+            self._recording = recording
+            self._forget()
+        if recording is None or self._is_judging:
+            return
+        ended = self._run_controller.state is RunPhase.ENDED
+        written = recording, self._file, recording.telemetry.count, len(recording.rows), ended
+        if written == self._judged or (not ended and time.monotonic() < self._next_s):
+            return
+        self._judged, self._is_judging = written, True
+        work = partial(_judged, self._file.goals, recording.folder, not ended, self._field())
+        then, failed = partial(self._arrived, written), partial(self._failed, written)
+        background.run(self._panel_area, work, then, failed, group="goals")
+
+    def _field(self) -> Field | None:
+        """Return the mat of the run in view if it is prepared already."""
+        mat = self._run_controller.mat
+        return mat.field if mat and self._recording and mat.serves(self._recording.spec) else None
+
+    def _arrived(self, written: object, found: tuple[tuple[Judgement, ...], float] | None) -> None:
+        self._is_judging = False
+        if written != self._judged or found is None:
+            # The run or the goals are others by now, or the run was just about to end.
+            self._judged = None
+            return
+        self._judgements, took_s = found
+        self._next_s = time.monotonic() + max(PERIOD_S, took_s / _SHARE)
+        self.show()
+
+    def _failed(self, written: object, error: TuisimError) -> None:
+        self._is_judging = False
+        if written == self._judged:
+            # While the run goes on, the error would only be repeated.
+            self._next_s = math.inf
+            self._app.complain(error)
+
+
+def _judged(
+    goals: Sequence[Goal], folder: Path, live: bool, field: Field | None
+) -> tuple[tuple[Judgement, ...], float] | None:
+    """Return the judgements of a run, and the seconds that they took; None if a live run ended meanwhile.
+
+    The app goes on reading the recording, so that this needs views of its own.
+    """
+    from tuisim.goals.judge import judge
+
+    began_s = time.monotonic()
+    run = load_run(folder)
+    judgements = judge(goals, run, field)
+    # How it ended is not stored yet.
+    if live and run.end is None and run.state is not Unended.RUNNING:
+        return None
+    return judgements, time.monotonic() - began_s
