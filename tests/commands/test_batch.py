@@ -60,8 +60,8 @@ def test_rows_are_in_the_order_of_the_parameters(batch: Batch) -> None:
 
 def test_the_summary_names_ends_and_quantiles(batch: Batch, capsys: pytest.CaptureFixture[str]) -> None:
     assert batch("mine.py", "--seeds", "11..13", "--expr", "far_mm=x_mm + 1") == 1
-    ends, heads, first = capsys.readouterr().out.split("\n")[:3]
-    assert ends == "3 runs: 2 finished, 1 raised"
+    ends, reason, heads, first = capsys.readouterr().out.split("\n")[:4]
+    assert (ends, reason) == ("3 runs: 2 finished, 1 raised", "  1 × ValueError: 13")
     assert heads.split() == ["COLUMN", "MEAN", "STD", "MIN", "Q5", "Q25", "Q50", "Q75", "Q95", "MAX"]
     assert first.split() == ["far_mm", "101", "0", *["101"] * 7]
 
@@ -126,10 +126,12 @@ def test_goals_are_judged_in_their_world(
     assert "end: met in 2 of 3 (67 %)" in capsys.readouterr().out
 
 
-def test_several_programs_are_compared(batch: Batch) -> None:
+def test_several_programs_are_compared(batch: Batch, capsys: pytest.CaptureFixture[str]) -> None:
     Path("other.py").write_text(PROGRAM)
     assert batch("mine.py", "other.py", "--seeds", "0..1", "--out", "rows.csv") == 0
     assert pd.read_csv("rows.csv")["program"].tolist() == ["mine.py"] * 2 + ["other.py"] * 2
+    lines = [line.split()[:2] for line in capsys.readouterr().out.split("\n")[2:4]]
+    assert lines == [["x_mm", "mine.py"], ["x_mm", "other.py"]]
 
 
 @pytest.mark.parametrize(

@@ -162,7 +162,7 @@ def _titled(title: str, width: int) -> list[Shape]:
 
 def _frame(x: Limits, y: Limits, width: int, height: int) -> Frame:
     left = PAD + 8 * LETTER_PX
-    top, bottom = PAD + 2.0 * LINE_PX, height - PAD - 2.0 * LINE_PX
+    top, bottom = PAD + 2.6 * LINE_PX, height - PAD - 2.0 * LINE_PX
     return Frame(left, top, max(width - PAD - 3 * LETTER_PX, left + 10), max(bottom, top + 10), x, y)
 
 
@@ -173,7 +173,7 @@ def _below(frame: Frame, text: str) -> Words:
 def drawing_of_histogram(data: Histogram, width: int, height: int) -> Drawing:
     """Return a histogram as a drawing in a size in pixels."""
     frame = _frame((float(data.edges[0]), float(data.edges[-1])), value_limits(0.0, max(data.counts)), width, height)
-    shapes = [*_titled(data.title, width), *grid_of(frame)]
+    shapes = [*_titled(data.title, width), *grid_of(frame), Words(PAD, PAD + 1.5 * LINE_PX, "runs")]
     edges = frame.xs(data.edges)
     for at, count in enumerate(data.counts):
         top = float(frame.ys(count))
@@ -218,7 +218,9 @@ def drawing_of_against(data: Against, width: int, height: int) -> Drawing:
         shapes.append(Stroke(np.column_stack((frame.xs(xs), frame.ys(ys))), COLORS[0], dots=True))
         mean_x, mean_y = data.means()
         means = np.column_stack((frame.xs(mean_x), frame.ys(mean_y)))
-        shapes += [Stroke(means, COLORS[1], dots=bool(names) or len(means) == 1)]
+        bar_px = min(room / 4, 60.0)
+        bars = [Stroke(mean + np.array([[-bar_px, 0.0], [bar_px, 0.0]]), COLORS[1]) for mean in means]
+        shapes += bars if names else [Stroke(means, COLORS[1], dots=len(means) == 1)]
         shapes.append(Words(frame.right, PAD + 1.5 * LINE_PX, "means", "end", rgb=COLORS[1]))
     shapes.append(Words(PAD, PAD + 1.5 * LINE_PX, with_unit(data.name), rgb=COLORS[0]))
     return Drawing(data.title, width, height, (*shapes, *borders_of(frame), _below(frame, with_unit(data.parameter))))

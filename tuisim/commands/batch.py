@@ -18,7 +18,17 @@ from tuisim import __version__
 from tuisim.batch.partial import PartialTable, partial_of
 from tuisim.batch.pictures import text_of, write_picture
 from tuisim.batch.sweep import run_plan
-from tuisim.batch.table import GOAL, RUN_ID, ColumnSummary, Row, frame_of, metadata_of, result_columns, summaries
+from tuisim.batch.table import (
+    GOAL,
+    PROGRAM,
+    RUN_ID,
+    ColumnSummary,
+    Row,
+    frame_of,
+    metadata_of,
+    result_columns,
+    summaries,
+)
 from tuisim.commands import exit_status
 from tuisim.commands.batch_request import OPTIONS, Request, read_request
 from tuisim.commands.echo import Progress, echo, echo_drawn, echo_error, echo_json, echo_lines, table, tell
@@ -38,6 +48,10 @@ _SHARED = [one for one in shared_options(hidden=(APP, PANEL), names=names_of) if
 """A batch runs as fast as possible."""
 MOST_LINES = 100
 """A summary has at most this many lines."""
+_MOST_REASONS = 5
+"""Reasons of failures in a summary, the most frequent ones."""
+_MOST_OVERLAID = 4
+"""Stored runs that an example names."""
 _ROUNDING = 1e-10
 """Poses, times and readings smaller than this are 0 but for rounding."""
 _LEAST_COLUMNS, _ROWS = 40, (12, 40)
@@ -168,15 +182,24 @@ class _Batch:
         plan = self.request.plan
         ends = Counter(str(row["end"]).replace("_", " ") or "not started" for row in self.rows.values())
         echo(f"{counted(len(frame), 'run')}: {', '.join(f'{count:,} {end}' for end, count in ends.most_common())}")
+        reasons = Counter(str(row["summary"]) for row in self.rows.values() if _exit_code(row) and row["summary"])
+        for reason, count in reasons.most_common(_MOST_REASONS):
+            echo(f"  {count:,} × {reason}")
         for name in [name for name in frame.columns if name.startswith(GOAL)]:
             met = int(frame[name].fillna(0).sum())
             echo(f"{name.removeprefix(GOAL)}: met in {met:,} of {len(frame):,} ({100 * met / len(frame):.0f} %)")
-        lines = summaries(frame, plan.names, result_columns(frame, self.request.expressions))
+        lines = summaries(
+            frame,
+            [*([PROGRAM] if PROGRAM in frame.columns else []), *plan.names],
+            result_columns(frame, self.request.expressions),
+        )
         echo_lines(_summary_table(lines[:MOST_LINES], shutil.get_terminal_size().columns))
         if len(lines) > MOST_LINES:
             echo(f"and {len(lines) - MOST_LINES:,} more lines; --out FILE writes everything")
-        if RUN_ID in frame.columns:
-            echo(f"Column {RUN_ID} of the table names the stored runs; `tuisim runs` lists them.")
+        kept = [str(row[RUN_ID]) for row in self.rows.values() if RUN_ID in row]
+        if kept:
+            command = f"tuisim analyse {' '.join(kept[:_MOST_OVERLAID])}{' …' * (len(kept) > _MOST_OVERLAID)}"
+            echo(f"{counted(len(kept), 'run')} stored, in column {RUN_ID} of the table: {command}")
 
     def _draw(self, frame: pd.DataFrame) -> None:
         """Draw the pictures: to their files, else as text unless rows are printed."""
