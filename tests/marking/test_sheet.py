@@ -118,6 +118,12 @@ def test_the_page_shows_each_student_and_the_line() -> None:
     assert page.count("not run with further seeds") == 1
 
 
+def test_seeds_with_equal_recordings_share_a_link() -> None:
+    links = {("ben", seed): f"runs/{'first' if seed in (0, 1, 3) else 'other'}.html" for seed in range(4)}
+    page = page_of(SHEET, links)
+    assert '<a href="runs/first.html">0–1, 3</a>, <a href="runs/other.html">2</a>' in page
+
+
 def test_feedback_says_what_was_met_missed_and_why() -> None:
     text = feedback_of(SHEET, SHEET.rows[1], TEXT)
     assert text.splitlines() == [

@@ -82,12 +82,26 @@ def _reason(row: Row, links: Links) -> str:
     found = [clean(row.reason)] if row.reason else []
     if row.line:
         found.append(f"<br>line {row.line}: <code>{clean(row.source_line)}</code>")
-    elsewhere = [(one.seed, links[row.name, one.seed]) for one in row.outcomes if (row.name, one.seed) in links]
-    if elsewhere:
-        shown = ", ".join(f'<a href="{quote(path)}">{seed}</a>' for seed, path in elsewhere)
+    reports: dict[str, list[int]] = {}
+    for outcome in row.outcomes:
+        if (row.name, outcome.seed) in links:
+            reports.setdefault(links[row.name, outcome.seed], []).append(outcome.seed)
+    if reports:
+        shown = ", ".join(f'<a href="{quote(path)}">{_ranges(seeds)}</a>' for path, seeds in reports.items())
         found.append(f'<div class="soft">reports of runs by seed: {shown}</div>')
     if row.stopped_early:
         found.append('<div class="soft">not run with further seeds</div>')
     if row.error:
         found.append(f"<details><summary>error</summary><pre>{clean(row.error)}</pre></details>")
     return "".join(found)
+
+
+def _ranges(seeds: Sequence[int]) -> str:
+    """Return ascending numbers with runs of them as ranges, such as `0, 3–5`."""
+    found: list[list[int]] = []
+    for seed in seeds:
+        if found and seed == found[-1][-1] + 1:
+            found[-1].append(seed)
+        else:
+            found.append([seed])
+    return ", ".join(f"{one[0]}–{one[-1]}" if len(one) > 1 else str(one[0]) for one in found)
