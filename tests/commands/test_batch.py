@@ -208,6 +208,19 @@ def test_a_resumed_batch_runs_the_rest_and_gives_the_same_bytes(
     assert list(Path().glob("*.part")) == []
 
 
+@pytest.mark.parametrize("suffix", ["csv", "parquet", "jsonl", "arrow"])
+def test_a_complete_batch_is_not_run_again_for_another_picture(
+    batch: Batch, suffix: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ("mine.py", "--seeds", "10..14", "--set", "robot.weight=light,heavy", "--expr", "a=x_mm + 1", "--out")
+    assert batch(*words, f"rows.{suffix}") == 1
+    summary, whole = capsys.readouterr().out, Path(f"rows.{suffix}").read_bytes()
+    monkeypatch.setattr(workers, "run_many", lambda tasks, jobs: iter([1 / 0 for _ in tasks]))
+    assert batch(*words, f"rows.{suffix}", "--resume", "--picture-of", "Colour_last", "--picture", "c.svg") == 1
+    assert (capsys.readouterr().out, Path(f"rows.{suffix}").read_bytes()) == (summary, whole)
+    assert Path("c.svg").exists()
+
+
 @pytest.mark.parametrize(
     "words, message",
     [

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, BinaryIO, Self
 
 from tuisim.atomic import replacing
-from tuisim.batch.table import RUN, Row
-from tuisim.errors import ConfigError, ExportError
+from tuisim.batch.table import RUN, RUN_ID, Row, is_statistic
+from tuisim.errors import ConfigError, ExportError, TuisimError
 
 SUFFIX = ".part"
 
@@ -92,6 +92,27 @@ class PartialTable:
         self.close()
         with suppress(FileNotFoundError):
             os.unlink(self._path)
+
+
+def rows_of_table(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -> dict[int, Row]:
+    """Return the rows of the whole table of a batch by the index of their task; empty if the file is another one.
+
+    Args:
+        identity: What identifies the batch.
+        columns: The columns that rows have besides those of sample variables; others have been computed.
+    """
+    from tuisim.logs.reader import open_log, read_log
+
+    try:
+        found = open_log(path).metadata.get("batch")
+        frame = read_log(path) if found == identity else None
+    except TuisimError:
+        return {}
+    if frame is None or len(frame) != identity["runs"]:
+        return {}
+    kept = frame[[name for name in frame.columns if name in {*columns, RUN_ID} or is_statistic(name)]]
+    rows = [{name: value for name, value in row.items() if value == value} for row in kept.to_dict("records")]
+    return {int(row[RUN]) - 1: {str(name): value for name, value in row.items()} for row in rows}
 
 
 def _encoded(row: Mapping[str, Any]) -> bytes:

@@ -15,7 +15,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 from tuisim import __version__
-from tuisim.batch.partial import PartialTable, partial_of
+from tuisim.batch.partial import PartialTable, partial_of, rows_of_table
 from tuisim.batch.pictures import text_of, write_picture
 from tuisim.batch.sweep import run_plan
 from tuisim.batch.table import (
@@ -28,6 +28,7 @@ from tuisim.batch.table import (
     metadata_of,
     result_columns,
     summaries,
+    usual_columns,
 )
 from tuisim.commands import exit_status
 from tuisim.commands.batch_request import OPTIONS, Request, read_request
@@ -153,7 +154,9 @@ class _Batch:
         path = partial_of(self.request.out)
         partly = PartialTable(path, {"version": __version__, **self.request.plan.identity()})
         if self.request.resume:
-            self.rows = partly.rows()
+            plan = self.request.plan
+            columns = usual_columns(plan.names, [goal.name for goal in plan.goals])
+            self.rows = partly.rows() or rows_of_table(self.request.out, plan.identity(), columns)
         elif path.exists():
             hint = "--resume goes on with it; remove the file to begin again"
             raise ConfigError("holds the rows of an interrupted batch", hint, file=str(path))
