@@ -14,7 +14,7 @@ from collections import OrderedDict
 from collections.abc import Hashable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import IO, ClassVar
+from typing import IO, TYPE_CHECKING, ClassVar
 
 import msgspec
 
@@ -22,8 +22,10 @@ from tuisim.atomic import private
 from tuisim.errors import HostError
 from tuisim.protocol import EVENTS, Message
 from tuisim.runs.isolation import spawn_isolated
-from tuisim.runs.warm import ChildProcess, Template, WarmProcess
 from tuisim.source import source_lines
+
+if TYPE_CHECKING:
+    from tuisim.runs.warm import ChildProcess, Template, WarmProcess
 
 PATIENCE_S = 0.2
 """Longest wait for a full command pipe: a child that listens empties it at once."""
@@ -59,6 +61,9 @@ def warm_up() -> None:
     """Start the warm process, from which all later children are forked, unless it is running. Does not block."""
     if _Starts.warm is None or not _Starts.warm.is_usable:
         cool_down()
+        # Imported on demand: it imports what most commands need not.
+        from tuisim.runs.warm import WarmProcess
+
         # If it cannot be started, each child is started by itself.
         with suppress(OSError):
             _Starts.warm = WarmProcess(_command(), _environment())
