@@ -172,7 +172,7 @@ class Loader:
             self._app.complain(error)
 
     def open_file(self, path: str) -> None:
-        """Open a program with the world that it asks for, or a world with the program that it names."""
+        """Open a program with the world that it asks for, or a world with the program and the goals that it names."""
         from tuisim.config.worlds import means_world
 
         opened = self._open_world if means_world(path) else self._open_program

@@ -68,7 +68,7 @@ def open_app(**given: Any) -> int:
         goals = goals or _goals_in(prepared.world, prepared.settings.mats)
     else:
         replay, prepared = prepare_replay(arguments.run, arguments.words, arguments)
-    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+    if not _has_terminal():
         raise ConfigError("the app needs a terminal", "without one, use `tuisim run PROGRAM`")
     from tuisim.app.app import AppSettings, run_app
 
@@ -91,6 +91,10 @@ def open_app(**given: Any) -> int:
     )
     with _drawing_on_stdout():
         return run_app(app_settings)
+
+
+def _has_terminal() -> bool:
+    return sys.stdin.isatty() and sys.stdout.isatty()
 
 
 def _goals(word: str | None) -> GoalsFile | None:

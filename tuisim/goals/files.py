@@ -112,7 +112,16 @@ def example_names() -> list[str]:
     Raises:
         ConfigError: there is no folder of programs.
     """
-    return sorted(path.name.removesuffix(_EXAMPLE) for path in programs_folder().glob(f"*{_EXAMPLE}"))
+    return [path.name.removesuffix(_EXAMPLE) for path in examples()]
+
+
+def examples() -> list[Path]:
+    """Return the files of the examples, by name.
+
+    Raises:
+        ConfigError: there is no folder of programs.
+    """
+    return sorted(programs_folder().glob(f"*{_EXAMPLE}"))
 
 
 def _found(path: Path) -> Path:

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 from textual.pilot import Pilot
+from textual.widgets import Input
 
-from tests.app.app_help import ready, screen_text, settings, until, until_shown
+from tests.app.app_help import notices, ready, screen_text, settings, until, until_shown
+from tests.conftest import Command
+from tuisim.app import goals as app_goals
 from tuisim.app.app import AppSettings, LabApp
-from tuisim.app.render.goals import GoalsView, goal_lines
+from tuisim.app.render.goals import GoalsView, draw_goals
+from tuisim.app.snapshot import RunPhase
+from tuisim.charts.text_runs import Line
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import settings_of
 from tuisim.goals.files import load_goals
@@ -63,11 +69,12 @@ def with_goals(path: Path, text: str | None = None, **more: Any) -> AppSettings:
 def shown(app: LabApp) -> list[str]:
     """The lines of the panel, without those that are cut off below."""
     panel = app.panel_area.goals
-    return [] if panel is None else ["".join(text for text, _ in line).rstrip() for line in panel._text._lines]
+    return [] if panel is None else texts(panel._picture.lines)
 
 
-async def until_ended(pilot: Pilot[Any], app: LabApp) -> None:
-    await until(pilot, lambda: app.run_controller.run is not None and not app.run_controller.in_run)
+def state(app: LabApp, name: str) -> str:
+    """Sign and state of a goal in the list."""
+    return next((text[:9].rstrip() for text in shown(app) if text[9:].startswith(f"{name} ")), "")
 
 
 MET = Judgement(
@@ -80,33 +87,58 @@ MISSED = Judgement(
     9,
 )
 BY_TEXT = Judgement(Goal("part", Use(("f",)), points=0), (Change(0, 0.0, GoalState.MET, 1.0, 2.0),), line=3)
-OPEN = Judgement(Goal("a name that is longer than a line", AllOf(("there",))), (), "5 mm to go.")
+OPEN = Judgement(Goal("both", AllOf(("there",)), "First the one, then the other."), (), "5 mm to go.")
 TEXTS = {
-    "met": (MET, ["✓ met    there              2/2", "  Drive to it.", "  1.00 s, x 300, y 80 mm, line", "  7"]),
+    "met": (
+        MET,
+        "✓ met    there              2/2",
+        ["met at 1.00 s, x 300, y 80 mm,", "line 7", "Drive to it."],
+    ),
     "missed": (
         MISSED,
-        [
-            "✗ missed closed           0/1.5",
-            "  2.00 s, x 1, y 2 mm",
-            "  It was 30 mm off. (line 9)",
-            "  Hint: Turn by 90.",
-        ],
+        "✗ missed closed           0/1.5",
+        ["missed at 2.00 s, x 1, y 2 mm,", "line 9", "It was 30 mm off.", "Hint: Turn by 90."],
     ),
-    "by the text, without points": (BY_TEXT, ["✓ met    part", "  by the program's text, line 3"]),
-    "open, with a long name": (
-        OPEN,
-        ["· open   a name that is     0/1", "         longer than a line", "  not decided yet"],
-    ),
+    "by the text, without points": (BY_TEXT, "✓ met    part", ["met by the program's text, line", "3"]),
+    "open": (OPEN, "· open   both               0/1", ["First the one, then the other."]),
 }
+
+
+def texts(lines: Sequence[Line]) -> list[str]:
+    return ["".join(text for text, _ in line).rstrip() for line in lines]
 
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_a_goal_as_lines(name: str) -> None:
-    judgement, expected = TEXTS[name]
+    judgement, listed, detail = TEXTS[name]
     view = GoalsView("A task", (judgement.goal,), (judgement,))
-    lines = ["".join(text for text, _ in line).rstrip() for line in goal_lines(view, view.states(None), 31)]
+    lines = texts(draw_goals(view, view.states(None), 0, 0, 31, 12).lines)
     assert lines[0] == "A task"
-    assert lines[2:] == expected
+    assert lines[2] == listed
+    assert lines[3].startswith(f"── {judgement.goal.name} ──")
+    assert lines[4:] == detail
+
+
+def test_rows_of_the_list_stay_where_they_are_whatever_the_goals_come_to() -> None:
+    goals = (MET.goal, MISSED.goal, replace(OPEN.goal, name="a name that is longer than one line"))
+    view = GoalsView("A task", goals, (MET, MISSED, OPEN))
+    after = draw_goals(view, view.states(None), 1, 0, 24, 13)
+    before = draw_goals(GoalsView("A task", goals), (GoalState.OPEN,) * 3, 0, 0, 24, 13)
+    assert after.rows == before.rows == (None, None, 0, 1, 2, 2, 2)
+
+
+@pytest.mark.parametrize("height", [6, 9, 13, 24])
+@pytest.mark.parametrize("chosen", [0, 11, 19])
+def test_a_long_list_shows_the_chosen_goal_and_its_detail(height: int, chosen: int) -> None:
+    goals = tuple(replace(MISSED.goal, name=f"goal {number}") for number in range(20))
+    view = GoalsView("A task", goals, tuple(replace(MISSED, goal=goal) for goal in goals))
+    picture = draw_goals(view, view.states(None), chosen, 0, 40, height)
+    assert chosen in picture.rows
+    assert len(picture.lines) <= height
+    assert "missed at 2.00 s, x 1, y 2 mm, line 9" in texts(picture.lines)
+    end = draw_goals(view, view.states(None), chosen, 99, 40, height)
+    assert end.below == 0
+    assert texts(end.lines)[-1] == "Hint: Turn by 90."
 
 
 async def test_without_goals_the_panel_says_what_to_do_next() -> None:
@@ -124,8 +156,10 @@ async def test_a_run_is_judged_when_it_has_ended(task: Path) -> None:
         await until(pilot, lambda: "0 of 5 points" in shown(app))
         assert "R runs the program" in screen_text(app)
         await pilot.press("R")
-        await until(pilot, lambda: "2 of 5 points" in shown(app) and any("missed said" in text for text in shown(app)))
-        assert shown(app)[-1] == "  Hint: Print it at the end."
+        await until(
+            pilot, lambda: "2 of 5 points" in shown(app) and "✗ missed said                        0/3" in shown(app)
+        )
+        assert shown(app)[-1] == "Hint: Print it at the end."
         assert "R runs the program" not in screen_text(app)
 
 
@@ -134,8 +168,190 @@ async def test_goals_are_judged_while_the_program_runs(task: Path) -> None:
     async with app.run_test(size=SIZE) as pilot:
         await ready(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: any("✓ met    there" in text for text in shown(app)))
+        await until(pilot, lambda: state(app, "there") == "✓ met")
         assert app.run_controller.in_run
-        assert any("· open   said" in text for text in shown(app))
+        assert state(app, "said") == "· open"
         await pilot.press(*"yes", "enter")
         await until(pilot, lambda: "5 of 5 points" in shown(app))
+
+
+async def test_a_past_instant_shows_the_goals_as_of_then(task: Path) -> None:
+    app = LabApp(with_goals(task, DRIVES))
+    async with app.run_test(size=SIZE) as pilot:
+        await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: state(app, "said") == "✗ missed")
+        panel, judgements = app.panel_area.goals, app.goals._judgements
+        assert panel is not None
+        tick = judgements[0].changes[0].tick
+        for at, there, total in ((tick - 1, "· open", "0 of 5 points"), (tick, "✓ met", "2 of 5 points")):
+            app.run_controller.timeline.go(at)
+            app.draw(force=True)
+            assert (state(app, "there"), state(app, "said")) == (there, "· open")
+            assert total in shown(app)
+            assert panel.border_subtitle == f"as of {at / 100:.2f} s"
+        await pilot.press("end")
+        await until(pilot, lambda: state(app, "said") == "✗ missed")
+        assert panel.border_subtitle == ""
+
+
+async def test_keys_and_mouse_choose_the_goal_that_is_shown_in_detail(task: Path) -> None:
+    app = LabApp(with_goals(task, DRIVES))
+    async with app.run_test(size=SIZE) as pilot:
+        await ready(pilot)
+        panel = app.panel_area.goals
+        assert panel is not None
+        await until(pilot, lambda: any(text.startswith("── there") for text in shown(app)))
+        panel.focus()
+        await pilot.press("down")
+        assert any(text.startswith("── said") for text in shown(app))
+        await pilot.click(panel, offset=(5, 1 + panel._picture.rows.index(0)))
+        assert app.focused is panel
+        assert any(text.startswith("── there") for text in shown(app))
+        # It stays the one that was chosen.
+        await pilot.press("R")
+        await until(pilot, lambda: state(app, "said") == "✗ missed")
+        assert any(text.startswith("── there") for text in shown(app))
+
+
+async def open_path(pilot: Pilot[Any], app: LabApp, path: str) -> None:
+    await pilot.press("o")
+    entry = app.screen.query_one(Input)
+    entry.focus()
+    entry.value = path
+    await pilot.press("enter")
+    await until(pilot, lambda: len(app.screen_stack) == 1 and app.loader.mat_is_ready)
+
+
+async def test_goals_are_opened_with_their_world_and_closed_with_the_next(task: Path) -> None:
+    (task.parent / "lab.toml").write_text('background = "Loop"\n')
+    app = LabApp(settings(DRIVES, speed=0.0))
+    async with app.run_test(size=SIZE) as pilot:
+        await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.run_controller.state is RunPhase.ENDED)
+        await open_path(pilot, app, task.name)
+        await until(pilot, lambda: app.panel_area.shown("goals") and state(app, "said") == "· open")
+        assert app.run_controller.next_run.spec.world.start.x_mm == 300
+        assert app.loader.world_file == Path(task.name)
+        # The run before was for another task.
+        app.goals.update()
+        assert app.goals._recording is None
+        await pilot.press("R")
+        await until(pilot, lambda: state(app, "there") == "✓ met")
+        # It is the same task.
+        await open_path(pilot, app, task.name)
+        await until(pilot, lambda: state(app, "there") == "✓ met")
+        await open_path(pilot, app, "lab.toml")
+        await until(pilot, lambda: "No goals: o opens" in screen_text(app))
+
+
+async def test_examples_of_goals_are_offered_and_opened_by_name(task: Path) -> None:
+    async with LabApp(settings()).run_test(size=SIZE) as pilot:
+        app = await ready(pilot)
+        await pilot.press("o")
+        await until_shown(pilot, "square_goals.toml")
+        assert "task_goals.toml" in screen_text(app)
+        await pilot.press("escape")
+        await open_path(pilot, app, "square_goals.toml")
+        await until_shown(pilot, "A square, closed within 20 mm")
+        assert app.run_controller.program is not None
+        assert app.run_controller.program.name == "square.py"
+
+
+@pytest.mark.parametrize("is_world", [True, False], ids=["as the world", "beside a world"])
+async def test_goals_that_change_on_disk_are_read_again(task: Path, is_world: bool) -> None:
+    app = LabApp(replace(with_goals(task, DRIVES), world_file=task if is_world else None))
+    async with app.run_test(size=SIZE) as pilot:
+        await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: state(app, "said") == "✗ missed")
+        task.write_text(GOALS.replace("x_mm = 500 }", "x_mm = 2000 }"))
+        app.check_files()
+        await until(pilot, lambda: state(app, "there") == "✗ missed")
+        assert notices(app).count("task_goals.toml changed on disk: reloaded") == 1
+
+        task.write_text(GOALS.replace("x_mm = 500 }", "x_mm = 5000 }"))
+        app.check_files()
+        wrong = "task_goals.toml, line 13: goal[1].reach.x_mm: must be a number from 0 to 2362, got 5000"
+        await until(pilot, lambda: sum(wrong in text for text in notices(app)) == 1)
+        # The goals are the last good ones.
+        assert state(app, "there") == "✗ missed"
+
+
+async def test_nothing_is_judged_while_the_panel_is_closed(task: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    judged = []
+    judge = app_goals._judged
+
+    def noted(*given: Any) -> Any:
+        judged.append(given)
+        return judge(*given)
+
+    monkeypatch.setattr(app_goals, "_judged", noted)
+    app = LabApp(with_goals(task, DRIVES, panels_on=frozenset()))
+    async with app.run_test(size=SIZE) as pilot:
+        await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.run_controller.state is RunPhase.ENDED)
+        app.goals.update()
+        assert not judged
+        await pilot.press("J")
+        await until(pilot, lambda: state(app, "said") == "✗ missed")
+        app.goals.update()
+        assert len(judged) == 1
+
+
+async def test_an_error_in_judging_is_told_once(task: Path) -> None:
+    app = LabApp(with_goals(task, DRIVES, panels_on=frozenset()))
+    async with app.run_test(size=SIZE) as pilot:
+        await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.run_controller.state is RunPhase.ENDED)
+        assert app.run_controller.run is not None
+        (app.run_controller.run.folder / "run.json").unlink()
+        await pilot.press("J")
+        await until(pilot, lambda: any("run.json" in text for text in notices(app)))
+        app.goals.update()
+        app.goals.update()
+        assert not app.goals._is_judging
+        assert sum("run.json" in text for text in notices(app)) == 1
+
+
+STARTS = {
+    "as the world": (["task_goals.toml"], (300.0, None, 2)),
+    "as the world, of a program": (["task_goals.toml", "mine.py"], (300.0, "mine.py", 2)),
+    "by option": (["--goals", "task_goals.toml", "mine.py"], (300.0, "mine.py", 2)),
+    "by option, in another world": (["--goals", "task_goals.toml", "lab.toml", "mine.py"], (700.0, "mine.py", 2)),
+    "an example by name": (["--goals", "square"], (300.0, "square.py", 4)),
+    "an example by file": (["square_goals.toml"], (300.0, "square.py", 4)),
+    "no goals": (["lab.toml"], (700.0, None, 0)),
+}
+
+
+@pytest.mark.parametrize("name", STARTS)
+def test_goals_on_the_command_line(name: str, task: Path, here: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    words, (x_mm, program, count) = STARTS[name]
+    (task.parent / "mine.py").write_text(DRIVES)
+    (task.parent / "lab.toml").write_text("start.x_mm = 700\n")
+    opened: list[AppSettings] = []
+
+    def run_app(settings: AppSettings) -> int:
+        opened.append(settings)
+        return 0
+
+    monkeypatch.setattr("tuisim.app.app.run_app", run_app)
+    monkeypatch.setattr("tuisim.commands.app._has_terminal", lambda: True)
+    done = here("open", *words)
+    assert (done.returncode, done.stderr) == (0, "")
+    (made,) = opened
+    assert made.spec.world.start.x_mm == x_mm
+    assert (made.program.name if made.program else None) == program
+    assert len(made.goals.goals if made.goals else ()) == count
+    assert ("goals" in made.panels_on) is bool(count)
+
+
+def test_wrong_goals_on_the_command_line(task: Path, here: Command) -> None:
+    task.write_text(GOALS.replace("points = 2", "points = -2"))
+    done = here("open", "--goals", task.name)
+    assert done.returncode == 2
+    assert "task_goals.toml, line 12: goal[1].points: must be a number from 0 to 1000, got -2" in done.stderr

@@ -37,7 +37,7 @@ def open_program(workspace: Workspace) -> None:
 
 
 def open_path(workspace: Workspace, path: str) -> None:
-    """Open a program or a world; if the open program has unsaved changes, a dialog asks first."""
+    """Open a program, a world or goals; if the open program has unsaved changes, a dialog asks first."""
     workspace.document.when_safe(partial(workspace.loader.open_file, path))
 
 

@@ -151,7 +151,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("back", "comma", "One tick back", TIME, time_travel.tick_back, _can_look_back, "back"),
         *_debugs(),
         *_travels(),
-        Action("open", "o", "Open a program or a world", FILES, files.open_program, _can_change_world, "open"),
+        Action("open", "o", "Open a program, a world or goals", FILES, files.open_program, _can_change_world, "open"),
         Action("edit", "d", "Edit the program", FILES, files.edit, footer="edit"),
         Action("new", "ctrl+t", "New program", FILES, files.new_program, _can_change_world, "new"),
         Action("mats", "b", "Choose a mat", ROBOT, robot.choose_mat, _can_change_world, "mats"),

@@ -144,21 +144,24 @@ class Chooser(ListDialog):
 
 
 def program_chooser() -> Chooser:
-    """Return the dialog for programs and worlds: those in the current folder, and the examples."""
+    """Return the dialog for programs, worlds and goals: those in the current folder, and the examples."""
     from tuisim.config.program_file import programs
     from tuisim.config.worlds import load_world
+    from tuisim.goals.files import examples as goals_examples
 
-    examples = programs()
-    known = {str(path.resolve()) for _, path, _ in examples}
+    examples, goals = programs(), goals_examples()
+    known = {str(path.resolve()) for path in (*(path for _, path, _ in examples), *goals)}
     here = files_here([".py"])
     own = Group(here.title, [entry for entry in here.entries if entry[0] not in known])
-    worlds = files_here([".toml"], load_world)
+    worlds = [entry for entry in files_here([".toml"], load_world).entries if entry[0] not in known]
     groups = [
         own,
-        Group("Worlds" if own.entries else f"{worlds.title}: worlds", worlds.entries),
+        Group("Worlds and goals" if own.entries else f"{here.title}: worlds and goals", worlds),
+        Group("Examples of goals", [(str(path), path.name, "") for path in goals]),
         Group("Examples", [(str(path), name, title) for name, path, title in examples]),
     ]
-    return Chooser("Programs and worlds", groups, path_hint="Path of a program or a world, or choose below")
+    hint = "Path of a program, world or goals file, or choose below"
+    return Chooser("Programs, worlds and goals", groups, path_hint=hint)
 
 
 def robot_chooser(plan: NextRun) -> Chooser:

@@ -99,7 +99,7 @@ PANELS: Mapping[str, PanelInfo] = {
         PanelInfo("debug", "Debug", "G", "debug:Debug", _SIDE, (), 9, 18),
         PanelInfo("brick", "Brick", "K", "brick:Brick", _BOTTOM, (), 9, 20, weight=4),
         PanelInfo("obstacles", "Obstacles", "B", "obstacles:Obstacles", _SIDE, (), 11, 16),
-        PanelInfo("goals", "Goals", "J", "goals:Goals", _SIDE, (), 8, 20),
+        PanelInfo("goals", "Goals", "J", "goals:Goals", _SIDE, (), 9, 20),
         PanelInfo("settings", "Settings", "Z", "settings:Settings", _SIDE, (), 14, 40),
     )
 }

@@ -1,13 +1,14 @@
-"""The goals panel: each goal of a task with its state, its points, and when, where and why it was met or missed."""
+"""The goals panel: the goals of a task with their states and points; of one, when, where and why it was decided."""
 
 from __future__ import annotations
 
 from typing import ClassVar
 
+from textual import events
 from textual.binding import Binding, BindingType
 
 from tuisim.app.panels import PANELS
-from tuisim.app.render.goals import GoalsView, goal_lines
+from tuisim.app.render.goals import GoalsPicture, GoalsView, current_goal, draw_goals
 from tuisim.app.snapshot import Snapshot
 from tuisim.app.terminal.cell_view import LinesPanel
 
@@ -19,10 +20,10 @@ class Goals(LinesPanel, can_focus=True):
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up", "scroll_lines(-1)", "Up", show=False),
-        Binding("down", "scroll_lines(1)", "Down", show=False),
-        Binding("pageup", "scroll_lines(-10)", "Page up", show=False),
-        Binding("pagedown", "scroll_lines(10)", "Page down", show=False),
+        Binding("up", "select(-1)", "The goal above", show=False),
+        Binding("down", "select(1)", "The goal below", show=False),
+        Binding("pageup", "scroll_detail(-3)", "Page up", show=False),
+        Binding("pagedown", "scroll_detail(3)", "Page down", show=False),
     ]
 
     def __init__(self) -> None:
@@ -30,14 +31,18 @@ class Goals(LinesPanel, can_focus=True):
         self._content = GoalsView()
         self._past: tuple[int, float] | None = None
         """Tick and simulated time of the past instant in view; None for now."""
-        self._shown: object = None
-        self._top = 0
+        self._chosen: int | None = None
+        """The goal that the user has chosen to see in detail."""
+        self._first = 0
+        """First row of the detail that is shown."""
+        self._picture = GoalsPicture([])
+        self._drawn: object = None
 
     def on_focus(self) -> None:
-        self._subtitle()
+        self._show_subtitle()
 
     def on_blur(self) -> None:
-        self._subtitle()
+        self._show_subtitle()
 
     def show(self, snapshot: Snapshot) -> None:
         """Show the goals as of an instant; the judgements come with `show_goals`."""
@@ -47,50 +52,69 @@ class Goals(LinesPanel, can_focus=True):
             self._draw_changes()
 
     def show_goals(self, view: GoalsView) -> None:
-        """Show goals with their judgements; they are from the top on if they are others."""
+        """Show goals with their judgements."""
         if view.goals != self._content.goals:
-            self._top = 0
+            self._chosen, self._first = None, 0
         self._content = view
         self._draw_changes()
 
     def _draw_changes(self) -> None:
-        self._subtitle()
+        self._show_subtitle()
         # Most instants of a run are like the one before.
-        if (self._content, self._content.states(self._tick)) != self._shown:
+        if (self._content, self._content.states(self._tick)) != self._drawn:
             self._redraw()
 
     @property
     def _tick(self) -> int | None:
         return self._past[0] if self._past else None
 
+    @property
+    def _at(self) -> int:
+        """Index of the goal that is shown in detail."""
+        return current_goal(self._content.states(self._tick)) if self._chosen is None else self._chosen
+
     def _redraw(self) -> None:
         size = self._text.size
         if not size:
             return
         states = self._content.states(self._tick)
-        self._shown = self._content, states
-        lines = goal_lines(self._content, states, size.width)
-        self._top = max(0, min(self._top, len(lines) - size.height))
-        below = len(lines) - self._top - size.height
-        self.border_title = f"{_TITLE} ↓{below}" if below > 0 else _TITLE
-        self._text.set_lines(lines[self._top : self._top + size.height])
+        self._drawn = self._content, states
+        self._picture = draw_goals(self._content, states, self._at, self._first, size.width, size.height)
+        self.border_title = f"{_TITLE} ↓{self._picture.below}" if self._picture.below else _TITLE
+        self._text.set_lines(self._picture.lines)
 
-    def _subtitle(self) -> None:
+    def _show_subtitle(self) -> None:
         if self._past:
             words = f"as of {self._past[1]:.2f} s"
         elif self._content.hint:
             words = self._content.hint
         else:
-            words = "↑↓ scroll" if self.has_focus and self._content.goals else ""
+            words = "↑↓ goal · page ↑↓ text" if self.has_focus and self._content.goals else ""
         if words != self.border_subtitle:
             self.border_subtitle = words
 
-    def action_scroll_lines(self, by: int) -> None:
-        self._top = max(0, self._top + by)
+    def _choose(self, goal: int) -> None:
+        self._chosen, self._first = goal, 0
+        self._redraw()
+
+    def action_select(self, by: int) -> None:
+        if self._content.goals:
+            self._choose(max(0, min(self._at + by, len(self._content.goals) - 1)))
+
+    def on_click(self, event: events.Click) -> None:
+        """Show the goal under the mouse in detail."""
+        # The focus stays here.
+        event.stop()
+        _, row = self.cell_at(event)
+        if 0 <= row < len(self._picture.rows) and (goal := self._picture.rows[row]) is not None:
+            self._choose(goal)
+
+    def action_scroll_detail(self, by: int) -> None:
+        self._first = max(0, self._picture.first + by)
         self._redraw()
 
     def on_mouse_scroll_down(self) -> None:
-        self.action_scroll_lines(2)
+        self.action_scroll_detail(1)
 
     def on_mouse_scroll_up(self) -> None:
-        self.action_scroll_lines(-2)
+        self.action_scroll_detail(-1)

@@ -1,4 +1,4 @@
-"""The goals of a task, and how a run does on them, as lines of text."""
+"""The goals of a task, and how a run does on them, as lines of text: a list, and below it one goal in detail."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import assert_never
 from rich.style import Style
 
 from tuisim.charts.text_runs import Line
-from tuisim.goals.judge import Change, GoalState, Judgement
+from tuisim.goals.judge import GoalState, Judgement
 from tuisim.goals.spec import Goal, Kind
 
 _NAME = Style(color="#ffffff", bold=True)
@@ -25,7 +25,10 @@ _STATES = {
 }
 _STATE_COLUMNS = 9
 """Columns of the sign and the word, such as `✗ missed `."""
-_INDENT = "  "
+_TITLED_ROWS = 9
+"""From this height on, the title of the task is shown, too."""
+_DETAIL_ROWS = 3
+"""Rows that are kept for a goal in detail, however long the list is."""
 
 NO_GOALS = "No goals: o opens a goals file such as square_goals.toml"
 
@@ -50,38 +53,72 @@ class GoalsView:
         return tuple(each.state if tick is None else each.at(tick) for each in self.judgements)
 
 
-def goal_lines(view: GoalsView, states: tuple[GoalState, ...], width: int) -> list[Line]:
-    """Return the text for a panel of that inner width, with the goals in the given states."""
+@dataclass(frozen=True, slots=True)
+class GoalsPicture:
+    """The text of the panel."""
+
+    lines: list[Line]
+    rows: tuple[int | None, ...] = ()
+    """For each line the index of the goal in the list that it belongs to, if any."""
+    first: int = 0
+    """The first row of the detail that is shown."""
+    below: int = 0
+    """Number of rows of the detail that do not fit."""
+
+
+def current_goal(states: tuple[GoalState, ...]) -> int:
+    """Return the index of the goal to show in detail unless the user chooses one: the first missed, else open, one."""
+    for wanted in (GoalState.MISSED, GoalState.OPEN):
+        if wanted in states:
+            return states.index(wanted)
+    return 0
+
+
+def draw_goals(
+    view: GoalsView, states: tuple[GoalState, ...], chosen: int, first: int, width: int, height: int
+) -> GoalsPicture:
+    """Return the text for a panel of that inner size.
+
+    The rows of the list depend only on the goals and the size, so that they stay where they are during a run.
+
+    Args:
+        view: The goals.
+        states: Their states.
+        chosen: Index of the goal that is shown in detail.
+        first: The first row of the detail to show, if it has so many.
+        width: Columns.
+        height: Rows.
+    """
     if not view.goals:
-        return list(_wrapped(NO_GOALS, width, _PALE, ""))
+        return GoalsPicture(list(_wrapped(NO_GOALS, width, _PALE)))
     reached = sum(goal.points for goal, state in zip(view.goals, states, strict=True) if state is GoalState.MET)
     total = f"{reached:g} of {sum(goal.points for goal in view.goals):g} points"
-    lines = [*_wrapped(view.title, width, _NAME, ""), [(total, _HEAD)]]
+    lines = list(_wrapped(view.title, width, _NAME)) if height >= _TITLED_ROWS else []
+    lines.append([(total, _HEAD)])
+    listed = [
+        (line, at)
+        for at, (goal, state) in enumerate(zip(view.goals, states, strict=True))
+        for line in _header(goal, state, width)
+    ]
+    room = height - len(lines) - 1
+    listed = _around(listed, chosen, max(1, room - max(_DETAIL_ROWS, room // 2)))
+    rows = (*(None for _ in lines), *(at for _, at in listed))
+    lines += [line for line, _ in listed]
+    name = view.goals[chosen].name[: max(0, width - 5)]
+    lines.append([("── ", _PALE), (name, _NAME), (f" {'─' * max(0, width - len(name) - 4)}", _PALE)])
     # Before a run, nothing is known about any goal.
-    judgements = view.judgements or tuple(Judgement(goal, ()) for goal in view.goals)
-    for judgement, state in zip(judgements, states, strict=True):
-        lines += _block(judgement, state, width)
-    return lines
+    judgement = view.judgements[chosen] if view.judgements else Judgement(view.goals[chosen], ())
+    detail = list(_detail(judgement, states[chosen], width))
+    room = max(0, height - len(lines))
+    first = max(0, min(first, len(detail) - room))
+    return GoalsPicture([*lines, *detail[first : first + room]], rows, first, max(0, len(detail) - first - room))
 
 
-def _block(judgement: Judgement, state: GoalState, width: int) -> Iterator[Line]:
-    goal = judgement.goal
-    yield from _header(goal, state, width)
-    yield from _wrapped(goal.say, width, _PLAIN)
-    line = f", line {judgement.line}" if judgement.line else ""
-    match state:
-        case GoalState.OPEN:
-            yield from _wrapped("not decided yet", width, _PALE)
-        case GoalState.MET:
-            yield from _wrapped(f"{_when(judgement)}{line}", width, _PALE)
-        case GoalState.MISSED:
-            yield from _wrapped(f"{_when(judgement)}{'' if judgement.reason else line}", width, _PALE)
-            if judgement.reason:
-                yield from _wrapped(f"{judgement.reason}{f' (line {judgement.line})' if line else ''}", width, _PLAIN)
-            if goal.hint:
-                yield from _wrapped(f"Hint: {goal.hint}", width, _HINT)
-        case _:
-            assert_never(state)
+def _around(listed: list[tuple[Line, int]], chosen: int, most: int) -> list[tuple[Line, int]]:
+    """Return at most so many lines of a list, with those of the chosen goal."""
+    begins = next(row for row, (_, at) in enumerate(listed) if at == chosen)
+    first = max(0, min(begins - most // 2, len(listed) - most))
+    return listed[first : first + most]
 
 
 def _header(goal: Goal, state: GoalState, width: int) -> Iterator[Line]:
@@ -95,14 +132,33 @@ def _header(goal: Goal, state: GoalState, width: int) -> Iterator[Line]:
         yield [(" " * _STATE_COLUMNS + text, _NAME)]
 
 
+def _detail(judgement: Judgement, state: GoalState, width: int) -> Iterator[Line]:
+    """Yield what is most useful first, for there may be few rows."""
+    goal = judgement.goal
+    line = f", line {judgement.line}" if judgement.line else ""
+    match state:
+        case GoalState.OPEN:
+            yield from _wrapped(goal.say, width, _PLAIN)
+        case GoalState.MET:
+            yield from _wrapped(f"met {_when(judgement)}{line}", width, _PALE)
+            yield from _wrapped(goal.say, width, _PLAIN)
+        case GoalState.MISSED:
+            yield from _wrapped(f"missed {_when(judgement)}{line}", width, _PALE)
+            yield from _wrapped(judgement.reason, width, _PLAIN)
+            yield from _wrapped(f"Hint: {goal.hint}" if goal.hint else "", width, _HINT)
+            yield from _wrapped(goal.say, width, _PALE)
+        case _:
+            assert_never(state)
+
+
 def _when(judgement: Judgement) -> str:
     """Return when and where a goal was decided."""
     if all(part.KIND is Kind.FIXED for part in judgement.goal.parts):
         return "by the program's text"
-    change: Change = judgement.changes[-1]
-    return f"{change.time_s:.2f} s, x {change.x_mm:.0f}, y {change.y_mm:.0f} mm"
+    change = judgement.changes[-1]
+    return f"at {change.time_s:.2f} s, x {change.x_mm:.0f}, y {change.y_mm:.0f} mm"
 
 
-def _wrapped(text: str, width: int, style: Style, indent: str = _INDENT) -> Iterator[Line]:
-    for row in textwrap.wrap(text, max(1, width - len(indent))):
-        yield [(indent + row, style)]
+def _wrapped(text: str, width: int, style: Style) -> Iterator[Line]:
+    for row in textwrap.wrap(text, max(1, width)):
+        yield [(row, style)]
