@@ -138,10 +138,12 @@ def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict
         trace_from_tick=None, hold_at=None,
     )  # fmt: skip
     sim, lines = Simulation(spec, MemorySink()), Lines()
-    output = Output(lines)  # type: ignore[arg-type]
+    output = Output()
+    output.writer = lines  # type: ignore[assignment]
     channel = Channel(*os.pipe())
     steering = RunControl(channel, Path(), False, 0.0, False, ())
-    session = Session(sim, open_field(files), output, channel, steering, Limits(60 * NS_PER_S), "program.py")
+    session = Session(sim, open_field(files), output)
+    session.connect(channel, steering, Limits(60 * NS_PER_S), "program.py")
     output.place = lambda: (sim.tick, session.now, 0)
     turn = loop_hook(session, 500, 5_000_000)
     scheduler = Scheduler(session, lambda parked: None)
@@ -154,7 +156,10 @@ def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict
     def leave(outcome: Outcome) -> NoReturn:
         raise SystemExit(outcome.end)
 
-    outcome = ProgramRunner(config, session, output, scheduler, turn, leave).run()
+    runner = ProgramRunner(session, output, scheduler, turn, leave)
+    runner.prepare(prelude)
+    runner.connect(config)
+    outcome = runner.run()
     return {
         "end": " ".join(filter(None, (outcome.end, outcome.error))),
         "end_tick": sim.tick,

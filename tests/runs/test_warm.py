@@ -16,7 +16,7 @@ from tuisim.runs import process
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.run_folder import field_files
 from tuisim.runs.store import RunStore
-from tuisim.runs.warm import ForkedChild
+from tuisim.runs.warm import ForkedChild, WarmProcess
 from tuisim.source import Program
 
 SURROUNDINGS = {
@@ -61,7 +61,7 @@ def _start(text: str = "import time\ntime.sleep(1e6)\n") -> RunHandle:
 
 
 @pytest.fixture
-def warm(monkeypatch: pytest.MonkeyPatch) -> Iterator[process.WarmProcess]:
+def warm(monkeypatch: pytest.MonkeyPatch) -> Iterator[WarmProcess]:
     """A warm process that the test may end."""
     monkeypatch.setattr(process._Starts, "warm", None)
     process.warm_up()
@@ -71,13 +71,13 @@ def warm(monkeypatch: pytest.MonkeyPatch) -> Iterator[process.WarmProcess]:
     process.cool_down()
 
 
-def test_without_its_warm_process_a_run_is_started_by_itself(warm: process.WarmProcess) -> None:
+def test_without_its_warm_process_a_run_is_started_by_itself(warm: WarmProcess) -> None:
     os.kill(warm._process.pid, signal.SIGKILL)
     warm._process.wait()
     assert _printed("print('on')") == ["on"]
 
 
-def test_a_run_whose_warm_process_was_killed_is_not_left_behind(warm: process.WarmProcess) -> None:
+def test_a_run_whose_warm_process_was_killed_is_not_left_behind(warm: WarmProcess) -> None:
     with closing(_start()) as handle:
         until_tick(handle, 1)
         assert isinstance(handle._process, ForkedChild)
@@ -87,14 +87,14 @@ def test_a_run_whose_warm_process_was_killed_is_not_left_behind(warm: process.Wa
     assert handle.ended.end == "crashed"
 
 
-def test_a_process_that_was_forked_does_not_use_the_warm_process_of_the_other(warm: process.WarmProcess) -> None:
+def test_a_process_that_was_forked_does_not_use_the_warm_process_of_the_other(warm: WarmProcess) -> None:
     pid = os.fork()
     if not pid:
         os._exit(7 if warm.is_usable else 0)
     assert os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]) == 0
 
 
-def test_how_a_child_ends_is_known(warm: process.WarmProcess) -> None:
+def test_how_a_child_ends_is_known(warm: WarmProcess) -> None:
     with closing(_start()) as handle:
         until_tick(handle, 1)
         os.kill(handle._process.pid, signal.SIGSEGV)
@@ -102,6 +102,6 @@ def test_how_a_child_ends_is_known(warm: process.WarmProcess) -> None:
     assert (ended.end, handle._process.returncode) == ("crashed", -signal.SIGSEGV)
 
 
-def test_the_warm_process_ends_with_its_host(warm: process.WarmProcess) -> None:
+def test_the_warm_process_ends_with_its_host(warm: WarmProcess) -> None:
     warm.close()
     assert warm._process.returncode == 0
