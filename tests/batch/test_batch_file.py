@@ -9,6 +9,7 @@ import pytest
 
 from tuisim.batch.batch_file import load_batch, means_batch
 from tuisim.batch.parameters import Draw, Sample
+from tuisim.config.worlds import load_world
 from tuisim.errors import ConfigError
 
 WHOLE = """
@@ -95,3 +96,8 @@ def test_a_batch_file_has_a_table_batch(write: Any, text: str, expected: bool) -
 def test_wrong_files_are_explained(write: Any, text: str, words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         load_batch(write(text))
+
+
+def test_a_batch_file_is_no_world(write: Any) -> None:
+    with pytest.raises(ConfigError, match=r"spec.toml: is a batch \(tuisim batch .*spec.toml\)"):
+        load_world(write("[batch]"))

@@ -13,10 +13,9 @@ from tuisim.batch.parameters import SEED, Choice, checked_seeds, parse_seeds, pa
 from tuisim.batch.task import Keep, Value
 from tuisim.config import files
 from tuisim.config.files import Location
-from tuisim.config.worlds import WORLD_SUFFIX, WorldFile, load_world, world_from_table
+from tuisim.config.worlds import BATCH_KEY, WORLD_SUFFIX, WorldFile, load_world, world_from_table
 from tuisim.errors import ConfigError
 
-TABLE = "batch"
 MAX_JOBS = 1000
 MAX_PROGRAMS = 10_000
 
@@ -64,7 +63,7 @@ def means_batch(word: str) -> bool:
         data = files.read_file(path, ConfigError)
     except ConfigError:
         return False
-    return TABLE in data
+    return BATCH_KEY in data
 
 
 def load_batch(path: Path, mats: str | None = None) -> BatchFile:
@@ -78,8 +77,8 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
     """
     path = path.expanduser()
     data = dict(files.table(files.read_file(path, ConfigError), Location(str(path))))
-    at = Location(str(path)).at(TABLE)
-    table = files.convert(data.pop(TABLE), _Batch, at)
+    at = Location(str(path)).at(BATCH_KEY)
+    table = files.convert(data.pop(BATCH_KEY), _Batch, at)
     folder = path.parent
     world = None
     if table.world is not UNSET:

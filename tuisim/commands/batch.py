@@ -120,6 +120,8 @@ class _Batch:
     as_json: bool
     rows: dict[int, Row] = field(default_factory=dict, init=False)
     """What is done, by the index of the task."""
+    identity: dict[str, Any] = field(default_factory=dict, init=False)
+    """What identifies the batch in its files; empty if none are written."""
 
     def run(self) -> int:
         """Run what is not done, write the table, print the results and return the exit code."""
@@ -137,7 +139,7 @@ class _Batch:
             frame = frame_of(self.rows.values(), self.request.expressions if self.rows else {})
             if self.request.out is not None and self.rows:
                 tell(f"writing {self.request.out}")
-                export_frame(frame, self.request.out, metadata_of(frame, plan.identity()))
+                export_frame(frame, self.request.out, metadata_of(frame, self.identity))
         if partly is not None and not code:
             partly.remove()
         self._print(frame)
@@ -152,11 +154,12 @@ class _Batch:
         if self.request.out is None:
             return None
         path = partial_of(self.request.out)
-        partly = PartialTable(path, {"version": __version__, **self.request.plan.identity()})
+        self.identity = self.request.plan.identity()
+        partly = PartialTable(path, {"version": __version__, **self.identity})
         if self.request.resume:
             plan = self.request.plan
             columns = usual_columns(plan.names, [goal.name for goal in plan.goals])
-            self.rows = partly.rows() or rows_of_table(self.request.out, plan.identity(), columns)
+            self.rows = partly.rows() or rows_of_table(self.request.out, self.identity, columns)
         elif path.exists():
             hint = "--resume goes on with it; remove the file to begin again"
             raise ConfigError("holds the rows of an interrupted batch", hint, file=str(path))

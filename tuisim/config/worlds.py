@@ -33,6 +33,8 @@ from tuisim.core.spec import (
 from tuisim.errors import ConfigError, ObstacleError, ProfileError, RobotError
 
 WORLD_SUFFIX = ".toml"
+BATCH_KEY = "batch"
+"""The table of a batch file, which may have the keys of a world beside it."""
 MAX_PRESSES = 10_000
 
 _Value = TypeVar("_Value")
@@ -145,7 +147,10 @@ def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
 def _load_world(path: Path, mats: str | None, above: tuple[Path, ...]) -> WorldFile:
     if not means_world(path.name):
         raise ConfigError(f"is not a {WORLD_SUFFIX} file", "a world file is TOML", file=str(path))
-    return world_from_table(files.read_file(path, ConfigError), path, mats, above)
+    data = files.read_file(path, ConfigError)
+    if BATCH_KEY in data:
+        raise ConfigError("is a batch", f"tuisim batch {path}", file=str(path))
+    return world_from_table(data, path, mats, above)
 
 
 def world_from_table(data: object, path: Path, mats: str | None = None, above: tuple[Path, ...] = ()) -> WorldFile:
