@@ -76,6 +76,19 @@ def test_hidden_files_and_results_are_no_students(tmp_path: Path) -> None:
     assert ([one.name for one in found.students], found.ignored) == (["ada.py"], ("slides.odp",))
 
 
+def test_what_is_no_file_or_has_an_odd_name_affects_its_own_row_only(tmp_path: Path) -> None:
+    folder = _folder(tmp_path, "ada.py")
+    os.mkfifo(folder / "pipe.py")
+    (folder / "loop.py").symlink_to("loop.py")
+    (folder / "zero.py").symlink_to("/dev/zero")
+    (folder / os.fsdecode(b"bad\xff.py")).write_text("")
+    found = {one.name: one for one in find_students([str(folder)]).students}
+    assert {name for name, one in found.items() if one.source} == {"ada.py", "bad?.py"}
+    assert {name for name, one in found.items() if one.problem} == {"loop.py", "pipe.py", "zero.py"}
+    with Workspace() as workspace:
+        assert Path(program_in(found["bad?.py"], workspace.copy(found["bad?.py"], 0)).path).is_file()
+
+
 @pytest.mark.parametrize("word", ["nowhere", "class"])
 def test_folders_without_programs_are_refused(tmp_path: Path, word: str) -> None:
     (tmp_path / "class").mkdir()

@@ -172,7 +172,7 @@ def _excluded(arguments: Arguments, task: GoalsFile) -> frozenset[Path]:
         found += [target, target.with_name(target.name + ".json"), folder_of(target)]
     if arguments.feedback:
         found.append(Path(arguments.feedback))
-    return frozenset(path.resolve() for path in found)
+    return frozenset(Path(os.path.realpath(path)) for path in found)
 
 
 def _entries(found: Found, task: GoalsFile, arguments: Arguments) -> tuple[list[Entry], list[Student]]:

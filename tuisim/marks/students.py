@@ -68,12 +68,17 @@ def find_students(words: Sequence[str], program: str = "", excluded: Collection[
                 else:
                     ignored.append(printable(entry.name))
         elif path.exists():
-            students.append((path.resolve().parent, _student(path, program)))
+            students.append((_real(path).parent, _student(path, program)))
         else:
             raise ConfigError("there is no such file or folder", "name a folder of students' programs", file=word)
     if not students:
         raise ConfigError("has no programs", "a file NAME.py or a folder for each student", file=listed(words))
     return Found(tuple(_named(students)), tuple(ignored))
+
+
+def _real(path: Path) -> Path:
+    """Return a path without links; `Path.resolve` raises an error for links in a circle."""
+    return Path(os.path.realpath(path))
 
 
 def _entries(folder: Path, excluded: Collection[Path]) -> Iterator[Path]:
@@ -83,16 +88,14 @@ def _entries(folder: Path, excluded: Collection[Path]) -> Iterator[Path]:
     except OSError as error:
         raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(folder)) from error
     hidden = (".", "__pycache__")
-    return (
-        folder / name for name in names if not name.startswith(hidden) and (folder / name).resolve() not in excluded
-    )
+    return (folder / name for name in names if not name.startswith(hidden) and _real(folder / name) not in excluded)
 
 
 def _named(students: Iterable[tuple[Path, Student]]) -> Iterator[Student]:
     """Return the students with the names of their folders where a name alone is not unique."""
     every = list(students)
     counts = Counter(student.name for _, student in every)
-    full = [f"{folder.resolve().name}/{one.name}" if counts[one.name] > 1 else one.name for folder, one in every]
+    full = [f"{_real(folder).name}/{one.name}" if counts[one.name] > 1 else one.name for folder, one in every]
     seen: Counter[str] = Counter()
     for name, (_, student) in zip(full, every, strict=True):
         seen[name] += 1
@@ -100,10 +103,11 @@ def _named(students: Iterable[tuple[Path, Student]]) -> Iterator[Student]:
 
 
 def _student(path: Path, program: str) -> Student:
-    # A lone surrogate stands for a byte that is not UTF-8.
-    name = printable(path.resolve().name.encode("utf-8", "replace").decode())
+    # A path such as `.` ends in no name.
+    name = _shown(path.name if path.name not in ("", "..") else _real(path).name)
     if not path.is_dir():
-        return _read(Student(name, path, path.name), path)
+        # Its copy has this name.
+        return _read(Student(name, path, name), path)
     try:
         main = _main_of(path, program)
     except (ConfigError, OSError) as error:
@@ -111,9 +115,15 @@ def _student(path: Path, program: str) -> Student:
     return _read(Student(name, path, main), path / main)
 
 
+def _shown(name: str) -> str:
+    """Return the name of a file or folder as it is shown and stored; bytes that are not UTF-8 become `?`."""
+    return printable(name.encode("utf-8", "replace").decode())
+
+
 def _read(student: Student, path: Path) -> Student:
     try:
-        return replace(student, source=read_program(path))
+        source = read_program(path)
+        return replace(student, source=replace(source, program=replace(source.program, name=_shown(path.name))))
     except ConfigError as error:
         return replace(student, problem=printable(str(error).replace(str(path), path.name)))
 

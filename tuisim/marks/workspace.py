@@ -48,7 +48,7 @@ class Workspace:
                 _copy_folder(student.path, place)
             else:
                 place.mkdir()
-                _copy_file(student.path, place / student.path.name)
+                _copy_file(student.path, place / student.main)
         except OSError as error:
             raise LogError(f"cannot be written: {error.strerror or error}", file=str(place)) from error
         return place
