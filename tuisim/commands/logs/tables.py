@@ -12,7 +12,6 @@ import numpy as np
 from tuisim.analysis.events import crossings
 from tuisim.commands.echo import CsvOut, echo_json, echo_lines, table
 from tuisim.commands.logs.sources import names_of, open_sources, the_source
-from tuisim.commands.runs import diff_text
 from tuisim.config.command_line import Arguments
 from tuisim.errors import ConfigError
 from tuisim.logs import signals
@@ -25,8 +24,6 @@ from tuisim.logs.expressions import evaluate
 from tuisim.logs.log import Log, LogTable, Series
 from tuisim.logs.signals import Between
 from tuisim.runs.arrays import FloatArray
-from tuisim.runs.diff import diff_runs
-from tuisim.runs.store import RunStore
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -205,6 +202,11 @@ def diff(arguments: Arguments) -> int:
     words = arguments.words
     if len(words) != 2:
         raise ConfigError("takes two runs", f"got {len(words)}", key="diff")
+    # Imported on demand: no other command here needs stored runs.
+    from tuisim.commands.runs import diff_text
+    from tuisim.runs.diff import diff_runs
+    from tuisim.runs.store import RunStore
+
     store = RunStore()
     found = diff_runs(*map(store.load_run, words))
     if arguments.json:
