@@ -115,6 +115,16 @@ def example_names() -> list[str]:
     return [path.name.removesuffix(_EXAMPLE) for path in examples()]
 
 
+def title_of(path: Path) -> str:
+    """Return the title of a goals file, whose other keys are not checked; empty if it has none.
+
+    Raises:
+        ConfigError: the file cannot be read.
+    """
+    title = files.read_file(path, ConfigError).get("title", "")
+    return title if isinstance(title, str) else ""
+
+
 def examples() -> list[Path]:
     """Return the files of the examples, by name.
 

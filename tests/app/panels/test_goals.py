@@ -13,6 +13,7 @@ from textual.widgets import Input
 
 from tests.app.app_help import notices, ready, screen_text, settings, until, until_shown
 from tests.conftest import Command
+from tests.running import PATIENCE_S
 from tuisim.app import goals as app_goals
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.render.goals import GoalsView, draw_goals
@@ -23,6 +24,7 @@ from tuisim.config.options import settings_of
 from tuisim.goals.files import load_goals
 from tuisim.goals.judge import Change, GoalState, Judgement
 from tuisim.goals.spec import AllOf, Finish, Goal, Use
+from tuisim.runs.handle import RunOptions, start_run
 
 GOALS = """\
 title = "There and done"
@@ -195,6 +197,16 @@ async def test_a_past_instant_shows_the_goals_as_of_then(task: Path) -> None:
         assert panel.border_subtitle == ""
 
 
+async def test_a_stored_run_is_judged(task: Path) -> None:
+    made = with_goals(task, DRIVES)
+    assert made.program is not None
+    run = start_run(made.program, made.spec, RunOptions())
+    assert run.wait(PATIENCE_S)
+    async with LabApp(replace(made, replay=run.stored())).run_test(size=SIZE) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: (state(app, "there"), state(app, "said")) == ("✓ met", "✗ missed"))
+
+
 async def test_keys_and_mouse_choose_the_goal_that_is_shown_in_detail(task: Path) -> None:
     app = LabApp(with_goals(task, DRIVES))
     async with app.run_test(size=SIZE) as pilot:
@@ -212,6 +224,7 @@ async def test_keys_and_mouse_choose_the_goal_that_is_shown_in_detail(task: Path
         await pilot.press("R")
         await until(pilot, lambda: state(app, "said") == "✗ missed")
         assert any(text.startswith("── there") for text in shown(app))
+        assert "↑↓ goal" in screen_text(app)
 
 
 async def open_path(pilot: Pilot[Any], app: LabApp, path: str) -> None:
@@ -251,6 +264,7 @@ async def test_examples_of_goals_are_offered_and_opened_by_name(task: Path) -> N
         app = await ready(pilot)
         await pilot.press("o")
         await until_shown(pilot, "square_goals.toml")
+        assert "A square, closed within 20 mm" in screen_text(app)
         assert "task_goals.toml" in screen_text(app)
         await pilot.press("escape")
         await open_path(pilot, app, "square_goals.toml")

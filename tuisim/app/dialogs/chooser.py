@@ -148,6 +148,7 @@ def program_chooser() -> Chooser:
     from tuisim.config.program_file import programs
     from tuisim.config.worlds import load_world
     from tuisim.goals.files import examples as goals_examples
+    from tuisim.goals.files import title_of
 
     examples, goals = programs(), goals_examples()
     known = {str(path.resolve()) for path in (*(path for _, path, _ in examples), *goals)}
@@ -157,7 +158,7 @@ def program_chooser() -> Chooser:
     groups = [
         own,
         Group("Worlds and goals" if own.entries else f"{here.title}: worlds and goals", worlds),
-        Group("Examples of goals", [(str(path), path.name, "") for path in goals]),
+        Group("Examples of goals", [(str(path), path.name, title_of(path)) for path in goals]),
         Group("Examples", [(str(path), name, title) for name, path, title in examples]),
     ]
     hint = "Path of a program, world or goals file, or choose below"

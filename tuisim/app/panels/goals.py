@@ -38,10 +38,9 @@ class Goals(LinesPanel, can_focus=True):
         self._picture = GoalsPicture([])
         self._drawn: object = None
 
-    def on_focus(self) -> None:
-        self._show_subtitle()
-
-    def on_blur(self) -> None:
+    def watch_has_focus(self, _has_focus: bool) -> None:
+        """Show or hide what the keys do."""
+        super().watch_has_focus(_has_focus)
         self._show_subtitle()
 
     def show(self, snapshot: Snapshot) -> None:
