@@ -137,6 +137,7 @@ def test_a_long_list_shows_the_chosen_goal_and_its_detail(height: int, chosen: i
     picture = draw_goals(view, view.states(None), chosen, 0, 40, height)
     assert chosen in picture.rows
     assert len(picture.lines) <= height
+    assert any(line.startswith("── goal") and line.endswith(f" {chosen + 1} of 20 ─") for line in texts(picture.lines))
     assert "missed at 2.00 s, x 1, y 2 mm, line 9" in texts(picture.lines)
     end = draw_goals(view, view.states(None), chosen, 99, 40, height)
     assert end.below == 0

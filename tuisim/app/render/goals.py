@@ -9,7 +9,7 @@ from typing import assert_never
 
 from rich.style import Style
 
-from tuisim.charts.text_runs import Line
+from tuisim.charts.text_runs import Line, cut
 from tuisim.goals.judge import GoalState, Judgement
 from tuisim.goals.spec import Goal, Kind
 
@@ -101,11 +101,14 @@ def draw_goals(
         for line in _header(goal, state, width)
     ]
     room = height - len(lines) - 1
-    listed = _around(listed, chosen, max(1, room - max(_DETAIL_ROWS, room // 2)))
+    most = max(1, room - max(_DETAIL_ROWS, room // 2))
+    # Where the list is cut, the rule below it tells the number of goals.
+    number = f" {chosen + 1} of {len(view.goals)} ─" if len(listed) > most else ""
+    listed = _around(listed, chosen, most)
     rows = (*(None for _ in lines), *(at for _, at in listed))
     lines += [line for line, _ in listed]
-    name = view.goals[chosen].name[: max(0, width - 5)]
-    lines.append([("── ", _PALE), (name, _NAME), (f" {'─' * max(0, width - len(name) - 4)}", _PALE)])
+    name = cut(view.goals[chosen].name, width - 4 - len(number))
+    lines.append([("── ", _PALE), (name, _NAME), (f" {'─' * (width - 4 - len(name) - len(number))}{number}", _PALE)])
     # Before a run, nothing is known about any goal.
     judgement = view.judgements[chosen] if view.judgements else Judgement(view.goals[chosen], ())
     detail = list(_detail(judgement, states[chosen], width))
