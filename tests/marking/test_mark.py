@@ -131,7 +131,8 @@ def test_an_interrupted_marking_is_resumed(tmp_path: Path) -> None:
     assert (command.returncode, "with --resume goes on" in said) == (130, True)
     assert not (folder / "marks.csv").exists()
     # A run that is known is not run again, so that its line in the journal is the only one.
-    assert _mark(folder, home, "--jobs", "1", "--resume").returncode == 0
+    again = _mark(folder, home, "--jobs", "1", "--resume")
+    assert again.returncode == 0, again.stderr
     lines = [line for line in journals[0].read_bytes().split(b"\n") if line]
     assert 2 <= done < len(lines) == len({line[:80] for line in lines})
     resumed = _results(folder)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -190,3 +191,11 @@ def test_asking_without_end_can_be_stopped(start: Start, options: dict[str, obje
     until(handle, lambda: handle.started and len(handle.output.new_rows()) > 0)
     handle.stop()
     assert over(handle).ended.summary == "stopped"
+
+
+@pytest.mark.usefixtures("home")
+def test_a_program_whose_name_is_not_utf_8_runs_and_is_listed(here: Command, tmp_path: Path) -> None:
+    program = tmp_path / os.fsdecode(b"caf\xe9.py")
+    program.write_text("print('A: 1')\n")
+    assert here("run", program).stdout == "A: 1\n"
+    assert "caf?.py" in here("runs", "list").stdout

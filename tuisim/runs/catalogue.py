@@ -269,8 +269,13 @@ def _insert(connection: sqlite3.Connection, info: RunInfo) -> int:
     number = info.number if info.number > 0 and free else None
     # A seed may exceed the integers of SQLite.
     changed = {"number": number, "seed": str(info.seed), "end": info.end or ""}
-    row = [changed.get(name, getattr(info, name)) for name in _NAMES]
+    row = [_storable(changed.get(name, getattr(info, name))) for name in _NAMES]
     return int(connection.execute(_INSERT, row).lastrowid or 0)
+
+
+def _storable(value: object) -> object:
+    """Return a value without lone surrogates, which stand for bytes of a file name and are not valid UTF-8."""
+    return value.encode("utf-8", "replace").decode() if isinstance(value, str) else value
 
 
 def _all_rows(connection: sqlite3.Connection) -> list[RunInfo]:
