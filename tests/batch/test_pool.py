@@ -18,7 +18,7 @@ from tuisim.batch.pool import run_many
 from tuisim.batch.task import Keep, Result, Task
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
-from tuisim.goals.judge import GoalState
+from tuisim.goals.judgement import GoalState
 from tuisim.goals.spec import Finish, Goal, Reach
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.store import RunStore

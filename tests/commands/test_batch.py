@@ -16,7 +16,7 @@ from tests.batch.stand_in import result_of, run_backwards
 from tuisim.batch import workers
 from tuisim.batch.task import Result, Task
 from tuisim.cli import run_command
-from tuisim.goals.judge import Change, GoalState, Judgement
+from tuisim.goals.judgement import Change, GoalState, Judgement
 from tuisim.runs.store import RunStore
 
 PROGRAM = "tank_drive.on_for_seconds(40, 40, 0.3)\nprint('Gyro: ' + str(gyro.angle))\n"

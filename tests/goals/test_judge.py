@@ -9,7 +9,8 @@ import pytest
 
 from tests.goals.recorded import Run, Step, ahead, drive, goals_of, says, wait, world
 from tests.running import Run as RunProgram
-from tuisim.goals.judge import FINDERS, Judgement, judge, points
+from tuisim.goals.judge import FINDERS, judge
+from tuisim.goals.judgement import Judgement, points
 from tuisim.goals.spec import CONDITIONS, Kind
 from tuisim.protocol import End
 from tuisim.runs.run_folder import read_run

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tuisim.batch.task import Result
-from tuisim.goals.judge import Change, GoalState, Judgement
+from tuisim.goals.judgement import Change, GoalState, Judgement
 from tuisim.goals.spec import AllOf, Finish, Goal, Reach
 from tuisim.marks.outcome import GoalOutcome
 from tuisim.marks.results import outcome_of

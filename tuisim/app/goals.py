@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tuisim.core.field import Field
     from tuisim.errors import TuisimError
     from tuisim.goals.files import GoalsFile
-    from tuisim.goals.judge import Judgement
+    from tuisim.goals.judgement import Judgement
     from tuisim.goals.spec import Goal
     from tuisim.runs.recorded_run import Recording
 

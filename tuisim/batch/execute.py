@@ -13,7 +13,7 @@ from tuisim.config.mat_cache import FieldFiles, prepare
 from tuisim.config.mats import background
 from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError, TuisimError
-from tuisim.goals.judge import GoalState, Judgement, judge
+from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.protocol import End, Ended
 from tuisim.runs.handle import RunHandle
 from tuisim.runs.records import OutputRow, Stream
@@ -51,7 +51,7 @@ def execute(task: Task, folder: Path) -> Result:
         try:
             ended = _to_the_end(handle, task.real_time_limit_s)
             run = handle.stored()
-            judgements = judge(task.goals, run) if task.goals else ()
+            judgements = _judged(task, run)
             result = _result(task, run, ended, judgements)
         except LogError:
             # A program can damage its own recording; that must not end the batch.
@@ -79,6 +79,15 @@ def _field_files(spec: RunSpec) -> FieldFiles:
     """Return the prepared mat of a run; looked for on disk only once in a process."""
     diameters = frozenset(sensor.diameter_mm for sensor in spec.robot.color_sensors)
     return _prepared(spec.world.background, spec.world.background_fit, diameters)
+
+
+def _judged(task: Task, run: StoredRun) -> tuple[Judgement, ...]:
+    if not task.goals:
+        return ()
+    # Imported on demand: most batches have no goals.
+    from tuisim.goals.judge import judge
+
+    return judge(task.goals, run)
 
 
 def _is_kept(task: Task, ended: Ended, judgements: Sequence[Judgement]) -> bool:

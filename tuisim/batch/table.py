@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim.batch.parameters import SEED
 from tuisim.batch.task import Result, Value, VariableStatistics
 from tuisim.errors import ConfigError, LogError, nearest
-from tuisim.goals.judge import GoalState, points
+from tuisim.goals.judgement import GoalState, points
 from tuisim.logs.expressions import evaluate, names_in
 from tuisim.logs.signals import Summary, summary_of
 from tuisim.logs.units import unit_of

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from tuisim.core.spec import RunSpec
-from tuisim.goals.judge import Judgement
+from tuisim.goals.judgement import Judgement
 from tuisim.goals.spec import Goal
 from tuisim.runs.handle import RunOptions
 from tuisim.source import Program

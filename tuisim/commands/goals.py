@@ -12,7 +12,8 @@ from tuisim.config.build import settings_from
 from tuisim.config.command_line import AS_JSON, Group, argument, command
 from tuisim.errors import ConfigError, counted
 from tuisim.goals.files import GoalsFile, example_names, load_goals
-from tuisim.goals.judge import GoalState, Judgement, judge, points
+from tuisim.goals.judge import judge
+from tuisim.goals.judgement import GoalState, Judgement, points
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from typing import Any, assert_never
 
 from tuisim.core.field import Field
@@ -13,6 +11,7 @@ from tuisim.errors import ConfigError
 from tuisim.goals import calls, drawing, output, places, readings
 from tuisim.goals.evidence import START, Evidence, JudgedRun, Moment, Span
 from tuisim.goals.found import Found
+from tuisim.goals.judgement import Change, GoalState, Judgement
 from tuisim.goals.spec import (
     AllOf,
     AnyOf,
@@ -54,48 +53,6 @@ FINDERS: Mapping[type, Finder] = {
 """Finds when a condition was reached or violated in a span of a run."""
 
 
-class GoalState(StrEnum):
-    """State of a goal at an instant of a run."""
-
-    OPEN = "open"
-    MET = "met"
-    MISSED = "missed"
-
-
-@dataclass(frozen=True, slots=True)
-class Change:
-    """A change of a goal's state, and where the robot was then."""
-
-    tick: int
-    time_s: float
-    state: GoalState
-    x_mm: float
-    y_mm: float
-
-
-@dataclass(frozen=True, slots=True)
-class Judgement:
-    """How a run did on a goal."""
-
-    goal: Goal
-    changes: tuple[Change, ...]
-    """Empty while the goal is open; it is decided once."""
-    reason: str = ""
-    """Why it is not met, in one sentence; empty if it is met, and possibly while it is open."""
-    line: int = 0
-    """The program's line that the last change, or the reason, is about; 0 if there is none."""
-
-    @property
-    def state(self) -> GoalState:
-        """The state at the end of the recording."""
-        return self.changes[-1].state if self.changes else GoalState.OPEN
-
-    def at(self, tick: int) -> GoalState:
-        """Return the state when a tick was complete."""
-        known = [change.state for change in self.changes if change.tick <= tick]
-        return known[-1] if known else GoalState.OPEN
-
-
 @dataclass(frozen=True, slots=True)
 class _Outcome:
     state: GoalState
@@ -126,11 +83,6 @@ def judge(goals: Sequence[Goal], run: JudgedRun, field: Field | None = None) -> 
     with np.errstate(all="ignore"):
         judged = _Judge(goals, Evidence(run, field))
         return tuple(judged.judgement(goal) for goal in goals)
-
-
-def points(judgements: Iterable[Judgement]) -> float:
-    """Return the sum of the points of the goals that are met."""
-    return math.fsum(each.goal.points for each in judgements if each.state is GoalState.MET)
 
 
 class _Judge:

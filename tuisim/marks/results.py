@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tuisim.batch.task import Result
 from tuisim.errors import printable
-from tuisim.goals.judge import GoalState, Judgement
+from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.goals.spec import AllOf
 from tuisim.marks.outcome import GoalOutcome, Outcome
 from tuisim.protocol import End

@@ -22,7 +22,7 @@ from tuisim.charts.text_runs import Line
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import settings_of
 from tuisim.goals.files import load_goals
-from tuisim.goals.judge import Change, GoalState, Judgement
+from tuisim.goals.judgement import Change, GoalState, Judgement
 from tuisim.goals.spec import AllOf, Finish, Goal, Use
 from tuisim.runs.handle import RunOptions, start_run
 

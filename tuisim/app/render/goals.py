@@ -10,7 +10,7 @@ from typing import assert_never
 from rich.style import Style
 
 from tuisim.charts.text_runs import Line, cut
-from tuisim.goals.judge import GoalState, Judgement
+from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.goals.spec import Goal, Kind
 
 _NAME = Style(color="#ffffff", bold=True)

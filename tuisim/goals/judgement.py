@@ -1,0 +1,57 @@
+"""How a run did on the goals of a task: states, when they changed, and why a goal is not met."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+
+from tuisim.goals.spec import Goal
+
+
+class GoalState(StrEnum):
+    """State of a goal at an instant of a run."""
+
+    OPEN = "open"
+    MET = "met"
+    MISSED = "missed"
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """A change of a goal's state, and where the robot was then."""
+
+    tick: int
+    time_s: float
+    state: GoalState
+    x_mm: float
+    y_mm: float
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """How a run did on a goal."""
+
+    goal: Goal
+    changes: tuple[Change, ...]
+    """Empty while the goal is open; it is decided once."""
+    reason: str = ""
+    """Why it is not met, in one sentence; empty if it is met, and possibly while it is open."""
+    line: int = 0
+    """The program's line that the last change, or the reason, is about; 0 if there is none."""
+
+    @property
+    def state(self) -> GoalState:
+        """The state at the end of the recording."""
+        return self.changes[-1].state if self.changes else GoalState.OPEN
+
+    def at(self, tick: int) -> GoalState:
+        """Return the state when a tick was complete."""
+        known = [change.state for change in self.changes if change.tick <= tick]
+        return known[-1] if known else GoalState.OPEN
+
+
+def points(judgements: Iterable[Judgement]) -> float:
+    """Return the sum of the points of the goals that are met."""
+    return math.fsum(each.goal.points for each in judgements if each.state is GoalState.MET)
