@@ -29,15 +29,15 @@ from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec, from_plain, to_plain
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.runs.run_folder import field_files
 from tuisim.runtime.channel import Channel
-from tuisim.runtime.clock import loop_hook, patch_time
 from tuisim.runtime.control import RunControl
 from tuisim.runtime.output import Output
+from tuisim.runtime.patches.clock import loop_hook, patch_time
+from tuisim.runtime.patches.replacement import replace as put_in_place
+from tuisim.runtime.patches.threads import patch_threads
 from tuisim.runtime.program import Outcome, ProgramRunner
-from tuisim.runtime.replacement import replace as put_in_place
 from tuisim.runtime.run_config import RunConfig
 from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import Limits, Session
-from tuisim.runtime.threads import patch_threads
 from tuisim.shim.install import install
 
 Row = list[float]

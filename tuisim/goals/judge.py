@@ -8,7 +8,7 @@ from typing import Any, assert_never
 
 from tuisim.core.field import Field
 from tuisim.errors import ConfigError
-from tuisim.goals import calls, drawing, output, places, readings
+from tuisim.goals import calls, output, pen_trace, places, readings
 from tuisim.goals.evidence import START, Evidence, JudgedRun, Moment, Span
 from tuisim.goals.found import Found
 from tuisim.goals.judgement import Change, GoalState, Judgement
@@ -42,7 +42,7 @@ FINDERS: Mapping[type, Finder] = {
     Outside: places.find_entered,
     TouchNothing: places.find_touch,
     Follow: readings.find_off_line,
-    Draw: drawing.find_drawn,
+    Draw: pen_trace.find_drawn,
     Print: output.find_printed,
     Log: output.find_levels,
     Dialogue: output.find_dialogue,

@@ -19,7 +19,11 @@ from tuisim.runs.brick_state import motors_row
 from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, Stream, TelemetryWriter, is_full
 from tuisim.runs.side_files import hold
 from tuisim.runtime.channel import Channel
-from tuisim.runtime.clock import (
+from tuisim.runtime.control import ATTENTION, STOPPING, RunControl
+from tuisim.runtime.interrupts import Interrupts, die_with_host
+from tuisim.runtime.limits import STACK_BYTES, limit_memory, refuse_processes
+from tuisim.runtime.output import Output
+from tuisim.runtime.patches.clock import (
     finish_pandas,
     finish_resource,
     loop_hook,
@@ -27,13 +31,9 @@ from tuisim.runtime.clock import (
     patch_process_times,
     patch_time,
 )
-from tuisim.runtime.control import ATTENTION, STOPPING, RunControl
-from tuisim.runtime.file_waits import FileWaits
-from tuisim.runtime.interrupts import Interrupts, die_with_host
-from tuisim.runtime.limits import STACK_BYTES, limit_memory, refuse_processes
-from tuisim.runtime.output import Output
-from tuisim.runtime.randomness import finish_random, finish_uuid, patch_urandom
-from tuisim.runtime.replacement import replace
+from tuisim.runtime.patches.file_waits import FileWaits
+from tuisim.runtime.patches.randomness import finish_random, finish_uuid, patch_urandom
+from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.run_config import RunConfig, read_config
 from tuisim.runtime.session import Limits, Session
 from tuisim.runtime.stack import finish_inspect, finish_traceback
@@ -99,10 +99,10 @@ class Child:
     def _patch_modules(self, turn: Callable[[], None]) -> None:
         """Patch what programs find, and make what runs them."""
         # Imported here: threads must be patched before anything else imports `threading`.
-        from tuisim.runtime.alarm import patch_alarm
+        from tuisim.runtime.patches.alarm import patch_alarm
+        from tuisim.runtime.patches.threads import patch_threads
         from tuisim.runtime.program import Outcome, ProgramRunner
         from tuisim.runtime.scheduler import Scheduler
-        from tuisim.runtime.threads import patch_threads
         from tuisim.shim.install import install
 
         session, interrupts = self._session, self._interrupts

@@ -7,7 +7,7 @@ import resource
 from typing import Any, NoReturn
 
 from tuisim.runtime import wallclock
-from tuisim.runtime.replacement import replace
+from tuisim.runtime.patches.replacement import replace
 
 MEMORY_LIMIT_BYTES = 1 << 30
 """Address space of the child; beyond it the program gets a MemoryError."""

@@ -23,7 +23,7 @@ from tuisim.runs.records import Stream
 from tuisim.runtime.loader import LOOP_HOOK, MissingPart, compile_prelude, compile_program, point_at_prelude
 from tuisim.runtime.modules import find_modules_for
 from tuisim.runtime.output import LineStream, Output
-from tuisim.runtime.replacement import replace
+from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.run_config import RunConfig
 from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import Deadlock, Session, StopProgram

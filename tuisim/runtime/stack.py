@@ -15,7 +15,7 @@ from functools import wraps
 from pathlib import Path
 from typing import Any
 
-from tuisim.runtime.replacement import replace
+from tuisim.runtime.patches.replacement import replace
 
 PACKAGE_FOLDER = str(Path(__file__).parent.parent) + os.sep
 _BOTTOM = os.path.join(PACKAGE_FOLDER, "runtime", "__main__.py")

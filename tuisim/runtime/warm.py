@@ -29,8 +29,8 @@ LENGTH_BYTES = 4
 MOST_FILES = 8
 _READ_BYTES = 1 << 16
 _NEEDED_LATER = (
-    "tuisim.runtime.alarm", "tuisim.runtime.program", "tuisim.runtime.scheduler", "tuisim.runtime.threads",
-    "tuisim.shim.install",
+    "tuisim.runtime.patches.alarm", "tuisim.runtime.patches.threads", "tuisim.runtime.program",
+    "tuisim.runtime.scheduler", "tuisim.shim.install",
 )  # fmt: skip
 """What a child imports after it has begun."""
 _ONLY_HERE = ("_socket", "tuisim.runtime.warm")

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 from tuisim.core.profile import NS_PER_S
 from tuisim.runtime.control import THREADS
-from tuisim.runtime.replacement import replace
+from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.session import Session
 
 Found = TypeVar("Found")

@@ -11,7 +11,7 @@ from itertools import count
 from typing import Any
 
 from tuisim.core.noise import stream
-from tuisim.runtime.replacement import replace
+from tuisim.runtime.patches.replacement import replace
 
 
 def patch_urandom(seed: Callable[[], int]) -> None:

@@ -13,7 +13,7 @@ from typing import Any
 from tuisim.core.profile import NS_PER_S
 from tuisim.errors import NotSimulated
 from tuisim.runtime import wallclock
-from tuisim.runtime.replacement import replace
+from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.scheduler import FOREVER, ScheduledThread, Scheduler
 from tuisim.runtime.session import Session
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any
 
-from tuisim.runtime.replacement import replace
+from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.scheduler import FOREVER, ScheduledThread, Scheduler, SimulatedLock
 
 

@@ -15,7 +15,7 @@ from typing import Any
 from tuisim.core.profile import NS_PER_S
 from tuisim.runtime import wallclock as real
 from tuisim.runtime.modules import OWN_FILES
-from tuisim.runtime.replacement import replace
+from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.session import Session
 
 EPOCH_S = 1_577_836_800
