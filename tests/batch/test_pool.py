@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -20,6 +22,7 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.goals.judgement import GoalState
 from tuisim.goals.spec import Finish, Goal, Reach
+from tuisim.runs import store
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
@@ -119,6 +122,28 @@ def test_a_program_that_damages_its_recording_gets_a_result(tmp_path: Path, harm
     text = OWN_FILES.replace("tmp_path", tmp_path.name) + harm
     result = execute(task(text, goals=(Goal("far", Reach(x_mm=1000, y_mm=100)),)), tmp_path)
     assert (result.end, [one.state for one in result.judgements]) == (end, [GoalState.MISSED] if end else [])
+
+
+@pytest.mark.parametrize("interrupted", ["shutil.copytree", "write_run_file"])
+def test_a_run_whose_storing_is_interrupted_is_not_listed(
+    tmp_path: Path, home: Path, monkeypatch: pytest.MonkeyPatch, interrupted: str
+) -> None:
+    folder = tmp_path / "batch"
+    folder.mkdir()
+    where, _, name = interrupted.rpartition(".")
+    real = getattr(shutil if where else store, name)
+
+    def interrupt(*arguments: Any, **how: Any) -> None:
+        real(*arguments, **how)
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(f"tuisim.runs.store.{interrupted}", interrupt)
+        with pytest.raises(KeyboardInterrupt):
+            execute(task("x = 1", keep=Keep.ALL), folder)
+    assert RunStore().runs() == []
+    kept = execute(task("x = 1", keep=Keep.ALL), folder)
+    assert [run.id for run in RunStore().runs()] == [kept.run_id]
 
 
 def test_a_mat_that_does_not_exist_is_a_result(tmp_path: Path) -> None:

@@ -133,12 +133,17 @@ class RunStore:
         run_id, place = self._new_folder(datetime.now(UTC))
         info = _info_from(run_id, data)
         try:
-            shutil.copytree(folder, place, dirs_exist_ok=True)
+            # A run is what has this file; it comes last, as another process may look at the folder meanwhile.
+            shutil.copytree(folder, place, dirs_exist_ok=True, ignore=shutil.ignore_patterns(RUN_FILE))
             number = self._catalogue.add(info)
             write_run_file(place, {**data, "id": run_id, "number": number})
         except OSError as error:
             shutil.rmtree(place, ignore_errors=True)
             raise LogError(f"cannot be stored: {error.strerror or error}", HOME_HINT, file=str(place)) from error
+        except BaseException:
+            # Interrupted: a half of it must not be listed.
+            shutil.rmtree(place, ignore_errors=True)
+            raise
         shutil.rmtree(folder, ignore_errors=True)
         return NewRun(run_id, number, place)
 
