@@ -140,8 +140,8 @@ class RunStore:
         except OSError as error:
             shutil.rmtree(place, ignore_errors=True)
             raise LogError(f"cannot be stored: {error.strerror or error}", HOME_HINT, file=str(place)) from error
+        # Interrupted: a half of it must not be listed.
         except BaseException:
-            # Interrupted: a half of it must not be listed.
             shutil.rmtree(place, ignore_errors=True)
             raise
         shutil.rmtree(folder, ignore_errors=True)
