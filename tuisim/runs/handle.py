@@ -14,7 +14,6 @@ import time
 from collections.abc import Hashable, Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -98,18 +97,12 @@ class RunOptions:
 
     def to_plain(self) -> dict[str, Any]:
         """Return the options in the form that is stored with a run."""
-        return dict(_plain(self))
+        return {**asdict(self), "actions": [action.to_plain() for action in self.actions]}
 
 
 def program_again(run: StoredRun | RunHandle) -> Program:
     """Return the program of a run with its arguments, working directory and own modules, to be run again."""
     return replace(run.program, modules_from=run.folder)
-
-
-@lru_cache(8)
-def _plain(options: RunOptions) -> dict[str, Any]:
-    # The runs of a batch have equal options.
-    return {**asdict(options), "actions": [action.to_plain() for action in options.actions]}
 
 
 class RunFolders(Protocol):
