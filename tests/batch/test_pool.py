@@ -15,7 +15,7 @@ import pytest
 
 from tests.running import over
 from tuisim.batch import pool
-from tuisim.batch.execute import execute
+from tuisim.batch.execute import _prepared, execute
 from tuisim.batch.pool import run_many
 from tuisim.batch.task import Keep, Result, Task
 from tuisim.config.build import build_run_spec
@@ -84,6 +84,14 @@ def test_a_task_gives_what_a_single_run_gives(tmp_path: Path) -> None:
         assert (kept.folder / view).read_bytes() == (handle.folder / view).read_bytes()
     assert kept.end == handle.ended
     assert result.variables["Light"].count == 10
+
+
+def test_a_prepared_mat_that_was_deleted_is_prepared_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _prepared.cache_clear()
+    for home in ("first", "second"):
+        monkeypatch.setenv("TUISIM_HOME", str(tmp_path / home))
+        assert execute(task("x = 1"), tmp_path).end == "finished"
+        shutil.rmtree(tmp_path / home)
 
 
 @pytest.mark.parametrize("end", ENDS)

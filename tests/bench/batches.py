@@ -53,7 +53,7 @@ def _command(count: int, jobs: int) -> tuple[float, float]:
     with tempfile.TemporaryDirectory() as folder:
         program, table = Path(folder, "program.py"), Path(folder, "rows.csv")
         program.write_text(f"# %%sim_magic_preloaded -b Grey_bands\n{PROGRAM}")
-        words = ["batch", program, "--seeds", f"0..{count - 1}", "-M", "20", "--jobs", jobs, "--out", table]
+        words = ["batch", program, "--seeds", f"0..{count - 1}", "--jobs", jobs, "--out", table]
         script = (
             "import resource, subprocess, sys\n"
             "subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL)\n"

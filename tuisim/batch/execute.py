@@ -76,9 +76,14 @@ def _prepared(background_name: str, fit: str, diameters: frozenset[int]) -> Fiel
 
 
 def _field_files(spec: RunSpec) -> FieldFiles:
-    """Return the prepared mat of a run; looked for on disk only once in a process."""
+    """Return the prepared mat of a run; the image is read only once in a process, while the files are kept."""
     diameters = frozenset(sensor.diameter_mm for sensor in spec.robot.color_sensors)
-    return _prepared(spec.world.background, spec.world.background_fit, diameters)
+    mat = spec.world.background, spec.world.background_fit, diameters
+    found = _prepared(*mat)
+    if not all(path.is_file() for path in (found.pixels, *(path for _, path in found.sums))):
+        _prepared.cache_clear()
+        found = _prepared(*mat)
+    return found
 
 
 def _judged(task: Task, run: StoredRun) -> tuple[Judgement, ...]:
