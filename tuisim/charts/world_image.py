@@ -17,6 +17,7 @@ from tuisim.core.sensors.ultrasonic import rays_mm
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec, RobotSpec, RunSpec
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.runs.arrays import FloatArray
+from tuisim.runs.frames import world_points_mm
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -231,12 +232,7 @@ class PenTrace:
 
 def pen_points_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
     """Return x and y of the pen in the world at each record of telemetry, up or down, each of shape (n,)."""
-    # As `core.geometry.world_point`, for all ticks at once.
-    right_mm, ahead_mm = outline_of(robot).pen_mm
-    turn = np.radians(telemetry["heading_deg"] - 90.0)
-    cos, sin = np.cos(turn), np.sin(turn)
-    x_mm, y_mm = telemetry["x_mm"], telemetry["y_mm"]
-    return x_mm + cos * right_mm - sin * ahead_mm, y_mm + sin * right_mm + cos * ahead_mm
+    return world_points_mm(telemetry, *outline_of(robot).pen_mm)
 
 
 def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> PenTrace:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from tuisim.core.spec import PenSpec
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.goals import picture
 from tuisim.goals.evidence import Evidence, Moment, Span
 from tuisim.goals.found import Found, share_words
 from tuisim.goals.spec import Draw
+from tuisim.runs.frames import world_points_mm
 
 if TYPE_CHECKING:
     import numpy as np
@@ -21,7 +23,7 @@ def find_drawn(condition: Draw, evidence: Evidence, span: Span) -> Found:
     import numpy as np
 
     records = evidence.records[span.ticks]
-    points, ticks = _strokes(records, evidence.spec.robot.pen.x_mm, evidence.spec.robot.pen.y_mm, condition)
+    points, ticks = _strokes(records, evidence.spec.robot.pen, condition)
     if not len(points):
         return Found(None, "The pen drew nothing.")
     wanted = picture.cells(condition)
@@ -45,18 +47,14 @@ def find_drawn(condition: Draw, evidence: Evidence, span: Span) -> Found:
     return Found(evidence.last if span.over else span.stop)
 
 
-def _strokes(records: Array, pen_x_mm: float, pen_y_mm: float, condition: Draw) -> tuple[Array, Array]:
+def _strokes(records: Array, pen: PenSpec, condition: Draw) -> tuple[Array, Array]:
     """Return the points that the pen drew, shape (n, 2) in mm, close enough for the comparison, and their ticks."""
     import numpy as np
 
     down = (records["flags"] & FLAG_PEN_DOWN) != 0
     if not down.any():
         return np.empty((0, 2)), np.empty(0, np.int64)
-    turn = np.radians(records["heading_deg"] - 90.0)
-    cos, sin = np.cos(turn), np.sin(turn)
-    at = np.column_stack(
-        (records["x_mm"] + cos * pen_x_mm - sin * pen_y_mm, records["y_mm"] + sin * pen_x_mm + cos * pen_y_mm)
-    )
+    at = np.column_stack(world_points_mm(records, pen.x_mm, pen.y_mm))
     # A robot that was moved by hand draws no line.
     joined = down[1:] & down[:-1] & (np.diff(records["actions"].astype("i4")) == 0)
     way_mm = np.where(joined, np.hypot(*np.diff(at, axis=0).T), 0.0)

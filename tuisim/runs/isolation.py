@@ -13,6 +13,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
@@ -81,10 +82,8 @@ class IsolatedChild:
     def send_signal(self, number: int, /) -> None:
         """Send a signal, unless it has ended."""
         if self.poll() is None:
-            try:
+            with suppress(ProcessLookupError):
                 os.kill(self.pid, number)
-            except ProcessLookupError:
-                return
 
     def _ended(self, status: int | None) -> int | None:
         if status is not None:

@@ -25,8 +25,6 @@ _MEMORY = Path("/dev/shm")
 """A file system in memory, on Linux: to create and delete files on a disk takes longer than a short run."""
 _FREE_BYTES = 2 << 30
 """It is used with at least this much space: programs may print a lot."""
-
-
 _PREFIX = "tuisim-batch-"
 _LEFT_OVER_S = 24 * 3600.0
 

@@ -72,7 +72,10 @@ class ForkServer:
     """
 
     def __init__(self, socket_fd: int) -> None:
-        self._socket: Any = import_module("_socket").socket(fileno=socket_fd)
+        # Not `socket`: the program imports that with its functions patched.
+        library: Any = import_module("_socket")
+        self._socket: Any = library.socket(fileno=socket_fd)
+        self._attached_bytes: int = library.CMSG_SPACE(MOST_FILES * 4)
         self._ended, self._wake = os.pipe()
         for fd in (self._ended, self._wake):
             os.set_blocking(fd, False)
@@ -93,8 +96,7 @@ class ForkServer:
                 return request
 
     def _receive(self) -> tuple[dict[str, Any], list[int]]:
-        size = self._socket_buffer_of(MOST_FILES)
-        data, attached, _flags, _address = self._socket.recvmsg(_READ_BYTES, size)
+        data, attached, _flags, _address = self._socket.recvmsg(_READ_BYTES, self._attached_bytes)
         files = [
             int.from_bytes(part[at : at + 4], sys.byteorder)
             for _level, _kind, part in attached
@@ -107,11 +109,6 @@ class ForkServer:
             # The host has ended; children are ended by their lifelines.
             wallclock.exit_process(0)
         return json.loads(data[LENGTH_BYTES:]), files
-
-    @staticmethod
-    def _socket_buffer_of(files: int) -> int:
-        size: int = import_module("_socket").CMSG_SPACE(files * 4)
-        return size
 
     def _fork(self, request: dict[str, Any], files: list[int]) -> dict[str, Any] | None:
         status_fd, *given = files
