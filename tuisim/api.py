@@ -11,7 +11,7 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import APP, OPTIONS, Option, settings_of
 from tuisim.config.program_file import ProgramSource, program_of_text, read_program
 from tuisim.errors import ConfigError, nearest
-from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S, RunOptions, start_run
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
@@ -132,7 +132,7 @@ def simulate(
     *,
     arguments: Sequence[str] = (),
     answers: tuple[str, ...] = (),
-    timeout_s: float = 600.0,
+    timeout_s: float = DEFAULT_TIME_LIMIT_S,
     **choices: Any,
 ) -> SimulatedRun:
     """Run a program as fast as possible, block until it ends, and return its results.
@@ -175,7 +175,7 @@ def experiment(
     jobs: int = 0,
     arguments: Sequence[str] = (),
     answers: tuple[str, ...] = (),
-    timeout_s: float = 600.0,
+    timeout_s: float = DEFAULT_TIME_LIMIT_S,
     keep: str = "none",
     **choices: Any,
 ) -> pd.DataFrame:

@@ -20,7 +20,7 @@ from click.shell_completion import get_completion_class, shell_complete
 
 from tuisim import __version__
 from tuisim.config.command_line import Group, command
-from tuisim.errors import ConfigError, HostError, TuisimError, printable
+from tuisim.errors import EXIT_BROKEN_PIPE, EXIT_INTERRUPTED, ConfigError, HostError, TuisimError, printable
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +62,6 @@ LEAST_OPEN_FILES = 64
 """Open files that the app, a run and their libraries need, with some margin."""
 
 EXIT_OUR_MISTAKE = 70
-EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = 130, 141
-"""The exit codes of a program that was ended by SIGINT or SIGPIPE."""
 
 
 def _check_command(word: str) -> None:

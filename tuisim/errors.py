@@ -16,6 +16,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
+SIGNALLED = 128
+"""Exit codes above this come from a signal; no further program is then run."""
+EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = SIGNALLED + 2, SIGNALLED + 13
+"""The exit codes of a program that was ended by SIGINT or SIGPIPE."""
 MOST_LISTED = 20
 
 

@@ -170,7 +170,7 @@ BAD = {
     "no such seeds": ("goals.toml class --seeds 3..x", "--seeds: "),
     "one seed and many": ("goals.toml class --seed 3", "no such option: --seed (did you mean --seeds"),
     "a speed": ("goals.toml class --speed 1", "no such option: --speed"),
-    "no workers": ("goals.toml class --jobs 0", "--jobs: must be a whole number from 1 to 256, got '0'"),
+    "no workers": ("goals.toml class --jobs 0", "--jobs: must be a whole number from 1 to 1000, got '0'"),
     "unknown format": ("goals.toml class --export marks.doc", "cannot write marks.doc: unknown format '.doc'"),
     "page into no folder": ("goals.toml class --export no/marks.html", "there is no folder no"),
     "a file twice": ("goals.toml class --export m.csv --export ./m.csv", "--export: a file is named twice"),

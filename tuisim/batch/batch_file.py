@@ -10,13 +10,12 @@ from typing import Annotated, Any
 from msgspec import UNSET, Meta, Struct, UnsetType
 
 from tuisim.batch.parameters import SEED, Choice, checked_seeds, parse_seeds, parse_values
-from tuisim.batch.task import Keep, Value
+from tuisim.batch.task import MAX_JOBS, Keep, Value
 from tuisim.config import files
 from tuisim.config.files import Location
 from tuisim.config.worlds import BATCH_KEY, WORLD_SUFFIX, WorldFile, load_world, world_from_table
 from tuisim.errors import ConfigError
 
-MAX_JOBS = 1000
 MAX_PROGRAMS = 10_000
 
 

@@ -15,6 +15,8 @@ from tuisim.source import Program
 Value = str | float | int | bool
 """Value of a parameter."""
 
+MAX_JOBS = 1000
+"""Most worker processes of a batch."""
 OUTPUT_CHARACTERS = 2000
 """A result contains at most this much of the program's output."""
 

@@ -37,7 +37,7 @@ from tuisim.commands.listings import names_of
 from tuisim.config.command_line import Arguments, command
 from tuisim.config.options import APP, PANEL
 from tuisim.config.shared_options import shared_options
-from tuisim.errors import ConfigError, counted
+from tuisim.errors import SIGNALLED, ConfigError, counted
 from tuisim.logs.export import export_frame
 from tuisim.logs.signals import QUANTILES
 from tuisim.protocol import End
@@ -94,7 +94,7 @@ class _Interrupted(KeyboardInterrupt):
 
     def __init__(self, number: int) -> None:
         super().__init__()
-        self.exit_code = exit_status.SIGNALLED + number
+        self.exit_code = SIGNALLED + number
 
 
 @contextmanager

@@ -9,20 +9,21 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path
 
-from tuisim.batch.batch_file import MAX_JOBS, BatchFile, load_batch, means_batch
+from tuisim.batch.batch_file import BatchFile, load_batch, means_batch
 from tuisim.batch.parameters import SEED, Choice, parse_seeds, parse_set
 from tuisim.batch.pictures import POSES, USAGE, Picture, check_picture, check_picture_file, parse_picture
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.table import check_expressions, usual_columns
 from tuisim.batch.task import Keep
 from tuisim.batch.workers import Workers
+from tuisim.commands.batch_options import jobs_option, keep_option, workers_option
 from tuisim.commands.listings import names_of
 from tuisim.commands.notebooks import NotRun
 from tuisim.commands.resolve import check_arguments, prepare_runs
-from tuisim.commands.run import DEFAULT_TIME_LIMIT_S, MAX_TIME_LIMIT_S, parse_press, press_actions
-from tuisim.config.command_line import Arguments, Value, argument, choice, option
+from tuisim.commands.run import parse_press, press_actions
+from tuisim.commands.run_options import input_option, timeout_option
+from tuisim.config.command_line import Arguments, Value, argument, option
 from tuisim.config.files import read_file
-from tuisim.config.options import number, whole
 from tuisim.config.overrides import field_of_key
 from tuisim.config.worlds import WorldFile, means_world
 from tuisim.core.spec import RunSpec
@@ -31,17 +32,13 @@ from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.logs.export import LISTED, check_target
 from tuisim.runs.handle import RunOptions
 
-_limit = number(0.001, MAX_TIME_LIMIT_S)
-_jobs = whole(1, MAX_JOBS)
 _GRID, _RESULTS, _LIMITS = "Parameters", "Results", "Input and limits"
 OPTIONS = (
     argument("programs", "PROGRAM…|SPEC.toml", lambda: names_of("programs"), nargs=-1),
     option("--world", metavar="FILE", type=Value(), help="Use a world file; it may also precede the program."),
-    option("--jobs", metavar="N", type=Value(lambda text: _jobs(text, "--jobs")),
-           help="Number of worker processes (one for each processor)."),
+    jobs_option(),
     option("--scheduler", metavar="ADDRESS", help="Use the Dask cluster of a scheduler, such as tcp://host:8786."),
-    option("--workers", metavar="N", type=Value(lambda text: _jobs(text, "--workers")),
-           help="Use a Dask cluster of this many workers on this machine."),
+    workers_option("--workers", "Use a Dask cluster of this many workers on this machine."),
     option("--seeds", metavar="SEEDS", group=_GRID, help="One run for each seed: 0..199, or 1,5,9."),
     option("--set", "sets", multiple=True, metavar="NAME=VALUES", group=_GRID,
            help="Vary a key of a world or robot file: noise.motor=0,20,50, robot.wheel_diameter_mm=54:58:0.5, "
@@ -50,8 +47,7 @@ OPTIONS = (
     option("--expr", "expressions", multiple=True, metavar="NAME=EXPR", group=_RESULTS,
            help="Add a column, such as 'error_mm=hypot(x_mm - 750, y_mm - 850)'; may be repeated."),
     option("--goals", metavar="FILE", type=Value(), group=_RESULTS, help="Judge the goals in a file, one column each."),
-    choice("--keep", [one.value for one in Keep], group=_RESULTS,
-           help="Which runs to store: all, failed or none (none)."),
+    keep_option(Keep.NONE, _RESULTS),
     option("--picture", "picture_files", multiple=True, metavar="FILE", type=Value(), group=_RESULTS,
            help="Write a picture (.svg or .png) instead of drawing it as text; the first file for the first "
            "--picture-of, and so on."),
@@ -59,10 +55,8 @@ OPTIONS = (
            help=f"Draw {USAGE}; may be repeated."),
     option("--resume", is_flag=True, group=_RESULTS, help="Go on with an interrupted batch that wrote the same --out."),
     option("--json", "as_json", is_flag=True, group=_RESULTS, help="Print one JSON object per run, not the summary."),
-    option("--timeout", default=DEFAULT_TIME_LIMIT_S, metavar="S", group=_LIMITS,
-           type=Value(lambda text: _limit(text, "--timeout")),
-           help=f"Stop a run after this simulated time in seconds ({DEFAULT_TIME_LIMIT_S:g})."),
-    option("--input", multiple=True, metavar="TEXT", group=_LIMITS, help="Answer an input(); may be repeated."),
+    timeout_option(_LIMITS),
+    input_option(_LIMITS),
     option("--press", multiple=True, metavar="BUTTON@S", type=Value(parse_press), group=_LIMITS,
            help="Press a button of the brick, as in `tuisim run`; may be repeated."),
 )  # fmt: skip
@@ -125,8 +119,8 @@ def _workers(arguments: Arguments, file: BatchFile) -> Workers:
     named = [name for name, value in given.items() if value]
     if len(named) > 1:
         raise ConfigError(f"is given together with {named[0]}", "give one of them", key=named[1])
-    jobs = arguments.jobs or (0 if named else file.jobs) or 0
-    return Workers(jobs, arguments.scheduler or "", arguments.workers or 0)
+    jobs = arguments.jobs or (0 if named else file.jobs or 0)
+    return Workers(jobs, arguments.scheduler or "", arguments.workers)
 
 
 def _world_with_goals(arguments: Arguments) -> str | None:

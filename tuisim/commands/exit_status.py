@@ -6,17 +6,13 @@ from typing import Any, assert_never
 
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
 from tuisim.core.geometry import Pose, pose_in_words
-from tuisim.errors import counted
+from tuisim.errors import SIGNALLED, counted
 from tuisim.protocol import NO_ANSWER, End
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import counts_of
 
 EXIT_RAISED, EXIT_BAD_OUTPUT, EXIT_LIMIT = 1, 2, 3
-EXIT_BROKEN_PIPE = 141
-"""The exit code of a program that was ended by SIGPIPE."""
-SIGNALLED = 128
-"""Exit codes above this come from a signal; no further program is then run."""
 
 
 def exit_code_of(end: End, exit_code: int) -> int:

@@ -15,13 +15,15 @@ from tuisim import __version__
 from tuisim.batch.parameters import parse_seeds
 from tuisim.batch.task import Keep
 from tuisim.charts.files import write_whole
+from tuisim.commands.batch_options import jobs_option, keep_option
 from tuisim.commands.echo import Progress, echo, echo_error, echo_lines, table, tell
 from tuisim.commands.listings import names_of
+from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.build import build_run_spec
-from tuisim.config.command_line import Arguments, Value, argument, choice, command, option
-from tuisim.config.options import APP, PANEL, number, settings_of, whole
+from tuisim.config.command_line import Arguments, Value, argument, command, option
+from tuisim.config.options import APP, PANEL, settings_of
 from tuisim.config.shared_options import shared_options
-from tuisim.errors import ConfigError, ExportError, counted, listed, printable
+from tuisim.errors import EXIT_INTERRUPTED, ConfigError, ExportError, counted, listed, printable
 from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
 from tuisim.marks.feedback import write_feedback
@@ -38,34 +40,25 @@ from tuisim.runs.isolation import check_isolation
 
 PAGE_SUFFIXES = (".html", ".htm")
 DEFAULT_SEEDS = "0..19"
-DEFAULT_TIME_LIMIT_S = 120.0
-MAX_TIME_LIMIT_S = 1e6
-MAX_JOBS = 256
-EXIT_INTERRUPTED = 130
+TIME_LIMIT_S = 120.0
+USUAL_KEEP = Keep.FAILED
 
 _LEFT_OUT = ("seed", "speed")
 """Shared options that marking does not take: each program has several seeds, and runs as fast as possible."""
-_limit = number(0.001, MAX_TIME_LIMIT_S)
-_jobs = whole(1, MAX_JOBS)
 _RUNS, _RESULTS = "Runs", "Results"
 _OPTIONS = (
     argument("goals", "GOALS"),
     argument("folders", "FOLDER…", nargs=-1),
     option("--seeds", default=DEFAULT_SEEDS, metavar="SEEDS", group=_RUNS,
            help=f"Run each program with these seeds: 0..19, or 1,2,5 ({DEFAULT_SEEDS})."),
-    option("--timeout", default=DEFAULT_TIME_LIMIT_S, metavar="S", group=_RUNS,
-           type=Value(lambda text: _limit(text, "--timeout")),
-           help=f"Stop a program after this simulated time in seconds ({DEFAULT_TIME_LIMIT_S:g})."),
-    option("--input", multiple=True, metavar="TEXT", group=_RUNS,
-           help="Answer an input() of each program; may be repeated."),
-    option("--jobs", default=0, metavar="N", group=_RUNS, type=Value(lambda text: _jobs(text, "--jobs")),
-           help="Run this many programs side by side (one for each processor)."),
+    timeout_option(_RUNS, TIME_LIMIT_S),
+    input_option(_RUNS),
+    jobs_option(group=_RUNS),
     option("--isolate", is_flag=True, group=_RUNS,
            help="Run each program through bubblewrap, without network and without your files."),
     option("--resume", is_flag=True, group=_RUNS,
            help="Go on where an earlier marking with these goals ended; run only what is new or has changed."),
-    choice("--keep", [keep.value for keep in Keep], default=Keep.FAILED.value, group=_RUNS,
-           help="Which runs to store (failed)."),
+    keep_option(USUAL_KEEP, _RUNS),
     option("--export", multiple=True, metavar="FILE", type=Value(), group=_RESULTS,
            help=f"Write the marks: .html is a page with a report of each stored run, else {ALLOWED}; may be repeated."),
     option("--feedback", metavar="FOLDER", type=Value(), group=_RESULTS,
@@ -109,7 +102,7 @@ def mark(**given: Any) -> int:
         options=RunOptions(
             time_limit_s=arguments.timeout, stall_limit_s=STALL_LIMIT_S, answers=_answers(arguments, task)
         ),
-        keep=Keep(arguments.keep),
+        keep=Keep(arguments.keep or USUAL_KEEP),
         jobs=arguments.jobs,
         isolate=arguments.isolate,
         version=__version__,

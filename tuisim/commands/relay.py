@@ -11,7 +11,7 @@ from types import FrameType
 from typing import Self, TextIO
 
 from tuisim.commands.echo import echo_error, progress_hidden, tell
-from tuisim.commands.exit_status import EXIT_BROKEN_PIPE
+from tuisim.errors import EXIT_BROKEN_PIPE
 from tuisim.protocol import Ended, Message
 from tuisim.runs.handle import RunHandle
 from tuisim.runs.records import OutputRow, Stream, line_of

@@ -14,12 +14,13 @@ from tuisim.commands.listings import names_of
 from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
 from tuisim.commands.relay import Follower, Interrupts
 from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
+from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.command_line import Arguments, Value, argument, choice, command, option
 from tuisim.config.options import APP, PANEL, number
 from tuisim.config.shared_options import shared_options
 from tuisim.core.geometry import pose_in_words
 from tuisim.core.profile import NS_PER_S
-from tuisim.errors import ConfigError, ExportError, LogError, TuisimError, counted, nearest
+from tuisim.errors import SIGNALLED, ConfigError, ExportError, LogError, TuisimError, counted, nearest
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
 from tuisim.protocol import BUTTONS, Inspect, Inspected, Message, Paused, Resume, SetButtons, UserAction
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
@@ -27,8 +28,6 @@ from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 from tuisim.source import source_lines
 
-MAX_TIME_LIMIT_S = 1e6
-DEFAULT_TIME_LIMIT_S = 600.0
 MOST_CHARACTERS = 200
 GO, STOP = "go", "stop"
 PRESS = "--press"
@@ -84,7 +83,6 @@ def press_actions(presses: Sequence[Press], tick_hz: int) -> tuple[UserAction, .
     return tuple(changes)
 
 
-_limit = number(0.001, MAX_TIME_LIMIT_S)
 _REPORTS, _BREAKPOINTS = "Data and limits", "Breakpoints"
 _OPTIONS = (
     argument("programs", "PROGRAM…", lambda: names_of("programs"), nargs=-1),
@@ -93,10 +91,8 @@ _OPTIONS = (
            help=f"Write the samples of all programs ({', '.join(EXPORTERS)}); may be repeated."),
     option("--telemetry", metavar="FILE", type=Value(), group=_REPORTS,
            help="Write the telemetry of a single program, one row per tick."),
-    option("--timeout", default=DEFAULT_TIME_LIMIT_S, metavar="S", group=_REPORTS,
-           type=Value(lambda text: _limit(text, "--timeout")),
-           help=f"Stop after this simulated time in seconds ({DEFAULT_TIME_LIMIT_S:g})."),
-    option("--input", multiple=True, metavar="TEXT", group=_REPORTS, help="Answer an input(); may be repeated."),
+    timeout_option(_REPORTS),
+    input_option(_REPORTS),
     option("--press", multiple=True, metavar="BUTTON@S", type=Value(parse_press), group=_REPORTS,
            help="Press a button of the brick: enter@1.0-1.5, or enter@1 for 0.1 s; may be repeated."),
     option("--all", is_flag=True, group=_REPORTS,
@@ -279,7 +275,7 @@ def _run_all(
             results.append((one.label or run.program.name, run))
             exit_status.report(run, exit_code, as_json=arguments.json)
         code = max(code, exit_code)
-        if exit_code > exit_status.SIGNALLED:
+        if exit_code > SIGNALLED:
             break
     return code, results
 

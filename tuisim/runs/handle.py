@@ -61,6 +61,8 @@ STUCK_AFTER_S = 0.4
 ASK_AGAIN_S = 0.05
 ENDED_CHILD_S = 0.2
 """Time for a child to exit after its last event."""
+DEFAULT_TIME_LIMIT_S = 600.0
+"""Simulated time that a run may take if nothing else is asked for."""
 STALL_FACTOR = 2.0
 """A headless child without progress for this many stall limits of real time is stuck in C code."""
 
@@ -74,7 +76,7 @@ class RunOptions:
     speed: float = 1.0
     """1.0 is real time, 0 as fast as possible."""
     start_paused: bool = False
-    time_limit_s: float = 600.0
+    time_limit_s: float = DEFAULT_TIME_LIMIT_S
     """Simulated time after which the run is stopped; 0 is no limit."""
     stall_limit_s: float = 60.0
     """CPU seconds in one instant of simulated time after which the run is stopped; 0 is no limit."""

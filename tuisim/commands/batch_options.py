@@ -1,0 +1,26 @@
+"""Options of the commands that execute batches: worker processes, and which runs are stored."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tuisim.batch.task import MAX_JOBS, Keep
+from tuisim.config.command_line import GroupedOption, Value, choice, option
+from tuisim.config.options import whole
+
+_workers = whole(1, MAX_JOBS)
+
+
+def workers_option(flag: str, text: str, **how: Any) -> GroupedOption:
+    """Return an option for a number of workers; 0 if it is not given."""
+    return option(flag, default=0, metavar="N", type=Value(lambda word: _workers(word, flag)), help=text, **how)
+
+
+def jobs_option(**how: Any) -> GroupedOption:
+    """Return `--jobs N`."""
+    return workers_option("--jobs", "Number of worker processes (one for each processor).", **how)
+
+
+def keep_option(usual: Keep, group: str) -> GroupedOption:
+    """Return `--keep all|failed|none`; None if it is not given, which means `usual`."""
+    return choice("--keep", [one.value for one in Keep], group=group, help=f"Which runs to store ({usual.value}).")

@@ -1,0 +1,27 @@
+"""Options of the commands that run programs: limits and answers."""
+
+from __future__ import annotations
+
+from tuisim.config.command_line import GroupedOption, Value, option
+from tuisim.config.options import number
+from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S
+
+MAX_TIME_LIMIT_S = 1e6
+
+_limit = number(0.001, MAX_TIME_LIMIT_S)
+
+
+def timeout_option(group: str, default_s: float = DEFAULT_TIME_LIMIT_S) -> GroupedOption:
+    """Return `--timeout S`, in simulated seconds."""
+    return option(
+        "--timeout", default=default_s, metavar="S", group=group, type=Value(lambda text: _limit(text, "--timeout")),
+        help=f"Stop a run after this simulated time in seconds ({default_s:g}).",
+    )  # fmt: skip
+
+
+def input_option(group: str) -> GroupedOption:
+    """Return `--input TEXT`: the answers of each run, in order."""
+    return option(
+        "--input", multiple=True, metavar="TEXT", group=group,
+        help="Answer an input() of each program; may be repeated.",
+    )  # fmt: skip
