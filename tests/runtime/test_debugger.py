@@ -290,6 +290,7 @@ WAITS = {
         "waits for the thread T",
     ),
     "button": ("from ev3dev2.button import Button\nButton().wait_for_pressed(['enter'])", "waits for the button enter"),
+    "files": ("import select\nselect.select([], [], [], 2)", "waits for timers and files until 2.00 s"),
     "speech": ("say('hello there, how are you', True)", "sounds until"),
 }
 
@@ -299,6 +300,13 @@ def test_what_is_waited_for_is_said(debug: Callable[..., Driver], text: str, not
     driver = debug(text, hold_at=(30, BEFORE_NEXT_TICK), asks_user=True)
     assert driver.paused().reason == "instant"
     assert note in driver.look(thread="MainThread").waiting
+
+
+def test_a_wait_for_a_motor_is_said_where_the_library_waits_in_another_way(debug: Callable[..., Driver]) -> None:
+    text = "tank_drive.left_motor.on_for_rotations(20, 2)"
+    driver = debug(text, hold_at=(30, BEFORE_NEXT_TICK), profile="nbev3devsim")
+    driver.paused()
+    assert "waits for motor outB" in driver.look().waiting
 
 
 HELD_THEN_STOPPED = {

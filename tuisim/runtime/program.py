@@ -29,6 +29,7 @@ from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import Deadlock, Session, StopProgram
 from tuisim.runtime.stack import patch_faulthandler
 from tuisim.runtime.tracebacks import point_at_namesake, report_error
+from tuisim.shim.waits import Wait, waits_for
 
 
 @dataclass(frozen=True, slots=True)
@@ -301,6 +302,7 @@ class ProgramRunner:
 
     # Input
 
+    @waits_for(Wait.INPUT)
     def _input(self, prompt: object = "") -> str:
         """Replacement for input(): returns scripted answers, or the user's."""
         self.stdout.write(str(prompt))

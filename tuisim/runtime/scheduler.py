@@ -17,6 +17,7 @@ from tuisim.runtime import wallclock
 from tuisim.runtime.control import STOPPING, THREADS
 from tuisim.runtime.limits import limit_memory
 from tuisim.runtime.session import Deadlock, Session, StopProgram
+from tuisim.shim.waits import Wait, waits_for
 
 MOST_THREADS = 1000
 """Each is a real thread, and a machine limits their number."""
@@ -312,6 +313,7 @@ class SimulatedLock:
         self._locked = False
         self._waiting: deque[ScheduledThread] = deque()
 
+    @waits_for(Wait.LOCK)
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Acquire the lock; block in simulated time if requested."""
         if timeout != -1:

@@ -22,6 +22,7 @@ from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.control import ATTENTION, DEBUG, LIVE, STOPPING, THREADS, RunControl
 from tuisim.runtime.output import Output
+from tuisim.shim.waits import Wait, waits_for
 
 if TYPE_CHECKING:
     from tuisim.core.pen_marks import PenMarks
@@ -232,6 +233,7 @@ class Session:
             timeout_ns *= max(1, REPEATED_WAIT_NS // max(1, timeout_ns))
         self._pass(self.now + timeout_ns, True)
 
+    @waits_for(Wait.SOUND)
     def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:
         """Record a sound and block for `wait_ns`; the other arguments are as in `protocol.Spoke`."""
         self.output.row(text, Stream.SPEECH)

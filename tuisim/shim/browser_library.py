@@ -14,6 +14,7 @@ from typing import Any
 from tuisim.core.profile import MS
 from tuisim.shim.device_files import Brick
 from tuisim.shim.session import Session
+from tuisim.shim.waits import Wait, waits_for
 
 POLL_MS = 10
 """Interval at which a waiting thread polls the motor."""
@@ -73,6 +74,7 @@ def _wait(session: Session, library: str) -> Callable[..., bool]:
         elif session.now == begun:
             session.spend(look_ns)
 
+    @waits_for(Wait.MOTOR)
     def wait(self: Any, cond: Callable[[str], bool], timeout: float | None = None) -> bool:
         """Poll until `cond(self.state)` is true or the timeout in milliseconds is over."""
         deadline_s = now_s() + (timeout or 0) / 1000

@@ -12,6 +12,7 @@ from tuisim.core.profile import MS, NS_PER_S
 from tuisim.protocol import BUTTONS
 from tuisim.shim.method_globals import rebind
 from tuisim.shim.session import Session
+from tuisim.shim.waits import Wait, waits_for
 
 POLL_NS = 10 * MS
 """Interval at which a waiting thread polls the buttons."""
@@ -56,6 +57,7 @@ class InputDevice:
         """Return the key codes of the pressed buttons. Charges the cost of a read."""
         return [KEY_CODES[name] for name in read_pressed(self._session)]
 
+    @waits_for(Wait.BUTTON_EVENT)
     def read_loop(self) -> Iterator[InputEvent]:
         """Yield events forever, blocking between them; buttons that are already pressed yield none."""
         session = self._session
@@ -120,6 +122,7 @@ def patch_button_module(session: Session, module: types.ModuleType) -> None:
 def _polling_wait(session: Session) -> Callable[..., bool]:
     between_ns = max(0, POLL_NS - session.sim.spec.profile.attribute_read_ns)
 
+    @waits_for(Wait.BUTTONS)
     def wait(self: Any, to_press: str | list[str], to_release: str | list[str], timeout_ms: float | None) -> bool:
         """Block until all of `to_press` are pressed and none of `to_release` is; return False after a timeout."""
         wanted = {to_press} if isinstance(to_press, str) else set(to_press)

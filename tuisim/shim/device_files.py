@@ -8,6 +8,7 @@ from functools import partial, wraps
 from typing import Any
 
 from tuisim.shim.session import Session
+from tuisim.shim.waits import Wait, waits_for
 
 Reader = Callable[[], object]
 Writer = Callable[[str], None]
@@ -67,6 +68,7 @@ class SimDevice:
         self._costs = dict(costs or {})
         self._common_cost = session.sim.spec.profile.attribute_read_ns
 
+    @waits_for(Wait.READING)
     def read(self, name: str) -> object:
         """Return an attribute's value. Charges its cost.
 

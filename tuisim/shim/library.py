@@ -13,6 +13,7 @@ from tuisim.core.profile import MS, MotorLaw
 from tuisim.shim.browser_library import speak_as_browser
 from tuisim.shim.device_files import Brick, free_of_charge
 from tuisim.shim.session import Session
+from tuisim.shim.waits import Wait, waits_for
 
 
 class OpenAttribute:
@@ -70,6 +71,7 @@ class MotorPoll:
     def register(self, _file: OpenAttribute, _events: int = 0) -> None:
         """Do nothing: any motor that changes ends the wait, and the library checks its own motor again."""
 
+    @waits_for(Wait.MOTOR)
     def poll(self, timeout_ms: float | None = None) -> list[Any]:
         """Block until a motor ends a move or the timeout is over."""
         timeout_ns = int((1000 if timeout_ms is None else timeout_ms) * MS)

@@ -6,15 +6,17 @@ import math
 import os
 import types
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, assert_never
 
 from tuisim.core.motors import POSITION, TIMED, Motor
 from tuisim.core.profile import NS_PER_S
 from tuisim.runtime.scheduler import FOREVER, ScheduledThread
 from tuisim.runtime.session import Session
 from tuisim.runtime.stack import PACKAGE_FOLDER
+from tuisim.shim.waits import Wait, wait_of
 
 _LIBRARY = os.sep + "ev3dev2" + os.sep
+_ADVANCING = (Session._pass.__code__, Session.advance.__code__)
 
 
 def waiting_note(session: Session, task: ScheduledThread, frame: types.FrameType | None) -> str:
@@ -55,7 +57,7 @@ def _until_ns(session: Session, task: ScheduledThread, frames: list[types.FrameT
     if task.order:
         return None if task.wake_ns == FOREVER else task.wake_ns
     for frame in frames:
-        if frame.f_code.co_name in ("_pass", "advance") and frame.f_locals.get("self") is session:
+        if frame.f_code in _ADVANCING and frame.f_locals.get("self") is session:
             until: int = frame.f_locals["until"]
             return until
     return None
@@ -63,33 +65,33 @@ def _until_ns(session: Session, task: ScheduledThread, frames: list[types.FrameT
 
 def _note_of(session: Session, frame: types.FrameType, outer: list[types.FrameType], until: str) -> str:
     """Return what a call of the runtime or the library waits for; empty if this frame does not show it."""
-    code = frame.f_code
-    if not code.co_filename.startswith(PACKAGE_FOLDER):
-        return ""
-    match os.path.basename(code.co_filename), code.co_name:
-        case "clock.py", "sleep":
+    match wait_of(frame.f_code):
+        case None:
+            return ""
+        case Wait.SLEEP:
             return f"sleeps{until}"
-        case "clock.py", "select":
+        case Wait.FILES:
             return f"waits for timers and files{until}"
-        case "clock.py", "turn":
+        case Wait.LOOP:
             return "computes without letting time pass"
-        case "library.py", "poll":
+        case Wait.MOTOR:
             return _motor_note(session, outer, until)
-        case "program.py", "_input":
+        case Wait.INPUT:
             return "waits in input()"
-        case "buttons.py", "wait":
+        case Wait.BUTTONS:
             return _button_note(frame.f_locals)
-        case "buttons.py", "read_loop":
+        case Wait.BUTTON_EVENT:
             return "waits for a button"
-        case "session.py", "speak":
+        case Wait.SOUND:
             return f"sounds{until}"
-        case "device_files.py", "read":
-            return f"reads {frame.f_locals.get('name', 'a device')}{until}"
-        case "threads.py", "join":
-            return f"waits for the thread {getattr(frame.f_locals.get('self'), 'name', '')}{until}"
-        case "scheduler.py", "acquire":
+        case Wait.READING:
+            return f"reads {frame.f_locals['name']}{until}"
+        case Wait.THREAD:
+            return f"waits for the thread {getattr(frame.f_locals['self'], 'name', '')}{until}"
+        case Wait.LOCK:
             return f"waits for {_lock_owner(outer)}{until}"
-    return ""
+        case other:
+            assert_never(other)
 
 
 def _lock_owner(outer: list[types.FrameType]) -> str:

@@ -17,6 +17,7 @@ from tuisim.runtime import wallclock as real
 from tuisim.runtime.modules import OWN_FILES
 from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.session import Session
+from tuisim.shim.waits import Wait, waits_for
 
 EPOCH_S = 1_577_836_800
 """Every run starts on 1 January 2020, 00:00 UTC."""
@@ -46,6 +47,7 @@ def patch_time(session: Session) -> None:
         session.charge(cost)
         return EPOCH_S + session.now / NS_PER_S
 
+    @waits_for(Wait.SLEEP)
     def sleep(seconds: Any) -> None:
         length = seconds if isinstance(seconds, float) else operator.index(seconds)
         if not 0 <= length < LONGEST_SLEEP_S:
@@ -253,6 +255,7 @@ def loop_hook(session: Session, turns: int, cost_ns: int) -> Callable[[], None]:
     """
     left, mark = turns, -1
 
+    @waits_for(Wait.LOOP)
     def turn() -> None:
         nonlocal left, mark
         left -= 1

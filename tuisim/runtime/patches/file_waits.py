@@ -14,6 +14,7 @@ from tuisim.core.profile import NS_PER_S
 from tuisim.runtime.control import THREADS
 from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.session import Session
+from tuisim.shim.waits import Wait, waits_for
 
 Found = TypeVar("Found")
 
@@ -44,6 +45,7 @@ class FileWaits:
         self._select = select.select
         self._classes = {name: getattr(select, name, None) for name in _SELECTORS.values()}
 
+    @waits_for(Wait.FILES)
     def until_found(self, look: Callable[[], Found], timeout_ns: int | None) -> Found:
         """Poll until something is found or the timeout is over; return the last result.
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.scheduler import FOREVER, ScheduledThread, Scheduler, SimulatedLock
+from tuisim.shim.waits import Wait, waits_for
 
 
 def patch_threads(scheduler: Scheduler) -> None:
@@ -96,6 +97,7 @@ def _patch_thread_class(scheduler: Scheduler, thread: Any) -> None:
         self._started.wait()
 
     @wraps(thread.join)
+    @waits_for(Wait.THREAD)
     def join(self: Any, timeout: float | None = None) -> None:
         if not self._initialized:
             raise RuntimeError("Thread.__init__() not called")

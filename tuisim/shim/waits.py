@@ -1,0 +1,47 @@
+"""Marks of the functions in which a program waits, so that the debugger recognises their calls on the stack."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import Enum, auto
+from types import CodeType
+from typing import Any, TypeVar
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+class Wait(Enum):
+    """What a call waits for."""
+
+    SLEEP = auto()
+    FILES = auto()
+    LOOP = auto()
+    """Nothing: a loop has run without time passing."""
+    MOTOR = auto()
+    INPUT = auto()
+    BUTTONS = auto()
+    """The buttons in `to_press` and `to_release`."""
+    BUTTON_EVENT = auto()
+    SOUND = auto()
+    READING = auto()
+    """The value of an attribute, in `name`."""
+    THREAD = auto()
+    LOCK = auto()
+
+
+_MARKED: dict[CodeType, Wait] = {}
+
+
+def waits_for(what: Wait) -> Callable[[Function], Function]:
+    """Return a decorator that marks a function; its calls stay as they are."""
+
+    def mark(function: Function) -> Function:
+        _MARKED[function.__code__] = what
+        return function
+
+    return mark
+
+
+def wait_of(code: CodeType) -> Wait | None:
+    """Return what the function with this code waits for; None if it is not marked."""
+    return _MARKED.get(code)
