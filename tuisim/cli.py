@@ -41,7 +41,7 @@ COMMANDS: Mapping[str, Entry] = {
     "open": Entry("commands.app:open_app", "Open the app (the default command)"),
     "run": Entry("commands.run:run", "Run programs without the app"),
     "batch": Entry("commands.batch:batch", "Run programs with many seeds and settings; one row per run"),
-    "runs": Entry("commands.runs:runs", "List, show, export or remove stored runs"),
+    "runs": Entry("commands.runs:runs", "List, show, export, draw or remove stored runs"),
     "goals": Entry("commands.goals:goals", "Check whether runs meet the goals of a task"),
     "mark": Entry("commands.mark:mark", "Mark the programs of a class by the goals of a task"),
     "log": Entry("commands.log:log", "Analyse logs: statistics, bands, events, signals"),

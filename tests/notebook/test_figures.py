@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from math import atan2, degrees, hypot
 from typing import Any, TypeVar
 
@@ -18,6 +19,7 @@ from tuisim.analysis.chart import chart_of as plotted
 from tuisim.app.render.mat import whole_field
 from tuisim.charts.files import svg_of
 from tuisim.charts.layout import Chart, Stroke, Words, laid_out
+from tuisim.charts.sample_chart import sample_chart
 from tuisim.charts.world_image import (
     COLORED,
     draw_robot,
@@ -32,10 +34,11 @@ from tuisim.config.robots import ROBOTS
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, PenSpec, RobotSpec, RunSpec
-from tuisim.notebook.display import CHART_SIZE, chart_of
+from tuisim.notebook.display import CHART_SIZE
 from tuisim.runs.samples import Sample
 
 Kind = TypeVar("Kind", Stroke, Words)
+chart_of = partial(sample_chart, columns=CHART_SIZE[0])
 
 
 def samples(count: int, peak: float) -> list[Sample]:
@@ -70,7 +73,7 @@ def test_a_trace_is_as_long_as_the_pen_is_down(run: Run) -> None:
     (line,) = trace.lines
     start, end = done.run.telemetry.record(0), done.run.telemetry.last()
     assert end is not None
-    assert [round(3 * x) for x, _ in (line[0], line[-1])] == [round(start.x_mm), round(end.x_mm)]
+    assert [round(x) for x, _ in (line[0], line[-1])] == [round(start.x_mm), round(end.x_mm)]
     assert len(line) < done.run.telemetry.count
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -171,6 +171,8 @@ class Drawing:
     width: int
     height: int
     shapes: tuple[Shape, ...]
+    plots: tuple[Frame, ...] = ()
+    """Where the data of a chart are, the facets from the top."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,6 +214,7 @@ def laid_out(chart: Chart, width: int, height: int, *, titled: bool = True) -> D
         top += lines * LINE_PX + 4
     groups = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
     scales = [_Scales.of(group, chart.zoomed or chart.path) for group in groups]
+    plots: list[Frame] = []
     left = PAD + max(scale.left_px for scale in scales)
     right = max(width - PAD - max(max(scale.right_px for scale in scales), 3 * LETTER_PX), left + 1)
     bottom = height - PAD - 2 * LINE_PX
@@ -224,11 +227,55 @@ def laid_out(chart: Chart, width: int, height: int, *, titled: bool = True) -> D
         last = at == len(groups) - 1
         lower = max(lower if last else lower - _FACET_GAP_PX, upper + 1)
         frame = _squared(chart, Frame(left, upper, right, lower, chart.x_limits, scale.left))
+        plots.append(frame)
         shapes += _spans(chart, group, frame)
         shapes += _axes(frame, scale, with_x=last)
         shapes += _strokes(chart, group, scale, frame)
     shapes.append(Words((left + right) / 2, bottom + 1.7 * LINE_PX, chart.x_label, "middle"))
-    return Drawing(chart.title, width, height, tuple(shapes))
+    return Drawing(chart.title, width, height, tuple(shapes), tuple(plots))
+
+
+def drawn_until(drawing: Drawing, x: float) -> Drawing:
+    """Return the picture of a chart without its data after an x of its axis, with a line there."""
+    shapes: list[Shape] = []
+    for shape in drawing.shapes:
+        plot = next((plot for plot in drawing.plots if _is_inside(shape, plot)), None)
+        if isinstance(shape, Stroke) and plot is not None:
+            points = shape.points[shape.points[:, 0] <= float(plot.xs(x)) + _EDGE_PX]
+            if len(points):
+                shapes.append(replace(shape, points=points, dots=shape.dots or len(points) == 1))
+        else:
+            shapes.append(shape)
+    for plot in drawing.plots:
+        at = float(plot.xs(x))
+        shapes.append(Rule(at, plot.top, at, plot.bottom))
+    return replace(drawing, shapes=tuple(shapes))
+
+
+_EDGE_PX = 0.5
+"""Tolerance for points at the edge of a plot."""
+
+
+def _is_inside(shape: Shape, plot: Frame) -> bool:
+    if not isinstance(shape, Stroke):
+        return False
+    rows = shape.points[:, 1]
+    return bool(rows.min() >= plot.top - _EDGE_PX and rows.max() <= plot.bottom + _EDGE_PX)
+
+
+def moved(drawing: Drawing, right_px: float, down_px: float) -> list[Shape]:
+    """Return the shapes of a picture at another place."""
+    shapes: list[Shape] = []
+    for shape in drawing.shapes:
+        match shape:
+            case Stroke():
+                shapes.append(replace(shape, points=shape.points + np.array([right_px, down_px])))
+            case Rule():
+                ends = shape.x1 + right_px, shape.y1 + down_px, shape.x2 + right_px, shape.y2 + down_px
+                shapes.append(Rule(*ends, shape.faint))
+            case _:
+                shapes.append(replace(shape, x=shape.x + right_px, y=shape.y + down_px))
+    return shapes
 
 
 def color_of(line: Line) -> Rgb:

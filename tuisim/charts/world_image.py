@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from PIL.ImageDraw import ImageDraw
 
     from tuisim.runs.run_folder import StoredRun
+    from tuisim.runs.views import TickRecord
 
 Pixels = npt.NDArray[np.uint8]
 """Shape (height, width, 3): red, green, blue."""
@@ -203,21 +204,30 @@ ARRAY_PX = 6
 _OBSTACLE, _OBSTACLE_EDGE, _RAY = (150, 150, 160), (20, 20, 20), (230, 120, 0)
 _RIM, _FRAME = (232, 234, 238), (70, 74, 82)
 _FRAME_PX = 2
-_FIELD_PX = (FIELD_WIDTH_MM // MM_PER_PX, FIELD_HEIGHT_MM // MM_PER_PX)
 
 Point = tuple[float, float]
 
 
-def _at(x_mm: float, y_mm: float) -> Point:
-    return x_mm / MM_PER_PX, (FIELD_HEIGHT_MM - y_mm) / MM_PER_PX
-
-
-def world_view(robot: RobotSpec) -> Viewport:
+def world_view(robot: RobotSpec, mm_per_px: float = MM_PER_PX) -> Viewport:
     """Return an area in which a robot is completely visible while its axle is on the field."""
-    rim_px = math.ceil(drawn_reach_mm(outline_of(robot)) / MM_PER_PX) + _FRAME_PX
-    rim_mm = rim_px * MM_PER_PX
-    width_px, height_px = _FIELD_PX[0] + 2 * rim_px, _FIELD_PX[1] + 2 * rim_px
-    return Viewport(width_px, height_px, MM_PER_PX, -rim_mm, FIELD_HEIGHT_MM + rim_mm)
+    width_px, height_px = _field_px(mm_per_px)
+    rim_px = math.ceil(drawn_reach_mm(outline_of(robot)) / mm_per_px) + _FRAME_PX
+    rim_mm = rim_px * mm_per_px
+    return Viewport(width_px + 2 * rim_px, height_px + 2 * rim_px, mm_per_px, -rim_mm, FIELD_HEIGHT_MM + rim_mm)
+
+
+def _field_px(mm_per_px: float) -> tuple[int, int]:
+    # The field is no multiple of three mm wide: the rest of the last column is left out.
+    return max(int(FIELD_WIDTH_MM / mm_per_px), 1), max(int(FIELD_HEIGHT_MM / mm_per_px), 1)
+
+
+def fitting_view(robot: RobotSpec, width_px: int, height_px: int) -> Viewport:
+    """Return the view of `world_view` in the largest scale that fits a size."""
+    reach_mm = drawn_reach_mm(outline_of(robot))
+    # The rim is rounded up to whole pixels on both sides.
+    sides = ((FIELD_WIDTH_MM, width_px), (FIELD_HEIGHT_MM, height_px))
+    mm_per_px = max((side_mm + 2 * reach_mm) / max(side_px - 2 * (_FRAME_PX + 1), 1) for side_mm, side_px in sides)
+    return world_view(robot, mm_per_px)
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,9 +235,9 @@ class PenTrace:
     """The pen trace of a run."""
 
     color: str
-    width_px: int
+    width_mm: float
     lines: tuple[tuple[Point, ...], ...]
-    """In pixels from the upper left corner of the field."""
+    """In mm from the upper left corner of the field."""
 
 
 def pen_points_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
@@ -239,17 +249,92 @@ def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> PenTrace:
     """Return the pen trace of a run, from the records of `runs.views.TelemetryView.array`."""
     pen = spec.robot.pen
     x_mm, y_mm = pen_points_mm(spec.robot, telemetry)
-    points = np.stack([x_mm, FIELD_HEIGHT_MM - y_mm], axis=1) / MM_PER_PX
+    points = np.stack([x_mm, FIELD_HEIGHT_MM - y_mm], axis=1)
     down = np.concatenate([[False], (telemetry["flags"] & FLAG_PEN_DOWN) != 0, [False]])
     starts, ends = np.flatnonzero(down[1:] & ~down[:-1]), np.flatnonzero(~down[1:] & down[:-1])
     lines = []
     for start, end in zip(starts, ends, strict=True):
         line = points[start:end]
-        moved = np.any(np.diff(np.round(line * 2), axis=0) != 0, axis=1)
+        moved = np.any(np.diff(np.round(line / MM_PER_PX * 2), axis=0) != 0, axis=1)
         # In most ticks the pen moves less than half a pixel.
         lines.append(tuple(map(tuple, line[np.concatenate([[True], moved])].tolist())))
-    width_px = max(1, round(pen.width_mm / MM_PER_PX))
-    return PenTrace(pen.color, width_px, tuple(line for line in lines if len(line) > 1))
+    return PenTrace(pen.color, pen.width_mm, tuple(line for line in lines if len(line) > 1))
+
+
+def _scaled(mat: Pixels, mm_per_px: float) -> Image:
+    """Return a mat in a scale; each pixel is the mean of those below it."""
+    from PIL import Image
+
+    sides_px = _field_px(mm_per_px)
+    width_mm, height_mm = (side_px * mm_per_px for side_px in sides_px)
+    if mm_per_px == MM_PER_PX:
+        # Means of whole pixels, which `resize` would round differently.
+        return Image.fromarray(mat).reduce(MM_PER_PX, box=(0, 0, int(width_mm), int(height_mm)))
+    return Image.fromarray(mat).resize(sides_px, Image.Resampling.BOX, (0.0, 0.0, width_mm, height_mm))
+
+
+class WorldPainter:
+    """Draws the world of a run in one scale: mat and obstacles once, pen traces as they grow, the robot at any pose.
+
+    Args:
+        spec: The specification of the run.
+        mat: Shape (height, width, 3), rows from the top.
+        view: From `world_view` or `fitting_view`.
+    """
+
+    def __init__(self, spec: RunSpec, mat: Pixels, view: Viewport) -> None:
+        from PIL import Image, ImageDraw
+
+        self._spec, self.view, self._scale = spec, view, view.mm_per_px
+        self._field = _scaled(mat, self._scale)
+        draw = ImageDraw.Draw(self._field)
+        for obstacle in spec.world.obstacles:
+            low = self._at(obstacle.x_mm, obstacle.y_mm)
+            high = self._at(obstacle.x_mm + obstacle.width_mm, obstacle.y_mm + obstacle.height_mm)
+            draw.rectangle((low[0], high[1], high[0], low[1]), fill=_OBSTACLE, outline=_OBSTACLE_EDGE)
+        col, row = view.to_px(0, FIELD_HEIGHT_MM)
+        left_px, top_px = self._corner = round(col), round(row)
+        self._around = Image.new("RGB", (view.width_px, view.height_px), _RIM)
+        right_px, low_px = left_px + self._field.width + _FRAME_PX - 1, top_px + self._field.height + _FRAME_PX - 1
+        corners = (left_px - _FRAME_PX, top_px - _FRAME_PX, right_px, low_px)
+        ImageDraw.Draw(self._around).rectangle(corners, fill=_FRAME)
+
+    def _at(self, x_mm: float, y_mm: float) -> Point:
+        return x_mm / self._scale, (FIELD_HEIGHT_MM - y_mm) / self._scale
+
+    def add_trace(self, trace: PenTrace) -> None:
+        """Add a pen trace to every later picture."""
+        from PIL import ImageDraw
+
+        draw = ImageDraw.Draw(self._field)
+        width_px = max(1, round(trace.width_mm / self._scale))
+        for line in trace.lines:
+            draw.line([(x / self._scale, y / self._scale) for x, y in line], fill=css_rgb(trace.color), width=width_px)
+
+    def picture(self, pose: Pose | None, *, rays: bool = False) -> Image:
+        """Return the world with the robot at a pose; without a robot if it is None."""
+        from PIL import Image, ImageDraw
+
+        field = self._field
+        if rays and pose is not None and self._spec.robot.ultrasonic is not None:
+            field = field.copy()
+            self._draw_rays(ImageDraw.Draw(field), pose)
+        picture = self._around.copy()
+        picture.paste(field, self._corner)
+        if pose is None:
+            return picture
+        pixels = np.array(picture)
+        draw_robot(pixels, self.view, pose, outline_of(self._spec.robot), COLORED)
+        return Image.fromarray(pixels)
+
+    def _draw_rays(self, draw: ImageDraw, pose: Pose) -> None:
+        sensor = self._spec.robot.ultrasonic
+        assert sensor is not None
+        x_mm, y_mm = world_point(pose, sensor.x_mm, sensor.y_mm)
+        for angle_deg, length_mm in rays_mm(pose, sensor, self._spec.world):
+            turn = math.radians(angle_deg)
+            end = self._at(x_mm + math.cos(turn) * length_mm, y_mm + math.sin(turn) * length_mm)
+            draw.line([self._at(x_mm, y_mm), end], fill=_RAY)
 
 
 def world_picture(
@@ -266,31 +351,16 @@ def world_picture(
     Returns:
         The picture, in the size of `world_view`.
     """
-    from PIL import Image, ImageDraw
-
-    # The field is no multiple of three mm wide: the rest of the last column is left out.
-    field = Image.fromarray(mat).reduce(MM_PER_PX, box=(0, 0, _FIELD_PX[0] * MM_PER_PX, _FIELD_PX[1] * MM_PER_PX))
-    draw = ImageDraw.Draw(field)
-    for box in spec.world.obstacles:
-        low = _at(box.x_mm, box.y_mm)
-        high = _at(box.x_mm + box.width_mm, box.y_mm + box.height_mm)
-        draw.rectangle((low[0], high[1], high[0], low[1]), fill=_OBSTACLE, outline=_OBSTACLE_EDGE)
+    painter = WorldPainter(spec, mat, world_view(spec.robot))
     for trace in traces:
-        for line in trace.lines:
-            draw.line(line, fill=css_rgb(trace.color), width=trace.width_px)
-    pose = pose or spec.world.start
-    if rays and spec.robot.ultrasonic is not None:
-        _draw_rays(draw, spec, pose)
-    view = world_view(spec.robot)
-    picture = Image.new("RGB", (view.width_px, view.height_px), _RIM)
-    left_px, top_px = (round(at) for at in view.to_px(0, FIELD_HEIGHT_MM))
-    corners = (left_px - _FRAME_PX, top_px - _FRAME_PX,
-               left_px + _FIELD_PX[0] + _FRAME_PX - 1, top_px + _FIELD_PX[1] + _FRAME_PX - 1)  # fmt: skip
-    ImageDraw.Draw(picture).rectangle(corners, fill=_FRAME)
-    picture.paste(field, (left_px, top_px))
-    pixels = np.array(picture)
-    draw_robot(pixels, view, pose, outline_of(spec.robot), COLORED)
-    return Image.fromarray(pixels)
+        painter.add_trace(trace)
+    return painter.picture(pose or spec.world.start, rays=rays)
+
+
+def sound_pose(record: TickRecord | None) -> Pose | None:
+    """Return the pose of a record; None without one, and for a damaged record, which may have no valid pose."""
+    valid = record is not None and math.isfinite(record.x_mm + record.y_mm + record.heading_deg)
+    return record.pose if record is not None and valid else None
 
 
 def world_at_end(run: StoredRun) -> Image:
@@ -303,19 +373,7 @@ def world_at_end(run: StoredRun) -> Image:
     from tuisim.runs.run_folder import mat_files
 
     last, trace = run.telemetry.last(), pen_trace(run.spec, run.telemetry.array())
-    # A damaged record may have no valid pose: the robot is then omitted.
-    pose = last.pose if last and math.isfinite(last.x_mm + last.y_mm + last.heading_deg) else None
-    return world_picture(run.spec, mat_pixels(mat_files(run)), pose, (trace,))
-
-
-def _draw_rays(draw: ImageDraw, spec: RunSpec, pose: Pose) -> None:
-    sensor = spec.robot.ultrasonic
-    assert sensor is not None
-    x_mm, y_mm = world_point(pose, sensor.x_mm, sensor.y_mm)
-    for angle_deg, length_mm in rays_mm(pose, sensor, spec.world):
-        turn = math.radians(angle_deg)
-        end = _at(x_mm + math.cos(turn) * length_mm, y_mm + math.sin(turn) * length_mm)
-        draw.line([_at(x_mm, y_mm), end], fill=_RAY)
+    return world_picture(run.spec, mat_pixels(mat_files(run)), sound_pose(last), (trace,))
 
 
 def arrays_picture(arrays: Sequence[tuple[ColorSensorSpec, bytes]]) -> Image:

@@ -13,6 +13,7 @@ from tempfile import TemporaryDirectory
 
 from tuisim.commands.echo import Progress, echo, echo_error, echo_json, echo_json_head, echo_lines, table, tell
 from tuisim.commands.exit_status import describe, last_state
+from tuisim.commands.movies import movie, picture
 from tuisim.config.command_line import AS_JSON, Group, Value, argument, command, option
 from tuisim.errors import ConfigError, LogError, counted
 from tuisim.logs.export import EXPORTERS, LISTED, check_targets, export_samples, export_telemetry
@@ -269,9 +270,9 @@ def export(words: Sequence[str], telemetry: str | None) -> int:
 
 runs = Group.of(
     "runs",
-    (list_runs, show, export, rerun_runs, compact, rm),
+    (list_runs, show, export, movie, picture, rerun_runs, compact, rm),
     default="list",
-    help="""List, show, export or remove stored runs.
+    help="""List, show, export, draw or remove stored runs.
 
     A RUN is given by its number, its id or the start of its id, its folder's path, or `last`.
     """,

@@ -5,17 +5,16 @@ from __future__ import annotations
 import html
 import io
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-import numpy as np
 from IPython.core.getipython import get_ipython
 from IPython.display import DisplayHandle, display
 
 from tuisim.charts.files import image_of
-from tuisim.charts.layout import Chart, Line, laid_out
-from tuisim.charts.traces import Pyramid, Trace, min_max
+from tuisim.charts.layout import laid_out
+from tuisim.charts.sample_chart import sample_chart
 from tuisim.charts.world_image import PenTrace, arrays_picture, world_picture
 from tuisim.config.mat_cache import FieldFiles, mat_pixels, open_field
 from tuisim.config.options import Settings
@@ -135,22 +134,6 @@ CHART_SIZE = (760, 300)
 """Width and height of the chart in pixels."""
 
 
-def chart_of(samples: Iterable[Sample], columns: int = CHART_SIZE[0]) -> Chart:
-    """Return the samples over simulated time as `tuisim log plot` draws them, one line per name."""
-    points: dict[str, list[tuple[float, float]]] = {}
-    for sample in samples:
-        points.setdefault(sample.name, []).append((sample.time_s, sample.value))
-    series = {name: Pyramid(*np.array(rows).T) for name, rows in points.items()}
-    ends = [found.times_s[[0, -1]] for found in series.values() if len(found.times_s)]
-    low, high = (min(end[0] for end in ends), max(end[1] for end in ends)) if ends else (0.0, 1.0)
-    limits = (float(low), float(high)) if high > low else (float(low) - 0.5, float(low) + 0.5)
-    lines = tuple(
-        Line(name, *min_max(found.times_s, found.values, limits, columns), number, Trace(name, number).other_scale)
-        for number, (name, found) in enumerate(series.items())
-    )
-    return Chart("", lines, limits, "time (s)")
-
-
 class Stage:
     """The panels of one cell, each a display that is updated in place."""
 
@@ -187,7 +170,7 @@ class Stage:
             arrays = arrays_at(spec, scene.last, spec.world.noise, open_field(scene.files))
             self._put("arrays", picture_bundle(arrays_picture(arrays), "sensor arrays"))
         if "chart" in on:
-            drawing = laid_out(chart_of(scene.samples), *CHART_SIZE, titled=False)
+            drawing = laid_out(sample_chart(scene.samples, CHART_SIZE[0]), *CHART_SIZE, titled=False)
             self._put("chart", picture_bundle(image_of(drawing), "chart"))
         if "output" in on and scene.printed is not None:
             self._put("output", {"text/plain": "\n".join(scene.printed) or "nothing was printed"})

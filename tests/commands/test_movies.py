@@ -1,0 +1,169 @@
+"""`tuisim runs movie` and `picture`: what is in the files, and bad input."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.conftest import Command
+from tests.running import told
+from tests.runs.run_recorder import PROGRAM, Recorder
+from tuisim.charts.world_image import COLORED, Viewport, fitting_view
+from tuisim.core.geometry import Pose
+from tuisim.core.profile import ROBOLAB
+from tuisim.core.simulation import Simulation
+from tuisim.core.spec import PenSpec, RobotSpec, RunSpec, WorldSpec
+from tuisim.movies import files
+from tuisim.movies.clip import END_MS
+from tuisim.runs.records import TELEMETRY_FILE, OutputWriter, TelemetryWriter
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
+
+ROBOT = RobotSpec(pen=PenSpec(down=True, color="#ff00ff"))
+START = Pose(600, 570, 0)
+
+
+@pytest.fixture(autouse=True)
+def run(home: Path) -> StoredRun:
+    """A run of one second that drives a line, and prints two values."""
+    store, spec = RunStore(), RunSpec(ROBOT, WorldSpec("Grey_bands", start=START), ROBOLAB)
+    new = store.new_run(PROGRAM, spec)
+    telemetry = TelemetryWriter(new.folder)
+    recorder = Recorder(store, new, spec, telemetry, OutputWriter(new.folder), Simulation(spec, telemetry))
+    for text in ("Colour: 100.0", "Colour: 50.0"):
+        recorder.print(text)
+        recorder.drive(1000, 1000, 50)
+    return recorder.end()
+
+
+def frames_of(path: Path) -> tuple[list[Any], list[int]]:
+    """The frames of an animated image as pixels, and how long each is shown."""
+    frames, durations = [], []
+    with Image.open(path) as image:
+        for number in range(getattr(image, "n_frames", 1)):
+            image.seek(number)
+            image.load()
+            frames.append(np.asarray(image.convert("RGB")))
+            durations.append(int(image.info["duration"]))
+    return frames, durations
+
+
+def shown_at(frame: Any, color: tuple[int, int, int]) -> tuple[float, float]:
+    """The mean column and row of a colour."""
+    rows, columns = np.nonzero((frame == color).all(axis=2))
+    return float(columns.mean()), float(rows.mean())
+
+
+def view(width_px: int, height_px: int) -> Viewport:
+    return fitting_view(ROBOT, width_px, height_px)
+
+
+@pytest.mark.parametrize("suffix", [".gif", ".webp", ".apng"])
+def test_a_movie_follows_the_robot(here: Command, run: StoredRun, tmp_path: Path, suffix: str) -> None:
+    done = here("runs", "movie", "last", "--out", f"a{suffix}", "--fps", "10")
+    assert (done.returncode, told(done)) == (0, [])
+    assert done.stdout.startswith(f"a{suffix}: 11 frames, 2.1 s, ")
+    frames, durations = frames_of(tmp_path / f"a{suffix}")
+    assert (len(frames), sum(durations)) == (11, 11 * 100 + END_MS)
+    last = run.telemetry.last()
+    assert last is not None
+    mm_per_px = view(584, 10_000).mm_per_px
+    (before, _), (after, _) = (shown_at(frame, COLORED.body) for frame in (frames[0], frames[-1]))
+    assert (after - before) * mm_per_px == pytest.approx(last.x_mm - START.x_mm, abs=2 * mm_per_px)
+
+
+def test_colours_of_the_mat_are_exact_in_a_gif(here: Command, tmp_path: Path) -> None:
+    here("runs", "movie", "last", "--out", "a.gif", "--fps", "5", "--panels", "world")
+    for frame in frames_of(tmp_path / "a.gif")[0]:
+        for grey in (255, 220, 211, 128):
+            assert (frame == grey).all(axis=2).sum() > 1000
+
+
+def test_a_part_at_another_speed(here: Command, tmp_path: Path) -> None:
+    words = ("--from", "0.8", "--to", "1", "--speed", "2", "--fps", "20", "--panels", "world", "--size", "320x200")
+    here("runs", "movie", "1", "--out", "a.apng", *words)
+    frames, durations = frames_of(tmp_path / "a.apng")
+    assert (len(frames), sum(durations)) == (3, 150 + END_MS)
+    assert frames[0].shape == (200, 320, 3)
+    # The pen was down before.
+    assert [(frame == (255, 0, 255)).all(axis=2).any() for frame in frames] == [True] * 3
+
+
+@pytest.mark.parametrize(("at", "value"), [("0.2", "100"), ("0.7", "50")])
+def test_a_picture_shows_an_instant(here: Command, tmp_path: Path, at: str, value: str) -> None:
+    here("runs", "picture", "last", "--at", at, "--out", "a.svg", "--panels", "world,chart,arrays")
+    here("runs", "picture", "last", "--at", at, "--out", "a.png", "--panels", "world,chart,arrays")
+    root = ElementTree.parse(tmp_path / "a.svg").getroot()
+    texts = ["".join(node.itertext()) for node in root.iter("{http://www.w3.org/2000/svg}text")]
+    assert texts[:2] == [f"{float(at):.2f} s", f"Colour: {value}"]
+    assert {"left", "right", "time (s)"} <= set(texts)
+    with Image.open(tmp_path / "a.png") as picture:
+        assert (str(picture.width), str(picture.height)) == (root.attrib["width"], root.attrib["height"])
+
+
+def test_without_a_file_it_is_named_after_the_program(here: Command, tmp_path: Path) -> None:
+    assert here("runs", "picture", "last").stdout == "log.png\n"
+    assert (tmp_path / "log.png").is_file()
+
+
+# Words after `runs`, and what the line on stderr must say.
+BAD = {
+    "unknown format": ("movie last --out a.mp4", "unknown format '.mp4' (a movie ends in .gif,"),
+    "unknown format of a picture": ("picture last --out a.gif", "unknown format '.gif' (a picture ends in .png, .svg)"),
+    "no folder": ("movie last --out no/a.gif", "cannot write no/a.gif: there is no folder no"),
+    "folder": ("movie last --out folder.gif", "cannot write folder.gif: it is a folder"),
+    "no run": ("movie", "RUN is missing (see `tuisim runs movie --help`)"),
+    "unknown run": ("movie 99", "no run '99'"),
+    "nothing after the end": ("movie last --from 2", "nothing to show from 2 s to 1 s (run 1 lasts from 0 s to 1 s)"),
+    "range backwards": ("movie last --from 0.5 --to 0.2", "nothing to show from 0.5 s to 0.2 s"),
+    "empty range": ("movie last --from 0.5 --to 0.5", "nothing to show from 0.5 s to 0.5 s"),
+    "no number": ("movie last --from nan", "nothing to show from nan s"),
+    "instant after the end": ("picture last --at 1.5", "--at: must be from 0 to 1, got 1.5"),
+    "speed": ("movie last --speed 0", "--speed: must be from 0.01 to 1000, got 0"),
+    "frames a second": ("movie last --fps 60", "--fps: must be from 1 to 50, got 60"),
+    "panel": ("movie last --panels wrld", "--panels: no such panel 'wrld' (did you mean world?)"),
+    "no panel": ("movie last --panels ,", "--panels: no panel given (some of world, chart, arrays)"),
+    "size": ("movie last --size 20x20", "--size: no such size '20x20' (width and height, 160x120 to 3840x2160)"),
+    "no room": ("movie last --size 160x120", "--size: 160x120 is too small (no room for the panel world)"),
+    "too large": ("movie last --speed 0.01 --fps 50", "too large: 5,001 frames of 600x545, at most 1,529"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_input(here: Command, tmp_path: Path, name: str) -> None:
+    words, says = BAD[name]
+    (tmp_path / "folder.gif").mkdir()
+    before = set(tmp_path.iterdir())
+    done = here("runs", *words.split())
+    (line,) = told(done)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert says in line
+    assert set(tmp_path.iterdir()) == before
+
+
+def test_a_run_without_ticks(here: Command, run: StoredRun, tmp_path: Path) -> None:
+    (run.folder / TELEMETRY_FILE).unlink()
+    done = here("runs", "movie", "last")
+    assert (done.returncode, [*tmp_path.glob("*.gif")]) == (2, [])
+    assert "run 1 has no recorded tick" in done.stderr
+
+
+def test_a_run_that_has_not_ended(here: Command, run: StoredRun) -> None:
+    RunStore().new_run(PROGRAM, run.spec)
+    done = here("runs", "movie", "last")
+    assert (done.returncode, "run 2 is still running (wait until it ends, or stop it)" in done.stderr) == (2, True)
+
+
+def test_ctrl_c_leaves_nothing(here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(files.FramePainter, "image", interrupted)
+    before = set(tmp_path.iterdir())
+    assert here("runs", "movie", "last").returncode == 130
+    assert set(tmp_path.iterdir()) == before

@@ -1,0 +1,33 @@
+"""The chart of samples over simulated time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from tuisim.charts.axes import Limits
+from tuisim.charts.layout import Chart, Line
+from tuisim.charts.traces import Pyramid, Trace, min_max
+from tuisim.runs.samples import Sample
+
+
+def sample_chart(samples: Iterable[Sample], columns: int, limits: Limits | None = None) -> Chart:
+    """Return the samples over simulated time as `tuisim log plot` draws them, one line per name.
+
+    Args:
+        columns: Width in pixels; what they could not tell apart is left out.
+        limits: Range of time; None for that of the samples.
+    """
+    points: dict[str, list[tuple[float, float]]] = {}
+    for sample in samples:
+        points.setdefault(sample.name, []).append((sample.time_s, sample.value))
+    series = {name: Pyramid(*np.array(rows).T) for name, rows in points.items()}
+    ends = [found.times_s[[0, -1]] for found in series.values() if len(found.times_s)]
+    low, high = (min(end[0] for end in ends), max(end[1] for end in ends)) if ends else (0.0, 1.0)
+    limits = limits or ((float(low), float(high)) if high > low else (float(low) - 0.5, float(low) + 0.5))
+    lines = tuple(
+        Line(name, *min_max(found.times_s, found.values, limits, columns), number, Trace(name, number).other_scale)
+        for number, (name, found) in enumerate(series.items())
+    )
+    return Chart("", lines, limits, "time (s)")

@@ -1,0 +1,134 @@
+"""`tuisim runs movie` and `picture`: a recorded run as an animation, and one instant of it as a picture."""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tuisim.commands.echo import Progress, echo, echo_error, tell
+from tuisim.config.command_line import Value, argument, command, option
+from tuisim.errors import ConfigError, nearest
+from tuisim.runs.store import RunStore
+
+if TYPE_CHECKING:
+    from tuisim.movies.clip import Panel, Recorded
+    from tuisim.runs.run_folder import StoredRun
+
+_SIZE = re.compile(r"(\d{1,6})[x×](\d{1,6})")
+_PANELS = "world, chart, arrays"
+_DEFAULT_PANELS = "world,chart"
+
+_run = argument("word", "RUN", lambda: ("last",))
+_panels = option(
+    "--panels", default=_DEFAULT_PANELS, metavar="NAMES", help=f"What is shown: some of {_PANELS} ({_DEFAULT_PANELS})."
+)
+_size = option("--size", default="", metavar="WxH", help="Width and height in pixels (600 wide).")
+
+
+@command(
+    _run,
+    option("--out", metavar="FILE", type=Value(), help="The file: .gif, .webp or .apng (PROGRAM.gif)."),
+    option("--from", "start_s", type=float, metavar="S", help="Start, in simulated seconds."),
+    option("--to", "stop_s", type=float, metavar="S", help="End, in simulated seconds."),
+    option("--speed", type=float, default=1.0, metavar="N", help="Multiple of real time (1)."),
+    option("--fps", type=float, default=20.0, metavar="N", help="Frames per second, 1 to 50 (20)."),
+    _panels,
+    _size,
+)
+def movie(
+    word: str,
+    out: str | None,
+    start_s: float | None,
+    stop_s: float | None,
+    speed: float,
+    fps: float,
+    panels: str,
+    size: str,
+) -> int:
+    """Save a run as a movie: the world, the chart, the sensor arrays, with time and values."""
+    from tuisim.movies.files import MOVIE_FORMATS, Clip, check_target, save_movie
+
+    run = RunStore().load_run(word)
+    path = Path(out or _default_name(run, ".gif"))
+    check_target(path, "movie", MOVIE_FORMATS)
+    _check_number(speed, 0.01, 1000, "--speed")
+    _check_number(fps, 1, 50, "--fps")
+    shown, sides = _panels_of(panels), _size_of(size)
+    with Progress(f"drawing {path.name}"):
+        recorded = _recorded(run)
+        clip = Clip(recorded, shown, recorded.span_s(start_s, stop_s), speed, fps, sides)
+        size_bytes = save_movie(clip, path, partial(tell, f"drawing {path.name}"))
+    shots = clip.shots
+    lasts_s = sum(shot.duration_ms for shot in shots) / 1000
+    echo(f"{path}: {len(shots)} frames, {lasts_s:.1f} s, {size_bytes:,} bytes")
+    return 0
+
+
+@command(
+    _run,
+    option("--out", metavar="FILE", type=Value(), help="The file: .png or .svg (PROGRAM.png)."),
+    option("--at", "time_s", type=float, metavar="S", help="Simulated time in seconds (the end)."),
+    _panels,
+    _size,
+)
+def picture(word: str, out: str | None, time_s: float | None, panels: str, size: str) -> int:
+    """Save one instant of a run as a picture: the world, the chart, the sensor arrays."""
+    from tuisim.movies.files import PICTURE_FORMATS, check_target, save_picture
+
+    run = RunStore().load_run(word)
+    path = Path(out or _default_name(run, ".png"))
+    check_target(path, "picture", PICTURE_FORMATS)
+    shown, sides = _panels_of(panels), _size_of(size)
+    with Progress(f"drawing {path.name}"):
+        recorded = _recorded(run)
+        at_s = recorded.end_s if time_s is None else time_s
+        _check_number(at_s, 0, recorded.end_s, "--at")
+        save_picture(recorded, shown, at_s, path, sides)
+    echo(str(path))
+    return 0
+
+
+def _default_name(run: StoredRun, suffix: str) -> str:
+    return (Path(run.program.name).stem.strip("-.") or "run") + suffix
+
+
+def _recorded(run: StoredRun) -> Recorded:
+    from tuisim.movies.clip import Recorded
+
+    for note in run.notes:
+        echo_error(f"note: {note}")
+    return Recorded(run)
+
+
+def _check_number(value: float, low: float, high: float, key: str) -> None:
+    # Also false for NaN.
+    if not (math.isfinite(value) and low <= value <= high):
+        raise ConfigError(f"must be from {low:g} to {high:g}, got {value:g}", key=key)
+
+
+def _panels_of(text: str) -> tuple[Panel, ...]:
+    from tuisim.movies.clip import Panel
+
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    for name in names:
+        if name not in list(Panel):
+            raise ConfigError(f"no such panel {name!r}", nearest(name, Panel), key="--panels")
+    if not names:
+        raise ConfigError("no panel given", f"some of {_PANELS}", key="--panels")
+    return tuple(panel for panel in Panel if panel in names)
+
+
+def _size_of(text: str) -> tuple[int, int] | None:
+    from tuisim.movies.painter import LEAST, MOST
+
+    if not text:
+        return None
+    match = _SIZE.fullmatch(text)
+    size = (int(match[1]), int(match[2])) if match else (0, 0)
+    if not all(low <= side <= high for low, side, high in zip(LEAST, size, MOST, strict=True)):
+        allowed = " to ".join(f"{width}x{height}" for width, height in (LEAST, MOST))
+        raise ConfigError(f"no such size {text!r}", f"width and height, {allowed}", key="--size")
+    return size

@@ -1,0 +1,172 @@
+"""Files of movies and pictures; the suffix selects the format."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tuisim.charts.files import svg_of, write_whole
+from tuisim.errors import ConfigError, ExportError
+from tuisim.logs.export import check_place
+from tuisim.movies import image_files
+from tuisim.movies.clip import Panel, Recorded, Shot, shot_count, shots_of
+from tuisim.movies.painter import FramePainter, Size
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+Watch = Callable[[int, int], None]
+"""Called with the number of frames drawn and of all frames."""
+
+MOST_BYTES = 500_000_000
+"""Frames of a movie in memory."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clip:
+    """A movie to be written."""
+
+    recorded: Recorded
+    panels: tuple[Panel, ...]
+    span_s: tuple[float, float]
+    """Range of simulated time."""
+    speed: float = 1.0
+    """Simulated seconds per second."""
+    fps: float = 20.0
+    size: Size | None = None
+    """In the unit of the format; None for the size that fits the panels."""
+
+    @property
+    def shots(self) -> tuple[Shot, ...]:
+        """Its frames."""
+        return shots_of(*self.span_s, self.speed, self.fps)
+
+
+@dataclass(frozen=True, slots=True)
+class MovieFormat:
+    """One line of `MOVIE_FORMATS`."""
+
+    write: Callable[[Clip, Watch], bytes]
+    px_bytes: int
+    """Bytes of a pixel of a frame in memory."""
+
+
+class _Frames:
+    """The frames of a clip as images."""
+
+    def __init__(self, clip: Clip, watch: Watch) -> None:
+        self._clip, self._watch, self._shots = clip, watch, clip.shots
+        self._painter = self.painter()
+        self.durations_ms = [shot.duration_ms for shot in self._shots]
+
+    def painter(self) -> FramePainter:
+        return FramePainter(self._clip.recorded, self._clip.panels, self._clip.span_s, self._clip.size)
+
+    def draw(self, at: int) -> Image:
+        """Return the next frame."""
+        self._watch(at, len(self._shots))
+        return self._painter.image(self._clip.recorded.moment(self._shots[at].time_s))
+
+    def some(self, count: int) -> list[Image]:
+        """Return some frames, evenly spread from the first to the last."""
+        painter, last = self.painter(), len(self._shots) - 1
+        numbers = sorted({round(at * last / (count - 1)) for at in range(count)})
+        return [painter.image(self._clip.recorded.moment(self._shots[number].time_s)) for number in numbers]
+
+
+def _gif(clip: Clip, watch: Watch) -> bytes:
+    frames = _Frames(clip, watch)
+    return image_files.gif(frames.draw, frames.some(image_files.PALETTE_FRAMES), frames.durations_ms)
+
+
+def _webp(clip: Clip, watch: Watch) -> bytes:
+    frames = _Frames(clip, watch)
+    return image_files.webp(frames.draw, frames.durations_ms)
+
+
+def _apng(clip: Clip, watch: Watch) -> bytes:
+    frames = _Frames(clip, watch)
+    return image_files.apng(frames.draw, frames.durations_ms)
+
+
+MOVIE_FORMATS: Mapping[str, MovieFormat] = {
+    ".gif": MovieFormat(_gif, 1),
+    ".webp": MovieFormat(_webp, 3),
+    ".apng": MovieFormat(_apng, 3),
+}
+"""Every format of a movie by the suffix of its files. To add one: write its function and a line here."""
+
+
+def _png(painter: FramePainter, recorded: Recorded, time_s: float) -> bytes:
+    content = io.BytesIO()
+    painter.image(recorded.moment(time_s)).save(content, "png")
+    return content.getvalue()
+
+
+def _svg(painter: FramePainter, recorded: Recorded, time_s: float) -> bytes:
+    return svg_of(painter.drawing(recorded.moment(time_s))).encode()
+
+
+PICTURE_FORMATS: Mapping[str, Callable[[FramePainter, Recorded, float], bytes]] = {".png": _png, ".svg": _svg}
+"""Every format of a picture by the suffix of its files. To add one: write its function and a line here."""
+
+
+def check_target(path: Path, what: str, formats: Mapping[str, object]) -> None:
+    """Check that a movie or a picture can be written to a path.
+
+    Args:
+        what: `movie` or `picture`.
+        formats: Its formats by suffix.
+
+    Raises:
+        ExportError: unknown suffix, or it cannot be written.
+    """
+    if path.suffix.lower() not in formats:
+        allowed = ", ".join(formats)
+        raise ExportError(f"cannot write {path}: unknown format {path.suffix!r}", f"a {what} ends in {allowed}")
+    check_place(path)
+
+
+def save_movie(clip: Clip, path: Path, watch: Watch = lambda done, total: None) -> int:
+    """Write a movie, replacing an existing file; return its size in bytes.
+
+    Raises:
+        ConfigError: the movie is too large, or its panels do not fit.
+        ExportError: it cannot be written; an existing file is unchanged.
+        LogError: the mat no longer exists.
+    """
+    check_target(path, "movie", MOVIE_FORMATS)
+    kind = MOVIE_FORMATS[path.suffix.lower()]
+    _check_size(clip, kind)
+    content = kind.write(clip, watch)
+    write_whole(path, content)
+    return len(content)
+
+
+def _check_size(clip: Clip, kind: MovieFormat) -> None:
+    width, height = FramePainter(clip.recorded, clip.panels, clip.span_s, clip.size).size
+    most = MOST_BYTES // (kind.px_bytes * width * height)
+    count = shot_count(*clip.span_s, clip.speed, clip.fps)
+    if count > most:
+        raise ConfigError(
+            f"too large: {count:,} frames of {width}x{height}, at most {most:,}",
+            "a higher --speed, a lower --fps, a smaller --size, or a shorter range between --from and --to",
+        )
+
+
+def save_picture(
+    recorded: Recorded, panels: Sequence[Panel], time_s: float, path: Path, size: Size | None = None
+) -> None:
+    """Write the picture of a run at an instant, replacing an existing file.
+
+    Raises:
+        ConfigError: the panels do not fit the size.
+        ExportError: it cannot be written; an existing file is unchanged.
+        LogError: the mat no longer exists.
+    """
+    check_target(path, "picture", PICTURE_FORMATS)
+    painter = FramePainter(recorded, panels, recorded.span_s(None, None), size)
+    write_whole(path, PICTURE_FORMATS[path.suffix.lower()](painter, recorded, time_s))

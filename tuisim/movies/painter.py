@@ -1,0 +1,216 @@
+"""One frame of a movie in pixels: the world, the chart, the sensor arrays, and a line with time and values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tuisim.charts.files import image_of
+from tuisim.charts.layout import (
+    LETTER_PX,
+    LINE_PX,
+    PAD,
+    Chart,
+    Drawing,
+    Raster,
+    Shape,
+    Words,
+    drawn_until,
+    laid_out,
+    moved,
+    shortened,
+)
+from tuisim.charts.sample_chart import sample_chart
+from tuisim.charts.world_image import WorldPainter, arrays_picture, fitting_view, pen_trace, sound_pose
+from tuisim.config.mat_cache import mat_pixels
+from tuisim.core.profile import NS_PER_S
+from tuisim.core.sensors.color import pixel_array
+from tuisim.errors import ConfigError, printable
+from tuisim.movies.clip import Moment, Panel, Recorded
+from tuisim.runs.recorded_run import Recording
+from tuisim.runs.run_folder import mat_files, open_mat
+from tuisim.runs.samples import samples_of
+from tuisim.runs.views import instant_of
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+Size = tuple[int, int]
+
+WIDTH_PX = 600
+"""Default width."""
+LEAST, MOST = (160, 120), (3840, 2160)
+"""Limits of a size."""
+
+_STRIP_PX = 190
+"""Default height of chart and arrays below the world."""
+_STRIP_SHARE = 0.34
+"""Their share of a given height."""
+_CAPTION_PX = LINE_PX + 8
+_LABEL_PX = LINE_PX
+_ARRAYS_SHARE = 0.4
+"""Largest share of the width that the arrays take beside a chart."""
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A part of the picture, in pixels."""
+
+    left: int
+    top: int
+    width: int
+    height: int
+
+
+class FramePainter:
+    """Draws a recorded run at one instant after the other.
+
+    Args:
+        recorded: The run.
+        panels: What is shown, at least one.
+        span_s: Range of simulated time of the chart.
+        size: Width and height in pixels; None for the size that fits the panels.
+
+    Raises:
+        ConfigError: the panels do not fit the size.
+        LogError: the mat no longer exists.
+    """
+
+    def __init__(
+        self, recorded: Recorded, panels: Sequence[Panel], span_s: tuple[float, float], size: Size | None = None
+    ) -> None:
+        run = recorded.run
+        self._recorded, self._spec, self._panels = recorded, run.spec, panels
+        self.size = size or self._fitting_size()
+        boxes = self._boxes = _boxes(panels, self.size, len(run.spec.robot.color_sensors))
+        if Panel.WORLD in boxes:
+            box = boxes[Panel.WORLD]
+            view = fitting_view(run.spec.robot, box.width, box.height)
+            self._world = WorldPainter(run.spec, mat_pixels(mat_files(run)), view)
+            self._traced = 0
+        if Panel.CHART in boxes:
+            box = boxes[Panel.CHART]
+            self._chart = laid_out(_chart(recorded, box.width, span_s), box.width, box.height, titled=False)
+        if Panel.ARRAYS in boxes:
+            self._mat, self._recording = open_mat(run), Recording(run)
+
+    def _fitting_size(self) -> Size:
+        height_px = _CAPTION_PX
+        if Panel.WORLD in self._panels:
+            height_px += fitting_view(self._spec.robot, WIDTH_PX - 2 * PAD, MOST[1]).height_px
+        if Panel.CHART in self._panels or Panel.ARRAYS in self._panels:
+            height_px += _STRIP_PX
+        return WIDTH_PX, height_px + PAD
+
+    def image(self, moment: Moment) -> Image:
+        """Return the frame as a Pillow image. The instants of successive calls must not decrease."""
+        from PIL import Image
+
+        image = Image.new("RGB", self.size, "white")
+        for box, part in self._parts(moment):
+            image.paste(image_of(part) if isinstance(part, Drawing) else part, (box.left, box.top))
+        return image
+
+    def drawing(self, moment: Moment) -> Drawing:
+        """Return the frame as a drawing, with text and curves as shapes."""
+        shapes: list[Shape] = []
+        for box, part in self._parts(moment):
+            if isinstance(part, Drawing):
+                shapes += moved(part, box.left, box.top)
+            else:
+                shapes.append(Raster(box.left, box.top, part.width, part.height, np.asarray(part)))
+        return Drawing(printable(self._recorded.run.program.name), *self.size, tuple(shapes))
+
+    def _parts(self, moment: Moment) -> Iterable[tuple[Box, Drawing | Image]]:
+        """Yield everything that is drawn, with its place."""
+        caption = Box(0, 0, self.size[0], _CAPTION_PX)
+        yield caption, _caption(moment, caption)
+        if box := self._boxes.get(Panel.WORLD):
+            picture = self._world_at(moment)
+            yield _centred(box, picture.size), picture
+        if box := self._boxes.get(Panel.ARRAYS):
+            yield from self._arrays_at(moment, box)
+        if box := self._boxes.get(Panel.CHART):
+            yield box, drawn_until(self._chart, moment.time_s)
+
+    def _world_at(self, moment: Moment) -> Image:
+        # From the last record that was drawn, so that the line goes on.
+        new = self._recorded.telemetry[max(self._traced - 1, 0) : moment.tick + 1]
+        self._world.add_trace(pen_trace(self._spec, new))
+        self._traced = moment.tick + 1
+        return self._world.picture(sound_pose(moment.record))
+
+    def _arrays_at(self, moment: Moment, box: Box) -> Iterable[tuple[Box, Drawing | Image]]:
+        from PIL import Image
+
+        instant = instant_of(moment.record, self._spec, self._recorded.run.noise_at(moment.record))
+        field = self._recording.field_at(moment.tick, self._mat)
+        sensors = self._spec.robot.color_sensors
+        each = box.width // max(len(sensors), 1)
+        side = min(each - PAD, box.height - _LABEL_PX)
+        for at, sensor in enumerate(sensors):
+            place = Box(box.left + at * each + (each - side) // 2, box.top + _LABEL_PX, side, side)
+            picture = arrays_picture([(sensor, pixel_array(sensor, instant, field))])
+            # Without the gap to a neighbour.
+            picture = picture.crop((0, 0, picture.height, picture.height))
+            yield place, picture.resize((side, side), Image.Resampling.NEAREST)
+            label = shortened(sensor.name, side)
+            words = Words(side / 2, _LABEL_PX / 2, label, "middle")
+            yield Box(place.left, box.top, side, _LABEL_PX), Drawing(label, side, _LABEL_PX, (words,))
+
+
+def _boxes(panels: Sequence[Panel], size: Size, sensors: int) -> dict[Panel, Box]:
+    """Return the place of each panel: the world above, arrays and chart below.
+
+    Raises:
+        ConfigError: one is too small.
+    """
+    width, height = size[0] - 2 * PAD, size[1] - _CAPTION_PX - PAD
+    below = [panel for panel in (Panel.ARRAYS, Panel.CHART) if panel in panels]
+    strip = 0
+    if below:
+        strip = height
+        if Panel.WORLD in panels:
+            strip = min(max(round(size[1] * _STRIP_SHARE), 100), max(_STRIP_PX, round(size[1] * _STRIP_SHARE)))
+    boxes: dict[Panel, Box] = {}
+    if Panel.WORLD in panels:
+        boxes[Panel.WORLD] = Box(PAD, _CAPTION_PX, width, height - strip)
+    left, top = PAD, size[1] - PAD - strip
+    if Panel.ARRAYS in below:
+        wanted = sensors * (strip - _LABEL_PX + PAD)
+        taken = min(wanted, round(width * _ARRAYS_SHARE)) if Panel.CHART in below else width
+        boxes[Panel.ARRAYS] = Box(left, top, taken, strip)
+        left, width = left + taken, width - taken
+    if Panel.CHART in below:
+        boxes[Panel.CHART] = Box(left, top, width, strip)
+    for panel, box in boxes.items():
+        if box.width < 60 or box.height < 50:
+            raise ConfigError(f"{size[0]}x{size[1]} is too small", f"no room for the panel {panel}", key="--size")
+    return boxes
+
+
+def _centred(box: Box, size: Size) -> Box:
+    return Box(box.left + (box.width - size[0]) // 2, box.top + (box.height - size[1]) // 2, *size)
+
+
+def _chart(recorded: Recorded, columns: int, span_s: tuple[float, float]) -> Chart:
+    """Return the chart of the printed samples, at the times at which they were printed."""
+    samples = (replace(sample, time_s=sample.time_ns / NS_PER_S) for sample in samples_of(recorded.run.output.rows()))
+    low, high = span_s
+    return sample_chart(samples, columns, span_s if high > low else (low - 0.5, low + 0.5))
+
+
+def _caption(moment: Moment, box: Box) -> Drawing:
+    """Return a line with the time and as many values as fit."""
+    words: list[Shape] = []
+    x = float(PAD)
+    for at, text in enumerate([f"{moment.time_s:.2f} s", *(f"{name}: {value:.5g}" for name, value in moment.values)]):
+        text = printable(text)
+        if at and x + len(text) * LETTER_PX > box.width - PAD:
+            break
+        words.append(Words(x, box.height / 2, text, strong=not at))
+        x += len(text) * LETTER_PX + 2 * PAD
+    return Drawing("", box.width, box.height, tuple(words))
