@@ -39,6 +39,7 @@ class Entry:
 
 COMMANDS: Mapping[str, Entry] = {
     "open": Entry("commands.app:open_app", "Open the app (the default command)"),
+    "serve": Entry("commands.serve:serve", "Open the app in a browser"),
     "run": Entry("commands.run:run", "Run programs without the app"),
     "batch": Entry("commands.batch:batch", "Run programs with many seeds and settings; one row per run"),
     "runs": Entry("commands.runs:runs", "List, show, export, draw or remove stored runs"),

@@ -1,11 +1,12 @@
-"""`tuisim open` and `tuisim analyse`: the commands that start the app."""
+"""`tuisim open` and `tuisim analyse`: the commands that start the app; what `tuisim serve` opens, too."""
 
 from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -18,14 +19,15 @@ from tuisim.config.shared_options import shared_options
 from tuisim.errors import ConfigError
 
 if TYPE_CHECKING:
+    from tuisim.commands.resolve import Prepared
     from tuisim.config.worlds import WorldFile
     from tuisim.goals.files import GoalsFile
+    from tuisim.runs.run_folder import StoredRun
 
 VERSION = "%(prog)s %(version)s"
 
 
-@click.version_option(__version__, prog_name="tuisim", message=VERSION, hidden=True)
-@command(
+OPENED: Sequence[click.Parameter] = (
     argument("words", "[PROGRAM]", lambda: names_of("programs"), nargs=-1),
     option("--world", metavar="FILE", type=Value(), help="Use a world file; it may also precede the program."),
     option(
@@ -36,6 +38,43 @@ VERSION = "%(prog)s %(version)s"
     ),
     option("--run", metavar="RUN", help="Open a stored run, see `tuisim runs`."),
     *shared_options(names=names_of),
+)
+"""What the app opens, and how."""
+
+
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """What the app opens, read and checked."""
+
+    prepared: Prepared
+    goals: GoalsFile | None
+    replay: StoredRun | None
+
+
+def read_opened(arguments: Arguments) -> Opened | None:
+    """Return what the app is asked to open; None if the cells of a notebook have been listed instead.
+
+    Raises:
+        ConfigError: a program, a world, a run or an option is wrong.
+    """
+    from tuisim.commands.notebooks import print_list, to_list
+    from tuisim.commands.resolve import check_arguments, prepare_app, prepare_replay
+
+    check_arguments(arguments.words, arguments)
+    if listed := to_list(arguments.words):
+        print_list(arguments.words[0], listed)
+        return None
+    goals = _goals(arguments.goals)
+    if arguments.run is not None:
+        replay, prepared = prepare_replay(arguments.run, arguments.words, arguments)
+        return Opened(prepared, goals, replay)
+    prepared = prepare_app(_words(arguments, goals), arguments)
+    return Opened(prepared, goals or _goals_in(prepared.world, prepared.settings.mats), None)
+
+
+@click.version_option(__version__, prog_name="tuisim", message=VERSION, hidden=True)
+@command(
+    *OPENED,
     passes_arguments=True,
     name="open",
     help="""Open the app.
@@ -53,30 +92,18 @@ def open_app(**given: Any) -> int:
     Raises:
         ConfigError: a program, a world, a run or an option is wrong, or there is no terminal.
     """
-    from tuisim.commands.notebooks import print_list, to_list
-    from tuisim.commands.resolve import check_arguments, prepare_app, prepare_replay
-
-    arguments = Arguments(**given)
-    check_arguments(arguments.words, arguments)
-    if listed := to_list(arguments.words):
-        print_list(arguments.words[0], listed)
+    opened = read_opened(Arguments(**given))
+    if opened is None:
         return 0
-    goals = _goals(arguments.goals)
-    replay = None
-    if arguments.run is None:
-        prepared = prepare_app(_words(arguments, goals), arguments)
-        goals = goals or _goals_in(prepared.world, prepared.settings.mats)
-    else:
-        replay, prepared = prepare_replay(arguments.run, arguments.words, arguments)
     if not _has_terminal():
         raise ConfigError("the app needs a terminal", "without one, use `tuisim run PROGRAM`")
     from tuisim.app.app import AppSettings, run_app
 
-    settings = prepared.settings
+    prepared, settings, goals = opened.prepared, opened.prepared.settings, opened.goals
     app_settings = AppSettings(
         spec=prepared.spec,
-        settings=None if replay else settings,
-        replay=replay,
+        settings=None if opened.replay else settings,
+        replay=opened.replay,
         world_file=prepared.world.path if prepared.world else None,
         program=prepared.program,
         goals=goals,
@@ -94,7 +121,13 @@ def open_app(**given: Any) -> int:
 
 
 def _has_terminal() -> bool:
-    return sys.stdin.isatty() and sys.stdout.isatty()
+    return _in_browser() or (sys.stdin.isatty() and sys.stdout.isatty())
+
+
+def _in_browser() -> bool:
+    from tuisim.app.terminal.browser import in_browser
+
+    return in_browser()
 
 
 def _goals(word: str | None) -> GoalsFile | None:
@@ -142,7 +175,7 @@ def analyse(**given: Any) -> int:
     from tuisim.commands.logs.sources import asked
 
     request = asked(Arguments(**given))
-    if not sys.stdout.isatty():
+    if not (_in_browser() or sys.stdout.isatty()):
         raise ConfigError("the analyser needs a terminal", "without one, use `tuisim log`")
     from tuisim.app.analyser.app import run_analyser
     from tuisim.logs.reader import STDIN
@@ -167,6 +200,9 @@ def _keys_from_terminal() -> None:
 @contextmanager
 def _drawing_on_stdout() -> Iterator[None]:
     """Redirect stderr to the terminal of stdout: Textual draws on stderr, which may be redirected to a file."""
+    if _in_browser():
+        yield
+        return
     stderr = os.dup(2)
     os.dup2(1, 2)
     try:

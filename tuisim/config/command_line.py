@@ -28,6 +28,8 @@ Arguments = SimpleNamespace
 
 _FILES = ("FILE", "[NAME|FILE]", "FOLDER", "MAT", "ROBOT", "NAME")
 """Placeholders of values that may be files."""
+_WORDS = "tuisim.words"
+"""The words of a command, in the context's notes."""
 _ATTACHED = re.compile(r"\A(-[A-Za-z])=")
 """A short option before its value, as in `-x=5`."""
 
@@ -129,6 +131,7 @@ class Command(click.Command):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parse words as Click does, but also `-x=5`; refuse the name of an option as the value of another."""
+        ctx.meta[_WORDS] = tuple(args)
         ours, program = args, None
         if self._passes_arguments and ARGUMENTS_FOLLOW in args:
             at = args.index(ARGUMENTS_FOLLOW)
@@ -275,6 +278,25 @@ class Group(click.Group):
                 for item in param.shell_complete(ctx, incomplete)]  # fmt: skip
         plain = [item for item in more if item.type == "plain"]
         return found + plain if plain else _with_files(found, incomplete) if more else found
+
+
+def words_without(options: Sequence[click.Option]) -> list[str]:
+    """Return the words of the command that is running, without the given options and their values.
+
+    Args:
+        options: Options with a value and without a short name.
+    """
+    flags = {flag for one in options for flag in one.opts}
+    kept: list[str] = []
+    words = iter(click.get_current_context().meta[_WORDS])
+    for word in words:
+        if word == ARGUMENTS_FOLLOW:
+            return [*kept, word, *words]
+        if word in flags:
+            next(words)
+        elif word.partition("=")[0] not in flags:
+            kept.append(word)
+    return kept
 
 
 def parse(command: Command, words: Sequence[str]) -> Arguments:

@@ -34,6 +34,7 @@ from textual.screen import Screen
 from tuisim.app.action import ActionProvider, Palette
 from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
+from tuisim.app.terminal.browser import in_browser
 from tuisim.app.terminal.frame_buffer import FrameBuffer
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
@@ -108,7 +109,7 @@ class TerminalApp(App[None]):
     COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = {ActionProvider}
 
     def __init__(self) -> None:
-        super().__init__(driver_class=TerminalDriver)
+        super().__init__(driver_class=_driver_class())
         self.frame_buffer = FrameBuffer()
         self.too_small: Size | None = None
         """Size of a terminal that is too small, else None."""
@@ -204,7 +205,8 @@ class TerminalApp(App[None]):
         for number in (signal.SIGTERM, signal.SIGHUP):
             # The exit code that a shell shows for a program ended by the signal.
             loop.add_signal_handler(number, partial(self.exit, return_code=128 + number))
-        loop.add_signal_handler(signal.SIGTSTP, self.action_suspend_process)
+        if isinstance(self._driver, TerminalDriver):
+            loop.add_signal_handler(signal.SIGTSTP, self.action_suspend_process)
 
     @on(Driver.SignalResume)
     def action_redraw(self) -> None:
@@ -217,6 +219,8 @@ class TerminalApp(App[None]):
             self.suspending()
             if not self._driver.stop_as_job():
                 self.notify("tuisim cannot be suspended: no shell could resume it", markup=False)
+        elif in_browser():
+            self.notify("tuisim cannot be suspended in a browser", markup=False)
 
     def suspending(self) -> None:
         """Called before the app stops."""
@@ -325,3 +329,13 @@ class TerminalDriver(LinuxDriver):
             self.suspend_application_mode()
             self._must_signal_resume = True
         self.resume_application_mode()
+
+
+def _driver_class() -> type[Driver]:
+    """Return the driver for what shows the app: a browser or a terminal."""
+    if not in_browser():
+        return TerminalDriver
+    # Most apps run in a terminal.
+    from tuisim.app.terminal.browser_driver import BrowserDriver
+
+    return BrowserDriver

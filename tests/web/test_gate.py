@@ -1,0 +1,82 @@
+"""Who is admitted, and what counts as done by a visitor."""
+
+from __future__ import annotations
+
+import pytest
+
+from tuisim.web.activity import Activity, is_done_by_a_person
+from tuisim.web.gate import Gate, new_token
+
+HERE = "127.0.0.1:8000"
+REQUESTS: dict[str, tuple[str, str, str, str | None, bool, bool]] = {
+    # listens on, path, host, origin, only a page can send it: whether it is admitted
+    "a page by its address": ("127.0.0.1", "/token/", HERE, None, False, True),
+    "a page from itself": ("127.0.0.1", "/token/", HERE, f"http://{HERE}", False, True),
+    "a socket of its page": ("127.0.0.1", "/token/ws", HERE, f"http://{HERE}", True, True),
+    "through a tunnel": ("127.0.0.1", "/token/ws", "localhost:9000", "http://localhost:9000", True, True),
+    "through a tunnel with encryption": ("127.0.0.1", "/token/ws", "localhost", "https://localhost", True, True),
+    "IPv6": ("::1", "/token/ws", "[::1]:8000", "http://[::1]:8000", True, True),
+    "by name": ("Lab.local", "/token/", "lab.local:8000", None, False, True),
+    "any address": ("0.0.0.0", "/token/", "lab.local:8000", None, False, True),
+    "no token": ("127.0.0.1", "/", HERE, None, False, False),
+    "no path": ("127.0.0.1", "", HERE, None, False, False),
+    "another token": ("127.0.0.1", "/other/", HERE, None, False, False),
+    "a longer token": ("127.0.0.1", "/tokens/", HERE, None, False, False),
+    "no ASCII in the token": ("127.0.0.1", "/tökén/", HERE, None, False, False),
+    "the token elsewhere": ("127.0.0.1", "/static/token/", HERE, None, False, False),
+    "a socket of no page": ("127.0.0.1", "/token/ws", HERE, None, True, False),
+    "a socket of another site": ("127.0.0.1", "/token/ws", HERE, "http://evil.example", True, False),
+    "a socket of another port": ("127.0.0.1", "/token/ws", HERE, "http://127.0.0.1:8001", True, False),
+    "a socket of a file": ("127.0.0.1", "/token/ws", HERE, "null", True, False),
+    "a page for another site": ("127.0.0.1", "/token/", HERE, "http://evil.example", False, False),
+    "this machine under another name": ("127.0.0.1", "/token/", "evil.example:8000", None, False, False),
+    "another name, consistently": ("127.0.0.1", "/token/ws", "evil.example", "http://evil.example", True, False),
+    "a host that is none": ("0.0.0.0", "/token/", "a b;c", None, False, False),
+    "no host": ("0.0.0.0", "/token/", "", None, False, False),
+}
+
+
+@pytest.mark.parametrize(
+    ("listens_on", "path", "host", "origin", "from_a_page", "admitted"), REQUESTS.values(), ids=REQUESTS
+)
+def test_only_the_address_and_its_own_pages_are_admitted(
+    listens_on: str, path: str, host: str, origin: str | None, from_a_page: bool, admitted: bool
+) -> None:
+    assert Gate(listens_on, "token").admits(path, host, origin, from_a_page=from_a_page) is admitted
+
+
+def test_each_token_is_long_and_new() -> None:
+    tokens = {new_token() for _ in range(100)}
+    assert (len(tokens), min(map(len, tokens))) == (100, 32)
+
+
+INPUT = {
+    "a letter": ("R", True),
+    "escape": ("\x1b", True),
+    "an arrow": ("\x1b[A", True),
+    "ctrl and an arrow": ("\x1b[1;5C", True),
+    "F5": ("\x1b[15~", True),
+    "F1": ("\x1bOP", True),
+    "the mouse": ("\x1b[<35;10;20M", True),
+    "a paste": ("\x1b[200~text\x1b[201~", True),
+    "an answer and a key": ("\x1b[12;40R.", True),
+    "nothing": ("", False),
+    "the cursor's place": ("\x1b[12;40R", False),
+    "two answers": ("\x1b[12;40R\x1b[?2026;2$y", False),
+    "the size of a cell": ("\x1b[6;21;9t", False),
+    "what the terminal can do": ("\x1b[?1;2c", False),
+    "its name": ("\x1bP>|xterm.js\x1b\\", False),
+    "its background": ("\x1b]11;rgb:0000/0000/0000\x07", False),
+}
+
+
+@pytest.mark.parametrize(("text", "by_a_person"), INPUT.values(), ids=INPUT)
+def test_answers_of_the_terminal_do_not_count_as_done(text: str, by_a_person: bool) -> None:
+    assert is_done_by_a_person(text) is by_a_person
+
+
+def test_a_visitor_is_idle_since_the_last_input() -> None:
+    clock = iter([100.0, 130.0, 135.0]).__next__
+    activity = Activity(clock)
+    activity.note()
+    assert activity.idle_s == 5.0

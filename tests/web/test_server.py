@@ -1,0 +1,283 @@
+"""The server, asked by a client in the place of a browser."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping, Sequence
+from contextlib import AsyncExitStack
+from pathlib import Path
+
+import pytest
+from aiohttp import ClientSession, ClientWebSocketResponse, WSCloseCode, WSMsgType, WSServerHandshakeError
+from textual_serve.app_service import AppService
+
+from tests.running import PATIENCE_S
+from tests.web.stand_in import stand_in
+from tuisim.web import session
+from tuisim.web.gate import Gate
+from tuisim.web.server import Limits, Server, listening
+
+TOKEN = "the-token"
+"""The secret part of the address of every server here."""
+
+
+class Visitor:
+    """A client of one server."""
+
+    def __init__(self, client: ClientSession, port: int) -> None:
+        self.client = client
+        self.origin = f"http://127.0.0.1:{port}"
+        self.top = f"{self.origin}/{TOKEN}/"
+
+    async def socket(self, query: str = "?width=120&height=40", **how: str) -> ClientWebSocketResponse:
+        """Connect with an app."""
+        return await self.client.ws_connect(f"{self.top}ws{query}", headers={"Origin": self.origin} | how)
+
+    async def started(self) -> tuple[ClientWebSocketResponse, int]:
+        """Return the socket and the process of an app that has started."""
+        socket = await self.socket()
+        return socket, int((await heard(socket)).split()[1])
+
+
+async def heard(socket: ClientWebSocketResponse) -> str:
+    """Return the next that the app has drawn or the server has said, or the reason for the end."""
+    message = await socket.receive(PATIENCE_S)
+    if message.type is WSMsgType.BINARY:
+        return str(message.data.decode())
+    return str(message.extra if message.type is WSMsgType.CLOSE else message.data)
+
+
+def is_there(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+Visited = Callable[..., Awaitable[Visitor]]
+
+
+@pytest.fixture
+async def visited() -> AsyncIterator[Visited]:
+    """Start a server with the stand-in for an app."""
+    async with AsyncExitStack() as stack:
+
+        async def start(
+            command: Sequence[str] = (), visitors: int = 2, idle_s: float = PATIENCE_S, patience_s: float = 0.01
+        ) -> Visitor:
+            limits = Limits(visitors, idle_s, patience_s)
+            server = Server(command or stand_in(), Gate("127.0.0.1", TOKEN), limits)
+            port = await stack.enter_async_context(listening(server, "127.0.0.1", 0))
+            return Visitor(await stack.enter_async_context(ClientSession()), port)
+
+        yield start
+
+
+PLACES = {"page": "", "script": "page/page.js", "static file": "static/js/textual.js", "download": "download/key"}
+STRANGERS: dict[str, tuple[str, Mapping[str, str]]] = {
+    "without the token": ("/{place}", {}),
+    "with another token": ("/the-tokem/{place}", {}),
+    "from another site": ("/the-token/{place}", {"Origin": "http://evil.example"}),
+    "under another name": ("/the-token/{place}", {"Host": "evil.example"}),
+}
+
+
+@pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
+@pytest.mark.parametrize(("path", "headers"), STRANGERS.values(), ids=STRANGERS)
+async def test_a_stranger_gets_nothing(path: str, headers: Mapping[str, str], place: str, visited: Visited) -> None:
+    visitor = await visited()
+    socket, _ = await visitor.started()
+    await socket.send_json(["stdin", "offer"])
+    await heard(socket)
+    url = visitor.origin + path.format(place=place)
+    async with visitor.client.get(url, headers=headers) as answer:
+        assert (answer.status, await answer.text()) == (403, "Use the whole address that `tuisim serve` has printed.\n")
+
+
+@pytest.mark.parametrize(
+    ("path", "headers"),
+    [*STRANGERS.values(), ("/the-token/{place}", {"Origin": ""})],
+    ids=[*STRANGERS, "without a page"],
+)
+async def test_a_stranger_gets_no_app(
+    path: str, headers: Mapping[str, str], visited: Visited, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    started: list[AppService] = []
+    monkeypatch.setattr(session.Session, "start", lambda self, *_: started.append(self))
+    visitor = await visited()
+    url = visitor.origin + path.format(place="ws")
+    with pytest.raises(WSServerHandshakeError) as refused:
+        await visitor.client.ws_connect(url, headers={"Origin": visitor.origin} | headers)
+    assert (refused.value.status, started) == (403, [])
+
+
+VISITS = {
+    "the page": ("", "text/html"),
+    "its script": ("page/page.js", "javascript"),
+    "its style": ("page/page.css", "text/css"),
+    "the terminal": ("static/js/textual.js", "javascript"),
+    "the terminal's style": ("static/css/xterm.css", "text/css"),
+    "the font": ("static/fonts/RobotoMono-VariableFont_wght.ttf", ""),
+}
+
+
+@pytest.mark.parametrize(("path", "kind"), VISITS.values(), ids=VISITS)
+async def test_a_visitor_gets(path: str, kind: str, visited: Visited) -> None:
+    visitor = await visited()
+    async with visitor.client.get(visitor.top + path) as answer:
+        assert answer.status == 200
+        assert kind in answer.content_type
+        assert "default-src 'self';" in answer.headers["Content-Security-Policy"]
+        assert answer.headers["Referrer-Policy"] == "no-referrer"
+
+
+async def test_the_address_may_lack_its_last_slash(visited: Visited) -> None:
+    visitor = await visited()
+    async with visitor.client.get(visitor.top.rstrip("/")) as answer:
+        assert (answer.status, str(answer.url)) == (200, visitor.top)
+
+
+async def test_what_an_app_offers_can_be_downloaded_once(visited: Visited) -> None:
+    visitor = await visited()
+    socket, _ = await visitor.started()
+    await socket.send_json(["stdin", "offer"])
+    assert await heard(socket) == '["deliver_file_start", "key"]'
+    found = []
+    for _ in range(2):
+        async with visitor.client.get(visitor.top + "download/key") as answer:
+            found.append((answer.status, await answer.text(), answer.headers.get("Content-Disposition")))
+    assert found == [
+        (200, "a file", "attachment; filename*=UTF-8''run.csv"),
+        (404, "There is no such download.\n", None),
+    ]
+
+
+MESSAGES: dict[str, tuple[str, str]] = {
+    "keys": ('["stdin", "é"]', "é"),
+    "half a pair": ('["stdin", "\\ud83da"]', "a"),
+    "a size": ('["resize", {"width": 90, "height": 30}]', '{"type": "resize", "width": 90, "height": 30}'),
+    "an impossible size": ('["resize", {"width": -5, "height": 1e9}]', '{"type": "blur"}'),
+    "an enormous size": ('["resize", {"width": 0, "height": 99999}]', '{"type": "resize", "width": 1, "height": 1000}'),
+    "focus": ('["focus"]', '{"type": "focus"}'),
+    "no focus": ('["blur"]', '{"type": "blur"}'),
+    "a ping": ('["ping", "5"]', '["pong", "5"]'),
+    "no JSON": ("[[", '{"type": "blur"}'),
+    "deep JSON": ("[" * 100_000, '{"type": "blur"}'),
+    "another message": ('["quit"]', '{"type": "blur"}'),
+    "no list": ('{"stdin": 1}', '{"type": "blur"}'),
+}
+"""What a page sends before `blur`, and what comes back first."""
+
+
+@pytest.mark.parametrize(("sent", "back"), MESSAGES.values(), ids=MESSAGES)
+async def test_messages_of_the_page_reach_the_app(sent: str, back: str, visited: Visited) -> None:
+    socket, _ = await (await visited()).started()
+    await socket.send_str(sent)
+    await socket.send_str('["blur"]')
+    assert await heard(socket) == back
+
+
+SIZES = {
+    "a size": ("?width=90&height=30", "90 x 30"),
+    "none": ("", "80 x 24"),
+    "no numbers": ("?width=a&height=", "80 x 24"),
+}
+
+
+@pytest.mark.parametrize(("query", "size"), SIZES.values(), ids=SIZES)
+async def test_the_app_starts_in_the_size_of_the_page(query: str, size: str, visited: Visited) -> None:
+    socket = await (await visited()).socket(query)
+    assert (await heard(socket)).endswith(f" of {size}")
+
+
+async def test_the_app_does_not_take_the_servers_terminal_for_its_own(
+    visited: Visited, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("TMUX", "/tmp/tmux,1,1")
+    monkeypatch.setenv("TERM", "dumb")
+    monkeypatch.setenv("MINE", "kept")
+    seen = tmp_path / "environment"
+    socket = await (await visited(["sh", "-c", f"echo $TMUX $TERM $MINE > {seen}"])).socket()
+    await heard(socket)
+    assert seen.read_text() == "xterm-256color kept\n"
+
+
+ENDS = {
+    "the user quits": ("0 a note", ""),
+    "what to open is gone": (
+        "2 note: x\ntuisim: mine.py: there is no such program\n",
+        "tuisim: mine.py: there is no such program",
+    ),
+    "a long reason": ("2 tuisim: " + "é" * 300, "tuisim: " + "é" * 57),
+    "a failure": ("1 Traceback", "The app has failed; the server's terminal tells more."),
+}
+
+
+@pytest.mark.parametrize(("how", "reason"), ENDS.values(), ids=ENDS)
+async def test_a_visitor_is_told_why_the_app_has_ended(how: str, reason: str, visited: Visited) -> None:
+    socket, _ = await (await visited()).started()
+    await socket.send_json(["stdin", f"end {how}"])
+    assert await heard(socket) == reason
+
+
+async def test_a_visitor_that_does_nothing_is_sent_away(visited: Visited) -> None:
+    socket, pid = await (await visited(idle_s=0.06)).started()
+    await socket.send_json(["stdin", "\x1b[1;1R"])
+    assert [await heard(socket), await heard(socket)] == [
+        "\x1b[1;1R",
+        "The session has ended after 0.001 minutes without input.",
+    ]
+    await gone(pid)
+
+
+async def gone(pid: int) -> None:
+    """Wait until a process has ended."""
+    async with asyncio.timeout(PATIENCE_S):
+        while is_there(pid):
+            await asyncio.sleep(0.005)
+
+
+STUBBORN = {"an app that ends": (), "an app that does not": ("stubborn",)}
+
+
+@pytest.mark.parametrize("words", STUBBORN.values(), ids=STUBBORN)
+async def test_a_closed_tab_ends_its_app(
+    words: Sequence[str], visited: Visited, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session, "END_WITHIN_S", 0.1 if words else PATIENCE_S)
+    socket, pid = await (await visited(stand_in(*words))).started()
+    await socket.close()
+    await gone(pid)
+
+
+async def test_the_end_of_the_server_ends_all_apps() -> None:
+    server = Server(stand_in(), Gate("127.0.0.1", TOKEN), Limits(2))
+    async with ClientSession() as client:
+        async with listening(server, "127.0.0.1", 0) as port:
+            started = [await Visitor(client, port).started() for _ in range(2)]
+        assert [await heard(socket) for socket, _ in started] == ["The server has been ended."] * 2
+    assert [is_there(pid) for _, pid in started] == [False, False]
+
+
+FULL = "This server allows 1 visitor at a time, and all places are taken."
+
+
+async def test_one_visitor_too_many_is_told_so(visited: Visited) -> None:
+    visitor = await visited(visitors=1)
+    first, _ = await visitor.started()
+    async with visitor.client.get(visitor.top) as answer:
+        assert (answer.status, FULL in await answer.text()) == (503, True)
+    late = await visitor.socket()
+    assert (await heard(late), late.close_code) == (FULL, WSCloseCode.TRY_AGAIN_LATER)
+    assert not first.closed
+
+
+async def test_a_page_that_is_loaded_again_finds_its_place_free(visited: Visited) -> None:
+    visitor = await visited(visitors=1, patience_s=PATIENCE_S)
+    socket, _ = await visitor.started()
+    again = asyncio.create_task(visitor.started())
+    await socket.close()
+    _, pid = await again
+    assert is_there(pid)

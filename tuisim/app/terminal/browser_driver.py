@@ -1,0 +1,48 @@
+"""Textual's driver for browsers, with an app that ends with its server and has the focus that the browser reports."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from textual import events, messages
+from textual.app import App
+from textual.drivers.web_driver import WebDriver
+
+
+class BrowserDriver(WebDriver):
+    """Connects the app with the server that shows it in a browser."""
+
+    def __init__(
+        self, app: App[Any], *, debug: bool = False, mouse: bool = True, size: tuple[int, int] | None = None
+    ) -> None:
+        super().__init__(app, debug=debug, mouse=mouse, size=size)
+        self._write = self._write_all  # type: ignore[assignment]  # a partial function in the base class
+        self._server_is_gone = False
+
+    def _write_all(self, data: bytes) -> int:
+        """Write all of the data, which a signal may interrupt; drop it once the server is gone."""
+        left = data
+        while left and not self._server_is_gone:
+            try:
+                left = left[os.write(self.fileno, left) :]
+            except OSError:
+                self._server_is_gone = True
+        return len(data)
+
+    def run_input_thread(self) -> None:
+        """Pass on input until the app ends, or end it because the server has ended."""
+        super().run_input_thread()
+        if not self.exit_event.is_set():
+            self._app.post_message(messages.ExitApp())
+
+    def on_meta(self, packet_type: str, payload: dict[str, object]) -> None:
+        """Handle a message of the server; a change of focus waits for what the app itself has queued.
+
+        The base class queues the loss of the focus at the start, which would override an early report of the browser.
+        """
+        if packet_type in ("focus", "blur"):
+            event = events.AppFocus() if packet_type == "focus" else events.AppBlur()
+            self._app.call_later(self._app.post_message, event)
+        else:
+            super().on_meta(packet_type, payload)

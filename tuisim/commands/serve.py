@@ -1,0 +1,91 @@
+"""`tuisim serve`: the app in a browser."""
+
+from __future__ import annotations
+
+import socket
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tuisim.commands.app import OPENED, read_opened
+from tuisim.commands.echo import echo
+from tuisim.config.command_line import Arguments, Value, command, option, words_without
+from tuisim.config.options import number, whole
+from tuisim.errors import ConfigError
+
+if TYPE_CHECKING:
+    from tuisim.web.gate import Gate
+
+DEFAULT_PORT, DEFAULT_VISITORS = 8000, 8
+_GROUP = "Server"
+_BOOT = "import sys; sys.path.append(sys.argv.pop(1)); from tuisim.__main__ import main; sys.exit(main())"
+"""Startup code of an app: the package comes last in the path, as in the child of a run."""
+_PACKAGE_FOLDER = str(Path(__file__).parent.parent.parent)
+_port, _visitors, _minutes = whole(0, 65535), whole(1, 1000), number(0.001, 100_000)
+_SERVER = (
+    option(
+        "--port", default=DEFAULT_PORT, metavar="N", group=_GROUP, type=Value(lambda text: _port(text, "--port")),
+        help=f"Port; 0 for any free one ({DEFAULT_PORT}).",
+    ),
+    option(
+        "--max-visitors", default=DEFAULT_VISITORS, metavar="N", group=_GROUP,
+        type=Value(lambda text: _visitors(text, "--max-visitors")),
+        help=f"Most browser tabs at the same time ({DEFAULT_VISITORS}); each has its own app.",
+    ),
+    option(
+        "--idle", default=None, metavar="MIN", group=_GROUP, type=Value(lambda text: _minutes(text, "--idle")),
+        help="End the app of a visitor after so many minutes without input (never).",
+    ),
+    option(
+        "--host", default="127.0.0.1", metavar="ADDRESS", group=_GROUP,
+        help="Listen on another address than 127.0.0.1, which only this machine reaches; nothing is encrypted.",
+    ),
+)  # fmt: skip
+
+
+@command(
+    *_SERVER,
+    *OPENED,
+    passes_arguments=True,
+    help="""Open the app in a browser.
+
+    Prints an address with a secret part. Whoever has this address can run programs as you. ctrl+c ends the server and
+    the apps of all visitors.
+
+    PROGRAM and options are those of `tuisim open`. This command needs the extra `web`.
+    """,
+)
+def serve(**given: Any) -> int:
+    """Serve the app until the user ends it.
+
+    Raises:
+        ConfigError: the extra is missing, the address cannot be used, or what to open is wrong.
+    """
+    arguments = Arguments(**given)
+    # Checked here, where the user can read what is wrong.
+    if read_opened(arguments) is None:
+        return 0
+    try:
+        from tuisim.web import server
+    except ImportError as error:
+        hint = "pip install -e '.[web]' in the clone of tuisim"
+        raise ConfigError("needs textual-serve", hint, key="serve") from error
+    from tuisim.web.gate import Gate
+
+    gate = Gate(arguments.host)
+    idle_s = float("inf") if arguments.idle is None else 60 * arguments.idle
+    command_of_app = [sys.executable, "-P", "-c", _BOOT, _PACKAGE_FOLDER, "open", *words_without(_SERVER)]
+    visitors = server.Server(command_of_app, gate, server.Limits(arguments.max_visitors, idle_s))
+    return server.serve(visitors, arguments.host, arguments.port, lambda port: _announce(gate, port))
+
+
+def _announce(gate: Gate, port: int) -> None:
+    from tuisim.web.gate import is_any_address
+
+    host = socket.gethostname() if is_any_address(gate.listens_on) else gate.listens_on
+    host = f"[{host}]" if ":" in host else host
+    echo(
+        f"Open http://{host}:{port}/{gate.token}/ in a browser. Whoever has this address can run programs as you; "
+        "ctrl+c ends the server."
+    )
+    sys.stdout.flush()

@@ -1,0 +1,133 @@
+"""The app of one visitor: a process that is connected with a browser."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+from asyncio.subprocess import PIPE, Process
+from collections.abc import Awaitable, Callable, Sequence
+from contextlib import suppress
+from typing import TypeVar
+
+from aiohttp import web
+from textual_serve.app_service import AppService
+from textual_serve.download_manager import DownloadManager
+
+_Data = TypeVar("_Data")
+
+END_WITHIN_S = 5.0
+"""Time for an app to end by itself; after that it is killed."""
+_HEAD = b"__GANGLION__\n"
+"""The line before the first packet of an app."""
+_MOST_ERROR_BYTES = 4096
+_OF_A_TERMINAL = (
+    "TMUX", "STY", "LC_TERMINAL", "LC_TERMINAL_VERSION", "ITERM_SESSION_ID", "KITTY_WINDOW_ID", "WEZTERM_PANE",
+    "KONSOLE_VERSION", "VTE_VERSION", "WT_SESSION", "TERMINAL_EMULATOR",
+)  # fmt: skip
+"""Variables that tell which terminal the server was started in; the app is not in that one."""
+
+
+class Session(AppService):
+    """Starts an app, connects it with a socket, and ends it.
+
+    Args:
+        command: The command of the app, as words.
+        socket: The connection to the browser.
+        downloads: The files that apps offer.
+    """
+
+    def __init__(self, command: Sequence[str], socket: web.WebSocketResponse, downloads: DownloadManager) -> None:
+        super().__init__(
+            " ".join(command),
+            write_bytes=_while_open(socket, socket.send_bytes),
+            write_str=_while_open(socket, socket.send_str),
+            close=_nothing,
+            download_manager=downloads,
+        )
+        self._words = command
+        self.errors = ""
+        """The last that the app has written to stderr, once it has ended."""
+
+    def _build_environment(self, width: int = 80, height: int = 24) -> dict[str, str]:
+        environment = super()._build_environment(width, height)
+        kept = {name: value for name, value in environment.items() if name not in _OF_A_TERMINAL}
+        return kept | {"TERM": "xterm-256color", "COLORTERM": "truecolor", "PYTHONUTF8": "1"}
+
+    async def _open_app_process(self, width: int = 80, height: int = 24) -> Process:
+        process = await asyncio.create_subprocess_exec(
+            *self._words,
+            stdin=PIPE,
+            stdout=PIPE,
+            stderr=PIPE,
+            env=self._build_environment(width, height),
+            # Otherwise ctrl+c in the server's terminal would reach the app before the server can end it.
+            start_new_session=True,
+        )
+        self._process, self._stdin = process, process.stdin
+        return process
+
+    async def run(self) -> None:
+        """Pass on what the app writes until it ends."""
+        assert self._process is not None and self._process.stdout is not None and self._process.stderr is not None
+        errors = asyncio.create_task(_last_bytes(self._process.stderr))
+        with suppress(asyncio.IncompleteReadError):
+            await self._pass_on(self._process.stdout)
+        self.errors = (await errors).decode("utf-8", "replace")
+        await self._process.wait()
+
+    async def _pass_on(self, output: asyncio.StreamReader) -> None:
+        await output.readuntil(_HEAD)
+        handlers = {b"D": self.on_data, b"M": self.on_meta, b"P": self.on_packed}
+        while True:
+            kind = await output.readexactly(1)
+            payload = await output.readexactly(int.from_bytes(await output.readexactly(4), "big"))
+            await handlers[kind](payload)
+
+    async def ended(self) -> str:
+        """Wait until the app has ended by itself; return what to tell the visitor, empty if nothing has failed."""
+        assert self._task is not None and self._process is not None
+        await asyncio.shield(self._task)
+        if self._process.returncode == 0:
+            return ""
+        last = self.errors.rstrip().rpartition("\n")[2]
+        return last if last.startswith("tuisim: ") else "The app has failed; the server's terminal tells more."
+
+    async def stop(self) -> None:
+        """End the app and everything it has started, at once if it does not end by itself."""
+        if self._task is None or self._process is None:
+            return
+        await self._download_manager.cancel_app_downloads(app_service_id=self.app_service_id)
+        await self.send_meta({"type": "quit"})
+        try:
+            await asyncio.wait_for(asyncio.shield(self._task), END_WITHIN_S)
+        except TimeoutError:
+            with suppress(ProcessLookupError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+            await asyncio.wait({self._task}, timeout=END_WITHIN_S)
+        self._task = None
+
+
+def _while_open(
+    socket: web.WebSocketResponse, send: Callable[[_Data], Awaitable[None]]
+) -> Callable[[_Data], Awaitable[None]]:
+    """Return a function that sends data, or drops it after the browser has gone: the app writes until it has ended."""
+
+    async def send_or_drop(data: _Data) -> None:
+        if not socket.closed:
+            with suppress(ConnectionError):
+                await send(data)
+
+    return send_or_drop
+
+
+async def _nothing() -> None:
+    """The socket is closed after the app has ended, not when it says that it will."""
+
+
+async def _last_bytes(stream: asyncio.StreamReader) -> bytes:
+    """Read a stream to its end; return its last bytes."""
+    last = b""
+    while data := await stream.read(_MOST_ERROR_BYTES):
+        last = (last + data)[-_MOST_ERROR_BYTES:]
+    return last

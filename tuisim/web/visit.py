@@ -1,0 +1,85 @@
+"""A visitor: a browser with its app, until one of them has gone or the visitor has done nothing for too long."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from contextlib import suppress
+
+from aiohttp import WSMsgType, web
+
+from tuisim.web.activity import Activity, is_done_by_a_person
+from tuisim.web.session import Session
+
+_MOST_REASON_BYTES = 123
+"""The most that fits into the last message of a socket."""
+_LARGEST_SIZE = 1000
+
+
+class Visit:
+    """Connects a browser with an app.
+
+    Args:
+        session: The app.
+        socket: The connection to the browser.
+        idle_s: The visit ends when the visitor does nothing for this time.
+    """
+
+    def __init__(self, session: Session, socket: web.WebSocketResponse, idle_s: float) -> None:
+        self._session, self._socket, self._idle_s = session, socket, idle_s
+        self._activity = Activity()
+
+    async def proceed(self, width: int, height: int) -> None:
+        """Run the app until the visit ends; then end it.
+
+        Args:
+            width: Columns of the visitor's terminal.
+            height: Its rows.
+        """
+        await self._session.start(*_within(width, height))
+        watchers = [asyncio.create_task(watch()) for watch in (self._until_app_ends, self._until_idle)]
+        try:
+            async for message in self._socket:
+                if message.type is WSMsgType.TEXT:
+                    await self._take(message.data)
+        finally:
+            for watcher in watchers:
+                watcher.cancel()
+            await self._session.stop()
+
+    async def end(self, reason: str) -> None:
+        """End the visit and tell the visitor why; the page has words of its own for no reason."""
+        text = reason.encode()[:_MOST_REASON_BYTES].decode("utf-8", "ignore")
+        await self._socket.close(message=text.encode())
+
+    async def _until_app_ends(self) -> None:
+        await self.end(await self._session.ended())
+
+    async def _until_idle(self) -> None:
+        while (left_s := self._idle_s - self._activity.idle_s) > 0:
+            await asyncio.sleep(left_s)
+        minutes = f"{self._idle_s / 60:g}"
+        await self.end(f"The session has ended after {minutes} minute{'s' * (minutes != '1')} without input.")
+
+    async def _take(self, data: str) -> None:
+        """Handle one message of the page; what no page sends is ignored."""
+        with suppress(ValueError, RecursionError):
+            match json.loads(data):
+                case ["stdin", str(text)]:
+                    if is_done_by_a_person(text):
+                        self._activity.note()
+                    await self._session.send_bytes(text.encode("utf-8", "ignore"))
+                case ["resize", {"width": int(width), "height": int(height)}]:
+                    self._activity.note()
+                    await self._session.set_terminal_size(*_within(width, height))
+                case ["ping", str(sent)]:
+                    await self._socket.send_json(["pong", sent])
+                case ["focus"]:
+                    await self._session.focus()
+                case ["blur"]:
+                    await self._session.blur()
+
+
+def _within(width: int, height: int) -> tuple[int, int]:
+    """Return a size that an app can have."""
+    return min(max(width, 1), _LARGEST_SIZE), min(max(height, 1), _LARGEST_SIZE)
