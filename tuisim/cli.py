@@ -45,6 +45,7 @@ COMMANDS: Mapping[str, Entry] = {
     "runs": Entry("commands.runs:runs", "List, show, export, draw or remove stored runs"),
     "goals": Entry("commands.goals:goals", "Check whether runs meet the goals of a task"),
     "mark": Entry("commands.mark:mark", "Mark the programs of a class by the goals of a task"),
+    "learn": Entry("commands.learn:learn", "Learn to program the robot: lessons in the app"),
     "log": Entry("commands.log:log", "Analyse logs: statistics, bands, events, signals"),
     "analyse": Entry("commands.app:analyse", "Explore logs in the app: table, chart, bands, notes"),
     "backgrounds": Entry("commands.listings:backgrounds", "List the mats"),

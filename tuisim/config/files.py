@@ -366,7 +366,8 @@ def _walk(data: object, info: types.Type, at: Location) -> Iterator[tuple[str, t
 
     match info, data:
         case types.UnionType(types=members), _:
-            for member in members:
+            texts = [member for member in members if isinstance(member, types.StrType)]
+            for member in texts if texts and isinstance(data, str) else members:
                 yield from _walk(data, member, at)
         case types.StructType(fields=inner) | types.DataclassType(fields=inner), dict():
             table(data, at, [field.name for field in inner])

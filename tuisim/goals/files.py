@@ -71,7 +71,7 @@ def load_goals(path: Path | str) -> GoalsFile:
     if not means_world(path.name):
         raise ConfigError("is not a .toml file", "a goals file is TOML", file=str(path))
     data = files.read_file(path, ConfigError)
-    with _lines_in_errors(path):
+    with line_in_errors(path):
         return _goals_file(data, path, world_from_table(data, path))
 
 
@@ -89,20 +89,25 @@ def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, Goa
     if not means_world(path.name):
         raise ConfigError("is not a .toml file", "a world file is TOML", file=str(path))
     data = files.read_file(path, ConfigError)
-    with _lines_in_errors(path):
+    with line_in_errors(path):
         world = world_from_table(data, path, mats)
         return world, _goals_file(data, path, world) if "goal" in data else None
 
 
 @contextmanager
-def _lines_in_errors(path: Path) -> Iterator[None]:
-    """Add the line to an error in a file that names only its key."""
+def line_in_errors(path: Path, text: str | None = None) -> Iterator[None]:
+    """Add the line to an error in a file that names only its key.
+
+    Args:
+        path: The file, as errors name it.
+        text: Its TOML; None reads it.
+    """
     try:
         yield
     except ConfigError as error:
         if error.file != str(path) or not error.key:
             raise
-        line = line_of_key(path.read_text("utf-8-sig", "replace"), error.key)
+        line = line_of_key(path.read_text("utf-8-sig", "replace") if text is None else text, error.key)
         raise files.with_location(error, f"{path}, line {line}", error.key) from None
 
 
@@ -146,11 +151,21 @@ def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile:
     at = Location(str(path))
     if not data.get("goal"):
         raise at.at("goal").wrong("there are no goals", "begin each with a line [[goal]]")
-    listed = files.entries(data["goal"], at.at("goal"), MAX_GOALS, "goals")
-    goals = tuple(_goal(entry, place, path.parent) for entry, place in listed)
-    _check_names(goals, [place for _, place in listed])
+    goals = goals_from_list(data["goal"], at.at("goal"), path.parent)
     title = files.convert(data["title"], str, at.at("title")) if "title" in data else ""
     return GoalsFile(path, title, goals, world.settings, world.program)
+
+
+def goals_from_list(data: object, at: Location, folder: Path) -> tuple[Goal, ...]:
+    """Return the goals in a list of tables; the files that they name are in a folder.
+
+    Raises:
+        ConfigError: a goal is wrong; the error names its key.
+    """
+    listed = files.entries(data, at, MAX_GOALS, "goals")
+    goals = tuple(_goal(entry, place, folder) for entry, place in listed)
+    _check_names(goals, [place for _, place in listed])
+    return goals
 
 
 def _goal(data: object, at: Location, folder: Path) -> Goal:

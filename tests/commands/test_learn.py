@@ -1,0 +1,116 @@
+"""`tuisim learn` without the app: lists, plain text, progress, and what an author is told."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import Command
+from tuisim.lessons.progress import LessonProgress, StepState, save_progress
+from tuisim.lessons.skeleton import SKELETON
+
+FAULTY = {
+    "model answer": (
+        ("500 / (3.14159 * 56)", "1"),
+        "line 52: the model answer does not pass “Drive them”: there: At the end the robot was 324 mm away.",
+    ),
+    "wrong program": (("SpeedPercent(30), 5)", "SpeedPercent(30), 2.842)"), "this wrong program passes “Drive them”"),
+    "error": (("500 / (3.14159 * 56)", "1 / 0"), "it ended with: ZeroDivisionError: division by zero"),
+}
+
+
+@pytest.fixture
+def own(tmp_path: Path, home: Path) -> Path:
+    """A folder with a lesson of one's own."""
+    folder = tmp_path / "lessons"
+    folder.mkdir()
+    (folder / "02-half.md").write_text(SKELETON)
+    return folder
+
+
+def test_lessons_are_listed_with_those_of_a_folder(here: Command, own: Path) -> None:
+    lines = here("learn", "list", "--folder", own).stdout.splitlines()
+    assert lines[1].split()[:2] == ["1", "first-run"]
+    assert any("half" in line and "Drive half a metre" in line and "new" in line for line in lines)
+
+
+def test_folder_of_the_environment(here: Command, own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TUISIM_LESSONS", str(own))
+    assert "half" in [one["name"] for one in json.loads(here("learn", "list", "--json").stdout)]
+
+
+def test_without_a_terminal_a_lesson_is_plain_text(here: Command, own: Path) -> None:
+    text = here("learn", "half", "--folder", own).stdout
+    assert "\x1b" not in text
+    assert "· 1. How many rotations?" in text
+    assert "Question: How many rotations of a 56 mm wheel are 500 mm?" in text
+    assert "500 / (3.14159 * 56)" not in text
+
+
+def test_model_answer_appears_when_every_step_is_done(here: Command, own: Path) -> None:
+    done = LessonProgress()
+    for name in ("turns", "drive"):
+        done = done.with_step(name, state=StepState.DONE, at="2026-01-01T00:00:00+00:00")
+    save_progress("half", done)
+    assert "500 / (3.14159 * 56)" in here("learn", "half", "--folder", own).stdout
+
+
+def test_status_for_a_tutor(here: Command, own: Path) -> None:
+    at = "2026-01-01T00:00:00+00:00"
+    save_progress("half", LessonProgress(opened_at=at).with_step("turns", state=StepState.SKIPPED, at=at, hints=2))
+    found = json.loads(here("learn", "status", "--json", "--folder", own).stdout)
+    assert found[-1] == {
+        "lesson": "half",
+        "title": "Drive half a metre",
+        "done": 0,
+        "of": 2,
+        "opened_at": at,
+        "steps": [
+            {"name": "turns", "title": "How many rotations?", "state": "skipped", "at": at, "tries": 0, "hints": 2},
+            {"name": "drive", "title": "Drive them", "state": "open", "at": None, "tries": 0, "hints": 0},
+        ],
+    }
+    assert "  – How many rotations? (2 hints)" in here("learn", "status", "--folder", own).stdout
+
+
+def test_new_lesson_is_in_order(here: Command, home: Path) -> None:
+    assert here("learn", "new", "mine.md").returncode == 0
+    done = here("learn", "check", "mine.md")
+    assert (done.returncode, done.stdout) == (0, "mine.md: 2 steps, 1 goal: all is well\n")
+
+
+@pytest.mark.parametrize(("change", "fault"), FAULTY.values(), ids=FAULTY)
+def test_author_is_told_what_is_wrong(change: tuple[str, str], fault: str, here: Command, tmp_path: Path) -> None:
+    assert change[0] in SKELETON
+    (tmp_path / "mine.md").write_text(SKELETON.replace(*change))
+    done = here("learn", "check", "mine.md")
+    assert (done.returncode, fault in done.stdout) == (1, True), done.stdout
+
+
+BAD = {
+    "no lesson": (("first-rum",), "no such lesson 'first-rum' (did you mean first-run?"),
+    "a misspelt command": (("statu",), "did you mean status?"),
+    "no folder": (("list", "--folder", "none"), "--folder: there is no folder none"),
+    "no lessons in it": (("list", "--folder", "."), "no lessons in ."),
+    "new exists": (("new", "there.md"), "there.md: exists already"),
+    "new is no Markdown": (("new", "there.txt"), "is not a .md file"),
+    "check without file": (("check",), "FILE… is missing"),
+}
+
+
+@pytest.mark.parametrize(("words", "message"), BAD.values(), ids=BAD)
+def test_bad_words(words: tuple[str, ...], message: str, here: Command, tmp_path: Path) -> None:
+    (tmp_path / "none").unlink(missing_ok=True)
+    if "new" in words:
+        (tmp_path / "there.md").write_text("x")
+    done = here("learn", *words)
+    assert (done.returncode, message in done.stderr) == (2, True), done.stderr
+
+
+def test_damaged_progress(here: Command, home: Path) -> None:
+    (home / "lessons").mkdir(parents=True)
+    (home / "lessons" / "progress.json").write_text("[1]")
+    done = here("learn", "status")
+    assert (done.returncode, "progress.json: is damaged" in done.stderr) == (2, True)

@@ -1,0 +1,75 @@
+"""What passes the check of a step, and what does not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+
+from tuisim.lessons.events import (
+    BreakMet,
+    Event,
+    Exported,
+    JudgedRun,
+    Noted,
+    Shown,
+    Typed,
+    Visited,
+    Watched,
+    is_met,
+)
+from tuisim.lessons.spec import Break, Check, Export, Note, Question, Run, Show, Visit, Watch
+
+NUMBER = Question("Q", 50.2, within=0.5)
+CHOICE = Question("Q", "the light", choices=("the tick", "the light"))
+
+
+def runs(*seeds: int, met: str = "a b", from_start: bool = True) -> list[Event]:
+    """Runs that have met goals."""
+    return [JudgedRun(f"r{at}", seed, frozenset(met.split()), from_start) for at, seed in enumerate(seeds)]
+
+
+CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
+    "run": (Run(("a", "b")), runs(0), True),
+    "run, one goal missed": (Run(("a", "c")), runs(0), False),
+    "run, goals met by different runs": (Run(("a", "b")), [*runs(0, met="a"), *runs(0, 0, met="b")[1:]], False),
+    "run elsewhere": (Run(("a",)), runs(0, from_start=False), False),
+    "run anywhere": (Run(("a",), anywhere=True), runs(0, from_start=False), True),
+    "several runs": (Run(("a",), times=2), runs(0, 0), True),
+    "the same run twice": (Run(("a",), times=2), runs(0) * 2, False),
+    "several seeds": (Run(("a",), times=2, seeds=True), runs(0, 1), True),
+    "several runs of one seed": (Run(("a",), times=2, seeds=True), runs(0, 0), False),
+    "number": (NUMBER, [Typed("50.2")], True),
+    "number, comma and unit": (NUMBER, [Typed(" 50,6 %")], True),
+    "number, at the limit": (NUMBER, [Typed("49.7")], True),
+    "number, too far off": (NUMBER, [Typed("50.8")], False),
+    "number, negative": (NUMBER, [Typed("-50.2")], False),
+    "number, two of them": (NUMBER, [Typed("50.2 51")], False),
+    "number, none": (NUMBER, [Typed("")], False),
+    "a wrong answer, then the right one": (NUMBER, [Typed("1"), Typed("50")], True),
+    "text": (Question("Q", "time.sleep(0.1)"), [Typed("Time.sleep( 0.1 )")], True),
+    "one of several texts": (Question("Q", ("left", "the left one")), [Typed("the left one.")], True),
+    "another text": (Question("Q", "left"), [Typed("right")], False),
+    "choice by number": (CHOICE, [Typed("2")], True),
+    "choice by text": (CHOICE, [Typed("the light")], True),
+    "another choice": (CHOICE, [Typed("1")], False),
+    "no such choice": (CHOICE, [Typed("0")], False),
+    "watch": (Watch("error"), [Watched(" error")], True),
+    "another watch": (Watch("error"), [Watched("error2")], False),
+    "breakpoint": (Break(r"left.*<"), [BreakMet("left.red% < 10")], True),
+    "another breakpoint": (Break(r"left.*<"), [BreakMet("7")], False),
+    "export": (Export(".csv"), [Exported("greys.csv")], True),
+    "export of another format": (Export(".csv"), [Exported("greys.parquet")], False),
+    "note": (Note("grey", 50.2), [Noted("Dark GREY", 50.0)], True),
+    "note on another band": (Note("grey", 50.2), [Noted("grey", 82.7)], False),
+    "note of another text": (Note("grey"), [Noted("white")], False),
+    "visit": (Visit(1, 2), [Visited(1.5)], True),
+    "visit of another instant": (Visit(1, 2), [Visited(2.1)], False),
+    "panel": (Show("chart"), [Shown("world"), Shown("chart")], True),
+    "nothing": (Show("chart"), [], False),
+}
+
+
+@pytest.mark.parametrize(("check", "events", "passes"), CASES.values(), ids=CASES)
+def test_check(check: Check, events: Sequence[Event], passes: bool) -> None:
+    assert is_met(check, events) is passes

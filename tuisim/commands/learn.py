@@ -1,0 +1,201 @@
+"""`tuisim learn`: lessons in the app, or as plain text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+
+from tuisim.commands.echo import Progress, echo, echo_json, echo_lines, table, tell
+from tuisim.config.command_line import AS_JSON, Command, Group, Value, argument, command, option
+from tuisim.errors import ConfigError, counted
+from tuisim.lessons.catalogue import find_lesson, lesson_paths, load_all
+from tuisim.lessons.files import load_lesson
+from tuisim.lessons.markdown import plain_text
+from tuisim.lessons.progress import LessonProgress, StepState, load_progress
+from tuisim.lessons.spec import Lesson, Question, Step
+
+_COLUMNS = 80
+_MARKS = {StepState.OPEN: "·", StepState.DONE: "✓", StepState.SKIPPED: "–"}
+FOLDER = option("--folder", metavar="FOLDER", type=Value(), help="Add the lessons in a folder of your own.")
+
+
+def _names() -> Sequence[str]:
+    try:
+        return list(lesson_paths())
+    except ConfigError:
+        return []
+
+
+@command(
+    argument("word", "[LESSON]", _names, required=False),
+    FOLDER,
+    name="open",
+    help="""Print a lesson.
+
+    A LESSON is given by name, see `tuisim learn list`, or as a file. Without one, the lessons are listed.
+    """,
+)
+def open_lesson(word: str | None, folder: str | None) -> int:
+    """Open or print a lesson."""
+    if word is None:
+        return _list(folder, as_json=False)
+    lesson = load_lesson(find_lesson(word, folder, _SUBCOMMANDS))
+    echo_lines(text_of(lesson, load_progress().get(lesson.name, LessonProgress())))
+    return 0
+
+
+def text_of(lesson: Lesson, progress: LessonProgress) -> str:
+    """Return a lesson as plain text; the model answer only once every step is done."""
+    parts = [
+        f"{lesson.title}\n{'=' * len(lesson.title)}",
+        plain_text(lesson.intro, _COLUMNS),
+        plain_text(f"On a real robot: {lesson.why}", _COLUMNS),
+    ]
+    if lesson.program:
+        parts.append(f"The program:\n\n{_indented(lesson.program)}")
+    for number, step in enumerate(lesson.steps, start=1):
+        title = f"{_MARKS[progress.of(step.name).state]} {number}. {step.title}"
+        parts += [f"{title}\n{'-' * len(title)}", plain_text(step.text, _COLUMNS), *_question(step)]
+    if lesson.model_answer and progress.done(lesson) == len(lesson.steps):
+        parts.append(f"A model answer:\n\n{_indented(lesson.model_answer)}")
+    parts.append(f"`tuisim learn {lesson.name}` in a terminal checks each step while you work.")
+    return "\n\n".join(part for part in parts if part)
+
+
+def _question(step: Step) -> list[str]:
+    if not isinstance(step.check, Question):
+        return []
+    choices = [f"  {number} {choice}" for number, choice in enumerate(step.check.choices, start=1)]
+    return ["\n".join([plain_text(f"Question: {step.check.ask}", _COLUMNS), *choices])]
+
+
+def _indented(program: str) -> str:
+    return "\n".join(f"    {line}".rstrip() for line in program.rstrip("\n").split("\n"))
+
+
+@command(FOLDER, AS_JSON, name="list")
+def list_lessons(folder: str | None, as_json: bool) -> int:
+    """List the lessons."""
+    return _list(folder, as_json=as_json)
+
+
+def _list(folder: str | None, *, as_json: bool) -> int:
+    lessons, progress = load_all(folder), load_progress()
+    if as_json:
+        echo_json([{"name": one.name, "title": one.title, "minutes": one.minutes, "why": one.why,
+                    "steps": len(one.steps), "path": str(one.path)} for one in lessons])  # fmt: skip
+        return 0
+    rows = [
+        (number, one.name, one.title, f"{one.minutes} min", progress.get(one.name, LessonProgress()).words(one))
+        for number, one in enumerate(lessons, start=1)
+    ]
+    echo_lines(table(("", "LESSON", "ABOUT", "TIME", "PROGRESS"), rows))
+    echo("`tuisim learn LESSON` opens one; `tuisim learn` goes on where you left.")
+    return 0
+
+
+@command(FOLDER, AS_JSON)
+def status(folder: str | None, as_json: bool) -> int:
+    """Show the progress on each lesson, for you or for a tutor.
+
+    With --json: for each lesson its name, how many steps are done, and for each step its state (open, done or
+    skipped), when that was reached, wrong tries, and hints that were shown.
+    """
+    lessons, progress = load_all(folder), load_progress()
+    found = [(lesson, progress.get(lesson.name, LessonProgress())) for lesson in lessons]
+    if as_json:
+        echo_json([_plain(lesson, one) for lesson, one in found])
+        return 0
+    for lesson, one in found:
+        echo(f"{lesson.name}: {one.words(lesson)}")
+        for step in lesson.steps if one.words(lesson) != "new" else ():
+            echo(f"  {_MARKS[one.of(step.name).state]} {step.title}{_details(one, step)}")
+    return 0
+
+
+def _details(progress: LessonProgress, step: Step) -> str:
+    one = progress.of(step.name)
+    words = [counted(one.tries, "wrong try", "wrong tries")] if one.tries else []
+    words += [counted(one.hints, "hint")] if one.hints else []
+    return f" ({', '.join(words)})" if words else ""
+
+
+def _plain(lesson: Lesson, progress: LessonProgress) -> dict[str, Any]:
+    steps = []
+    for step in lesson.steps:
+        one = progress.of(step.name)
+        steps.append({"name": step.name, "title": step.title, "state": one.state, "at": one.at or None,
+                      "tries": one.tries, "hints": one.hints})  # fmt: skip
+    return {"lesson": lesson.name, "title": lesson.title, "done": progress.done(lesson), "of": len(lesson.steps),
+            "opened_at": progress.opened_at or None, "steps": steps}  # fmt: skip
+
+
+@command(
+    argument("paths", "FILE…", nargs=-1, required=True),
+    option("--no-runs", is_flag=True, help="Check only the file; do not run model answers and wrong programs."),
+)
+def check(paths: Sequence[str], no_runs: bool) -> int:
+    """Check lessons, for their authors: the file, its model answers, and the programs that must not pass.
+
+    Exit code: 0 if all is well, 1 if a model answer does not pass or a wrong program does, 2 if a file is wrong.
+    """
+    from tuisim.lessons.trial import faults
+
+    lessons = [load_lesson(find_lesson(path)) for path in paths]
+    found: list[str] = []
+    with Progress("learn check"):
+        for number, lesson in enumerate(lessons):
+            tell(f"checking {lesson.name}", number, len(lessons))
+            wrong = [] if no_runs else faults(lesson)
+            found += wrong
+            for fault in wrong:
+                echo(fault)
+            if not wrong:
+                contents = f"{counted(len(lesson.steps), 'step')}, {counted(len(lesson.goals), 'goal')}"
+                echo(f"{lesson.path}: {contents}: all is well")
+    return 1 if found else 0
+
+
+@command(argument("path", "FILE"))
+def new(path: str) -> int:
+    """Write a lesson to start from: a file FILE that ends in .md."""
+    from tuisim.lessons.skeleton import write_skeleton
+
+    target = Path(path).expanduser()
+    write_skeleton(target)
+    echo(f"{target} is written; `tuisim learn {target}` opens it, `tuisim learn check {target}` checks it.")
+    return 0
+
+
+_SUBCOMMANDS: dict[str, Command] = {
+    "open": open_lesson,
+    "list": list_lessons,
+    "status": status,
+    "check": check,
+    "new": new,
+}
+
+
+class _Learn(Group):
+    """The command `learn`: a word that is no subcommand is a lesson."""
+
+    def with_command(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Return the words with `open` first, unless they begin with another subcommand or ask for help."""
+        if args and (args[0] in self.listing or args[0] in ctx.help_option_names):
+            return args
+        return [self.default, *args]
+
+
+learn = _Learn(
+    "learn",
+    {name: (one.help or "").partition("\n")[0].partition(". ")[0].rstrip(".") for name, one in _SUBCOMMANDS.items()},
+    _SUBCOMMANDS.__getitem__,
+    default="open",
+    help="""Learn to program the robot, step by step.
+
+    Without a command, `tuisim learn [LESSON]` prints a lesson.
+    """,
+)

@@ -1,0 +1,76 @@
+"""The lessons that there are: those of tuisim, and those in a folder of the user's own."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from tuisim.config.files import FILE_SUFFIXES
+from tuisim.errors import ConfigError, nearest
+from tuisim.lessons.files import SUFFIX, load_lesson, name_of
+from tuisim.lessons.spec import Lesson
+
+VARIABLE = "TUISIM_LESSONS"
+"""The environment variable that names a folder of own lessons."""
+_TEXTS = Path(__file__).resolve().parent / "texts"
+
+
+def shipped_paths() -> dict[str, Path]:
+    """Return the files of tuisim's own lessons by name, in their order."""
+    return _in_folder(_TEXTS)
+
+
+def lesson_paths(folder: Path | str | None = None) -> dict[str, Path]:
+    """Return the files of all lessons by name: tuisim's own, then those of the folder, which may replace some.
+
+    Args:
+        folder: A folder of own lessons; None for that in `TUISIM_LESSONS`, if any.
+
+    Raises:
+        ConfigError: the folder does not exist, or has no lessons.
+    """
+    word = os.environ.get(VARIABLE, "") if folder is None else str(folder)
+    found = shipped_paths()
+    if not word:
+        return found
+    own = Path(word).expanduser()
+    key = VARIABLE if folder is None else "--folder"
+    if not own.is_dir():
+        raise ConfigError(f"there is no folder {own}", "name a folder of lessons", key=key)
+    lessons = _in_folder(own)
+    if not lessons:
+        raise ConfigError(f"no lessons in {own}", f"they are {SUFFIX} files, see `tuisim learn new`", key=key)
+    return found | lessons
+
+
+def _in_folder(folder: Path) -> dict[str, Path]:
+    return {name_of(path): path for path in sorted(folder.glob(f"*{SUFFIX}")) if path.name.lower() != "readme.md"}
+
+
+def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[str] = ()) -> Path:
+    """Return the file of a lesson, given by name or by path.
+
+    Args:
+        word: Its name, or its path.
+        folder: As for `lesson_paths`.
+        others: Other words that may have been meant.
+
+    Raises:
+        ConfigError: there is no such lesson.
+    """
+    if os.sep in word or word.lower().endswith((SUFFIX, *FILE_SUFFIXES)):
+        return Path(word).expanduser()
+    found = lesson_paths(folder)
+    if word not in found:
+        raise ConfigError(f"no such lesson {word!r}", f"{nearest(word, [*found, *others])} See `tuisim learn list`")
+    return found[word]
+
+
+def load_all(folder: Path | str | None = None) -> list[Lesson]:
+    """Read all lessons.
+
+    Raises:
+        ConfigError: the folder or a lesson is wrong.
+    """
+    return [load_lesson(path) for path in lesson_paths(folder).values()]

@@ -1,0 +1,188 @@
+"""What a student has done and measured, and whether that passes the check of a step."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeAlias, assert_never
+
+from tuisim.lessons.spec import Break, Check, Export, Note, Question, Run, Show, Visit, Watch
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedRun:
+    """A run has met goals; sent again as more of them are met."""
+
+    run_id: str
+    seed: int
+    met: frozenset[str]
+    """Names of the goals that it has met."""
+    from_start: bool = True
+    """Whether it began in the lesson's world, at its start."""
+
+
+@dataclass(frozen=True, slots=True)
+class Typed:
+    """An answer was typed."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Watched:
+    """A paused program has shown the value of a watch."""
+
+    expression: str
+
+
+@dataclass(frozen=True, slots=True)
+class BreakMet:
+    """A run has stopped at a breakpoint."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Exported:
+    """A log was written to a file."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Noted:
+    """The run in view has a note."""
+
+    text: str
+    level: float | None = None
+    """The mean of the samples that it is about; None if there are none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Visited:
+    """A past instant is in view."""
+
+    time_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A panel is on the screen."""
+
+    panel: str
+
+
+Event: TypeAlias = JudgedRun | Typed | Watched | BreakMet | Exported | Noted | Visited | Shown
+
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?)\s*[^\d.,]*$")
+
+
+def is_met(check: Check, events: Sequence[Event]) -> bool:
+    """Return whether what a student has done since a step began passes its check."""
+    match check:
+        case Run():
+            return good_runs(check, events) >= check.times
+        case Question():
+            return any(isinstance(event, Typed) and is_right(check, event.text) for event in events)
+        case Watch(expression):
+            return any(isinstance(event, Watched) and _same(event.expression, expression) for event in events)
+        case Break(matches):
+            return any(isinstance(event, BreakMet) and re.search(matches, event.text) for event in events)
+        case Export(suffix):
+            return any(isinstance(event, Exported) and event.name.endswith(suffix) for event in events)
+        case Note():
+            return any(isinstance(event, Noted) and _is_noted(check, event) for event in events)
+        case Visit(from_s, to_s):
+            return any(isinstance(event, Visited) and from_s <= event.time_s <= to_s for event in events)
+        case Show(panel):
+            return Shown(panel) in events
+        case _:
+            assert_never(check)
+
+
+def good_runs(check: Run, events: Sequence[Event]) -> int:
+    """Return how many runs have passed a check so far."""
+    runs = [event for event in events if isinstance(event, JudgedRun)]
+    good = [run for run in runs if set(check.goals) <= run.met and (run.from_start or check.anywhere)]
+    return len({run.seed for run in good} if check.seeds else {run.run_id for run in good})
+
+
+def is_right(question: Question, text: str) -> bool:
+    """Return whether a typed text answers a question. A number may have a unit; a choice may be given by its number."""
+    match question.answer:
+        case int() | float() as wanted:
+            found = _NUMBER.match(text)
+            return found is not None and abs(float(found[1].replace(",", ".")) - wanted) <= question.within + 1e-9
+        case str() as wanted:
+            return _same(_chosen(question, text), wanted)
+        case several:
+            return any(_same(text, wanted) for wanted in several)
+
+
+def _chosen(question: Question, text: str) -> str:
+    number = text.strip().rstrip(".)")
+    if question.choices and number.isdecimal() and 1 <= int(number) <= len(question.choices):
+        return question.choices[int(number) - 1]
+    return text
+
+
+def _same(text: str, wanted: str) -> bool:
+    """Compare two texts without regard to case, spaces and a full stop at the end."""
+    return _plain(text) == _plain(wanted)
+
+
+def _plain(text: str) -> str:
+    return "".join(text.split()).casefold().removesuffix(".")
+
+
+def _is_noted(check: Note, event: Noted) -> bool:
+    if check.level is not None and (event.level is None or abs(event.level - check.level) > check.within):
+        return False
+    return re.search(check.matches, event.text, re.IGNORECASE) is not None
+
+
+def event_of(check: Check, text: str) -> Event:
+    """Return what a text in a lesson's file stands for: an answer, a breakpoint, an expression, a file name.
+
+    Raises:
+        ValueError: the check is about runs, or needs a number and the text is none.
+    """
+    match check:
+        case Run():
+            raise ValueError("a check of runs takes a program")
+        case Question():
+            return Typed(text)
+        case Watch():
+            return Watched(text)
+        case Break():
+            return BreakMet(text)
+        case Export():
+            return Exported(text)
+        case Note(level=level):
+            return Noted(text, level)
+        case Visit():
+            return Visited(float(text))
+        case Show():
+            return Shown(text)
+        case _:
+            assert_never(check)
+
+
+def model_event(check: Check, model: str) -> Event:
+    """Return what passes a check that is not about runs; `model` is needed for breakpoints and notes.
+
+    Raises:
+        ValueError: as for `event_of`.
+    """
+    if model:
+        return event_of(check, model)
+    match check:
+        case Question(answer=answer):
+            return Typed(answer[0] if isinstance(answer, tuple) else f"{answer}")
+        case Watch(text) | Export(text) | Show(text):
+            return event_of(check, text)
+        case Visit(from_s, to_s):
+            return Visited((from_s + to_s) / 2)
+        case _:
+            raise ValueError("needs a model")

@@ -1,0 +1,55 @@
+"""Markdown as lines of styled text."""
+
+from __future__ import annotations
+
+import io
+
+from rich.console import Console
+from rich.markdown import Markdown
+from rich.style import Style
+from rich.theme import Theme
+
+from tuisim.charts.text_runs import Line, Run
+
+_THEME = Theme(
+    {
+        "markdown.code": Style(color="#ffd75f"),
+        "markdown.code_block": Style(color="#ffd75f"),
+        "markdown.strong": Style(color="#ffffff", bold=True),
+        "markdown.item.bullet": Style(color="#87d7af"),
+        "markdown.item.number": Style(color="#87d7af"),
+        "markdown.link": Style(color="#87afff"),
+    }
+)
+_PLAIN = Style(color="#d8dee6")
+
+
+def markdown_lines(text: str, width: int) -> list[Line]:
+    """Return Markdown as lines of at most a number of columns; lists are indented, code is coloured."""
+    console = Console(
+        file=io.StringIO(), width=max(10, width), theme=_THEME, force_terminal=True, color_system="truecolor"
+    )
+    drawn = Markdown(text, code_theme="ansi_dark", justify="left")
+    lines = console.render_lines(drawn, console.options.update(width=max(10, width)), pad=False)
+    found = [[_run(segment.text, segment.style) for segment in line if segment.text] for line in lines]
+    return [_stripped(line) for line in found]
+
+
+def _run(text: str, style: Style | None) -> Run:
+    # Without background colours, which differ from those of the panel.
+    shown = (style or Style()) + Style(bgcolor="default") if style and style.bgcolor else style or Style()
+    return text, _PLAIN + shown
+
+
+def _stripped(line: Line) -> Line:
+    while line and not line[-1][0].strip():
+        line.pop()
+    if line:
+        text, style = line[-1]
+        line[-1] = (text.rstrip(), style)
+    return line
+
+
+def plain_text(text: str, width: int = 80) -> str:
+    """Return Markdown as plain text."""
+    return "\n".join("".join(part for part, _ in line) for line in markdown_lines(text, width))

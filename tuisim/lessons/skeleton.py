@@ -1,0 +1,92 @@
+"""The lesson that an author starts from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tuisim.atomic import replacing
+from tuisim.errors import ConfigError
+from tuisim.lessons.files import SUFFIX, parse_lesson
+
+SKELETON = """\
++++
+# The head of the lesson, in TOML. `tuisim learn check FILE` says what is wrong with it.
+title = "Drive half a metre"
+why = "A robot that knows how far it drives can leave its charging station and come back."
+minutes = 10
+
+# The world, with the keys of a world file: background, robot, obstacles, noise, pen, panels …
+background = "Empty_Map"
+start = { x_mm = 500, y_mm = 500, heading_deg = 0 }
+
+# Goals, as in a goals file. Steps name them.
+[[goal]]
+name = "there"
+say = "Stop at x = 1000 mm."
+reach = { x_mm = 1000, within_mm = 5, at_end = true }
+
+# One [[step]] for each section ## below, in the same order, with exactly one check:
+#   run = ["GOAL", …]            a run meets goals; also run = { goals = ["GOAL"], times = 3, seeds = true }
+#   question = { ask = "…", answer = 50.2, within = 1 }     or answer = "a text", or choices = ["one", "another"]
+#   watch = "x"                  the variable is watched while the program is paused
+#   breakpoint = "REGEX"         a run stops at a breakpoint with such a text
+#   export = ".csv"              the log is exported to such a file
+#   note = { level = 50.2 }      a note is written in the analyser on samples with such a mean
+#   visit = { from_s = 1, to_s = 2 }                        a past instant of a run is in view
+#   show = "instrumentation"     a panel is on the screen
+# Further keys: hints, a list of texts; model and wrong, texts that pass and that do not, to test the check.
+[[step]]
+name = "turns"
+hints = ["One rotation moves the robot by the circumference of a wheel.", "That is 56 mm times pi."]
+wrong = ["5", "500"]
+[step.question]
+ask = "How many rotations of a 56 mm wheel are 500 mm?"
+answer = 2.842
+within = 0.01
+
+[[step]]
+name = "drive"
+hints = ["`tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 1)` drives one rotation."]
+run = ["there"]
++++
+
+One rotation of a wheel moves the robot by the wheel's circumference.
+
+```python program
+tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 1)
+```
+
+## How many rotations?
+
+The wheels have a diameter of 56 mm. Press `Q` and type the number.
+
+## Drive them
+
+Change the program with `d`, and run it with `R`.
+
+```python answer
+tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 500 / (3.14159 * 56))
+```
+
+```python wrong
+tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 5)
+```
+"""
+
+
+def write_skeleton(path: Path) -> None:
+    """Write a lesson to start from.
+
+    Raises:
+        ConfigError: the name is wrong, the file exists, or it cannot be written.
+    """
+    if path.suffix.lower() != SUFFIX:
+        raise ConfigError(f"is not a {SUFFIX} file", "a lesson is Markdown", file=str(path))
+    if path.exists():
+        raise ConfigError("exists already", "choose another name", file=str(path))
+    parse_lesson(SKELETON, path)
+    try:
+        with replacing(path) as file:
+            file.write(SKELETON.encode())
+    except OSError as error:
+        raise ConfigError(f"cannot be written: {error.strerror or error}", file=str(path)) from None

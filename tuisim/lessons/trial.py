@@ -1,0 +1,88 @@
+"""Tries a lesson out for its author: model answers must pass their steps, wrong programs must not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from tuisim.batch.pool import run_many
+from tuisim.batch.task import Result, Task
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import settings_of
+from tuisim.config.program_file import parse_program
+from tuisim.goals.judgement import GoalState, Judgement
+from tuisim.lessons.spec import Lesson, Run, Step
+from tuisim.runs.handle import RunOptions
+from tuisim.source import source_lines
+
+TIME_LIMIT_S = 180.0
+"""Simulated seconds that a program of a lesson may take."""
+_Key = tuple[str, int]
+"""The text of a program, and the seed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """A program that is tried on a step."""
+
+    step: Step
+    text: str
+    line: int
+    """Where it begins in the lesson's file; 0 for the model answer."""
+    passes: bool
+    """Whether it must pass."""
+    seed: int
+
+
+def trials(lesson: Lesson) -> list[Trial]:
+    """Return what has to be tried: each model answer as often as its step asks for, and each wrong program once."""
+    found = []
+    seed = build_run_spec(settings_of(lesson.settings)).seed
+    for step in lesson.steps:
+        if isinstance(step.check, Run):
+            found += [Trial(step, step.answer, 0, True, seed + more) for more in range(step.check.times)]
+            found += [Trial(step, wrong.text, wrong.line, False, seed) for wrong in step.wrong_programs]
+    return found
+
+
+def task_of(lesson: Lesson, text: str, seed: int, index: int = 0) -> Task:
+    """Return the run of a program in the world of a lesson, with a seed.
+
+    Raises:
+        ConfigError: its magic line, or the world, is wrong.
+    """
+    source = parse_program(text, f"{lesson.name}.py")
+    spec = build_run_spec(settings_of(source.options, lesson.settings, {"seed": seed}))
+    return Task(index, source.program, spec, RunOptions(time_limit_s=TIME_LIMIT_S), lesson.goals)
+
+
+def faults(lesson: Lesson) -> list[str]:
+    """Try a lesson out, and return what is wrong, each as a line; blocks while its programs run.
+
+    Raises:
+        ConfigError: a program's magic line, or the world, is wrong.
+    """
+    tried = trials(lesson)
+    keys: list[_Key] = list(dict.fromkeys((trial.text, trial.seed) for trial in tried))
+    tasks = [task_of(lesson, text, seed, index) for index, (text, seed) in enumerate(keys)]
+    results = {keys[result.index]: result for result in run_many(tasks, jobs=1)}
+    return [fault for trial in tried for fault in _faults_of(lesson, trial, results[trial.text, trial.seed])]
+
+
+def _faults_of(lesson: Lesson, trial: Trial, result: Result) -> Iterator[str]:
+    missed = _missed(trial.step, result.judgements)
+    if trial.passes and missed:
+        reasons = "; ".join(f"{each.goal.name}: {each.reason}" for each in missed)
+        error = f"; it ended with: {source_lines(result.error.strip())[-1]}" if result.error.strip() else ""
+        yield f"{lesson.path}, line {trial.step.line}: the model answer does not pass “{trial.step.title}”: " + (
+            f"{reasons}{error}"
+        )
+    elif not trial.passes and not missed:
+        yield f"{lesson.path}, line {trial.line}: this wrong program passes “{trial.step.title}”"
+
+
+def _missed(step: Step, judgements: Sequence[Judgement]) -> list[Judgement]:
+    assert isinstance(step.check, Run)
+    met = {each.goal.name for each in judgements if each.state is GoalState.MET}
+    by_name = {each.goal.name: each for each in judgements}
+    return [by_name[name] for name in step.check.goals if name not in met]
