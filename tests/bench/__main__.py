@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from tests.bench.back import back
 from tests.bench.batches import batches
+from tests.bench.cells import cells
 from tests.bench.crowded import crowded
 from tests.bench.debugging import debugging
 from tests.bench.figures import QUICK, THOROUGH, Effort, Figure, as_json, as_table
@@ -36,6 +37,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "stop": stop_latency,
     "debugger": debugging,
     "frames": frames,
+    "cells": cells,
     "chart": chart,
     "back": back,
     "recording": recording,

@@ -38,7 +38,7 @@ from tuisim.app.snapshot import GOOD_ENDS, AppState, Situation, end_label
 from tuisim.app.speech import Voice
 from tuisim.app.terminal.pacer import Pacer
 from tuisim.app.workspace import Workspace
-from tuisim.config.options import DEFAULT_FPS, Settings
+from tuisim.config.options import DEFAULT_FPS, CellSet, Settings
 from tuisim.core.spec import RunSpec
 from tuisim.errors import TuisimError
 from tuisim.protocol import End, Ended
@@ -95,6 +95,8 @@ class AppSettings:
     """Most frames a second."""
     colors: str = "auto"
     """auto, truecolor, 256, 16 or none; must be set before the terminal is opened."""
+    cells: str | None = None
+    """One of `CELLS`; None: what was chosen before, else auto."""
 
 
 def _first_next_run(settings: AppSettings) -> NextRun:
@@ -121,10 +123,13 @@ class LabApp(PanelMessages):
     def __init__(self, settings: AppSettings) -> None:
         super().__init__()
         self.settings = settings
+        if settings.cells not in (None, "auto"):
+            self.drawing.cells = CellSet(settings.cells)
         self.run_controller = RunController(settings.program, _first_next_run(settings), settings.speed)
         self.panel_area = PanelArea(settings.panels_on, settings.panels_off)
         self.key_footer = KeyFooter()
         self.pacer = Pacer(settings.fps)
+        self.drawing.is_slow, self.drawing.is_idle = lambda: self.pacer.is_slow, lambda: self.pacer.is_idle
         self.voice = Voice(settings.quiet)
         self.past_view = PastView(self.panel_area, self.run_controller.timeline)
         self.feed: Feed | None = None

@@ -29,14 +29,17 @@ if TYPE_CHECKING:
 Pixels = npt.NDArray[np.uint8]
 """Shape (height, width, 3): red, green, blue."""
 
-_SAMPLES = 4
-"""Samples along each side of a pixel."""
+_SAMPLES = (4, 8)
+"""Samples across and down a character cell."""
 
-_MIN_PX = 6.0
-"""A robot narrower than this many pixels is drawn enlarged, to be recognisable."""
+_MIN_CELLS = 6.0
+"""A robot narrower than this many cells is drawn enlarged, to be recognisable."""
 
-_FEW_PX = 8.0
-"""In a robot narrower than this many pixels the heading marker needs to project beyond the body."""
+_FEW_PX = {1: 8.0, 2: 18.0}
+"""By the pixels across a cell: in a robot narrower than this many pixels the heading marker needs to project beyond
+the body."""
+_NOSE_PX = {1: 1.2, 2: 2.5}
+"""How far it projects."""
 
 _BUMPER_MM = 8.0
 """Thickness of the bar of a touch sensor."""
@@ -49,7 +52,7 @@ _NONE, _EDGE, _BODY, _WHEEL, _SENSOR, _MARKER, _BUMPER, _PRESSED, _SPOT = range(
 
 @dataclass(frozen=True, slots=True)
 class Viewport:
-    """A picture of part of the field. Picture pixels are square; in the app, half a character cell."""
+    """A picture of part of the field; in the app, of character cells that are twice as high as wide."""
 
     width_px: int
     height_px: int
@@ -58,14 +61,21 @@ class Viewport:
     """World x of the left edge of the picture."""
     top_mm: float
     """World y of the top edge of the picture."""
+    cell_px: tuple[int, int] = (1, 2)
+    """Columns and rows of pixels in a character cell: by default they are square."""
+
+    @property
+    def mm_per_row(self) -> float:
+        """The height of a pixel."""
+        return self.mm_per_px * 2 * self.cell_px[0] / self.cell_px[1]
 
     def to_px(self, x_mm: float, y_mm: float) -> tuple[float, float]:
         """Return the picture column and row of a world point; whole numbers are pixel corners."""
-        return (x_mm - self.left_mm) / self.mm_per_px, (self.top_mm - y_mm) / self.mm_per_px
+        return (x_mm - self.left_mm) / self.mm_per_px, (self.top_mm - y_mm) / self.mm_per_row
 
     def to_mm(self, col_px: float, row_px: float) -> tuple[float, float]:
         """Return the world point of a picture position."""
-        return self.left_mm + col_px * self.mm_per_px, self.top_mm - row_px * self.mm_per_px
+        return self.left_mm + col_px * self.mm_per_px, self.top_mm - row_px * self.mm_per_row
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +113,7 @@ def drawn_reach_mm(outline: RobotOutline) -> float:
 
 def drawn_scale(outline: RobotOutline, view: Viewport) -> float:
     """Return the factor by which a robot is drawn enlarged, at least 1."""
-    return max(1.0, _MIN_PX * view.mm_per_px / (2 * outline.half_width_mm))
+    return max(1.0, _MIN_CELLS * view.cell_px[0] * view.mm_per_px / (2 * outline.half_width_mm))
 
 
 def draw_robot(
@@ -114,6 +124,7 @@ def draw_robot(
     colors: RobotColors,
     opacity: float = 1.0,
     pressed: tuple[bool, ...] = (),
+    detail_cols: int | None = None,
 ) -> None:
     """Paint a robot into a picture, clipped to it.
 
@@ -121,27 +132,41 @@ def draw_robot(
         picture: Written in place, shape (view.height_px, view.width_px, 3).
         opacity: 0 … 1.
         pressed: Whether each bumper is pressed; empty for none.
+        detail_cols: Details are drawn for so many pixels across a cell, 1 or 2; None: for those of the view.
     """
+    detail_cols = detail_cols or min(view.cell_px[0], 2)
     scale = drawn_scale(outline, view)
     col, row = view.to_px(pose.x_mm, pose.y_mm)
-    reach = drawn_reach_mm(outline) * scale / view.mm_per_px + 2
-    left, right = max(math.floor(col - reach), 0), min(math.ceil(col + reach), view.width_px)
-    top, bottom = max(math.floor(row - reach), 0), min(math.ceil(row + reach), view.height_px)
+    step_mm, row_mm = view.mm_per_px / scale, view.mm_per_row / scale
+    reach_mm = drawn_reach_mm(outline)
+    left, right = _around(col, reach_mm / step_mm + 2, view.width_px)
+    top, bottom = _around(row, reach_mm / row_mm + 2, view.height_px)
     if left >= right or top >= bottom:
         return
-    step_mm = view.mm_per_px / scale
-    fine = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
-    east = ((np.arange(left, right)[:, None] + fine).ravel() - col)[None, :] * step_mm
-    north = (row - (np.arange(top, bottom)[:, None] + fine).ravel())[:, None] * step_mm
+    across, down = (-(-samples // points) for samples, points in zip(_SAMPLES, view.cell_px, strict=True))
+    east = (_sampled(left, right, across) - col)[None, :] * step_mm
+    north = (row - _sampled(top, bottom, down))[:, None] * row_mm
     heading = math.radians(pose.heading_deg)
     cos, sin = math.cos(heading), math.sin(heading)
     side, ahead = east * sin - north * cos, east * cos + north * sin
-    parts = _parts(outline, side, ahead, step_mm)
-    _mount(parts, outline, side, ahead, step_mm, pressed)
-    _blend(picture[top:bottom, left:right], parts, colors, opacity)
+    detail_mm = step_mm * view.cell_px[0] / detail_cols
+    parts = _parts(outline, side, ahead, detail_mm, detail_cols)
+    _mount(parts, outline, side, ahead, detail_mm, pressed)
+    _blend(picture[top:bottom, left:right], parts.reshape(bottom - top, down, right - left, across), colors, opacity)
 
 
-def _parts(outline: RobotOutline, side: FloatArray, ahead: FloatArray, px_mm: float) -> npt.NDArray[np.intp]:
+def _around(middle_px: float, reach_px: float, size_px: int) -> tuple[int, int]:
+    return max(math.floor(middle_px - reach_px), 0), min(math.ceil(middle_px + reach_px), size_px)
+
+
+def _sampled(first_px: int, end_px: int, samples: int) -> FloatArray:
+    fine = (np.arange(samples) + 0.5) / samples
+    return (np.arange(first_px, end_px)[:, None] + fine).ravel()
+
+
+def _parts(
+    outline: RobotOutline, side: FloatArray, ahead: FloatArray, px_mm: float, cell_cols: int
+) -> npt.NDArray[np.intp]:
     """Return which part covers each sample, given by its distance to the right and ahead in mm."""
     across = np.abs(side)
     parts = np.zeros(side.shape, np.intp)
@@ -153,15 +178,17 @@ def _parts(outline: RobotOutline, side: FloatArray, ahead: FloatArray, px_mm: fl
     beside = np.abs(across - outline.half_width_mm + wheel_mm / 2) <= wheel_mm / 2
     parts[beside & (np.abs(ahead) <= outline.wheel_radius_mm)] = _WHEEL
     # In few pixels the nose sticks out by one, and it is never thinner than that, so that the heading can be seen.
-    tip = front_mm + (1.2 * px_mm if 2 * outline.half_width_mm < _FEW_PX * px_mm else 0.0)
+    nose_mm = _NOSE_PX[cell_cols] * px_mm if 2 * outline.half_width_mm < _FEW_PX[cell_cols] * px_mm else 0.0
+    tip = front_mm + nose_mm
     base = back_mm * 0.55
-    widest_mm = 0.62 * (outline.half_width_mm - outline.wheel_width_mm)
+    # Longer than wide: in an even triangle of few pixels any corner could be the tip.
+    widest_mm = min(0.62 * (outline.half_width_mm - outline.wheel_width_mm), 0.28 * (tip - base))
     flank = np.maximum(widest_mm * (tip - ahead) / (tip - base), 0.4 * px_mm)
     parts[(ahead >= base) & (ahead <= tip) & (across <= flank)] = _MARKER
-    # A sensor of less than about three pixels would only blur the marker.
     for x_mm, y_mm, radius in outline.color_sensors_mm:
-        if 2 * radius >= 1.5 * px_mm:
-            parts[np.hypot(side - x_mm, ahead - y_mm) <= radius] = _SENSOR
+        # In pixels of a whole cell a small sensor would only blur the marker.
+        if 2 * radius >= 1.5 * px_mm or cell_cols > 1:
+            parts[np.hypot(side - x_mm, ahead - y_mm) <= max(radius, 0.7 * px_mm)] = _SENSOR
     return parts
 
 
@@ -184,14 +211,13 @@ def _mount(
         parts[np.hypot(side - x_mm, ahead - y_mm) <= _SPOT_MM] = _SPOT
 
 
-def _blend(target: Pixels, parts: npt.NDArray[np.intp], colors: RobotColors, opacity: float) -> None:
+def _blend(target: Pixels, blocks: npt.NDArray[np.intp], colors: RobotColors, opacity: float) -> None:
     drawn = (colors.edge, colors.body, colors.wheel, colors.sensor, colors.marker)
     table = np.array([(0, 0, 0), *drawn, colors.bumper, colors.pressed, colors.spot], np.float32)
-    rows, cols = target.shape[:2]
-    blocks = parts.reshape(rows, _SAMPLES, cols, _SAMPLES)
+    samples = blocks.shape[1] * blocks.shape[3]
     total = table[blocks].sum(axis=(1, 3))
-    covered = (blocks != _NONE).sum(axis=(1, 3))[..., None] / _SAMPLES**2
-    mixed = target * (1 - opacity * covered) + total * (opacity / _SAMPLES**2)
+    covered = (blocks != _NONE).sum(axis=(1, 3))[..., None] / samples
+    mixed = target * (1 - opacity * covered) + total * (opacity / samples)
     target[:] = np.rint(mixed).astype(np.uint8)
 
 

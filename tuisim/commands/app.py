@@ -115,6 +115,7 @@ def open_app(**given: Any) -> int:
         speed=1.0 if settings.speed is None else settings.speed,
         fps=settings.fps,
         colors=settings.colors,
+        cells=settings.cells,
     )
     with _drawing_on_stdout():
         return run_app(app_settings)

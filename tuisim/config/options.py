@@ -9,6 +9,7 @@ import difflib
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from typing import Any, TypeVar
 
 from tuisim.core.profile import ProfileSpec
@@ -28,6 +29,28 @@ _Number = TypeVar("_Number", int, float)
 
 PRELOADS = tuple(PRELUDE_TEXTS)
 COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "none")
+
+
+class CellSet(StrEnum):
+    """The glyphs that pictures are drawn with, by the points in a cell (columns × rows)."""
+
+    HALF = "half"
+    """1 × 2"""
+    QUADRANT = "quadrant"
+    """2 × 2"""
+    SEXTANT = "sextant"
+    """2 × 3"""
+    OCTANT = "octant"
+    """2 × 4, Unicode 16"""
+    BRAILLE = "braille"
+    """2 × 4, as dots"""
+    ASCII = "ascii"
+    """Letters and signs"""
+
+
+AUTO = "auto"
+CELLS = (AUTO, *CellSet)
+"""What `--cells` accepts."""
 MAX_POSITION_MM = 10_000
 MAX_ANGLE_DEG = 36_000
 MAX_SEED = 2**63 - 1
@@ -96,6 +119,8 @@ class Settings:
     panels_off: tuple[str, ...] = ()
     fps: int = DEFAULT_FPS
     colors: str = "auto"
+    cells: str | None = None
+    """One of `CELLS`; None: what was chosen in the app, else auto."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,6 +251,7 @@ OPTIONS: tuple[Option, ...] = (
     Option(APP, ("-q", "--quiet"), "quiet", "Make no sound."),
     Option(APP, ("--fps",), "fps", "Maximum frames per second, 1 … 60.", "N", whole(1, 60)),
     Option(APP, ("--colors",), "colors", "Colours: auto, truecolor, 256, 16 or none.", "DEPTH", _one_of(COLOR_DEPTHS)),
+    Option(APP, ("--cells",), "cells", f"Glyphs of the world: {', '.join(CELLS)}.", "SET", _one_of(CELLS)),
     Option(PANEL, ("-O", "--output"), "panels_on", "Show the output.", panel="output"),
     Option(PANEL, ("-A", "--array"), "panels_on", "Show the sensor arrays.", panel="arrays"),
     Option(PANEL, ("-c", "--chart"), "panels_on", "Show the chart.", panel="chart"),

@@ -156,3 +156,29 @@ def test_an_answer_to_nothing_is_ignored() -> None:
     pacer = Pacer(20, clock=Clock())
     pacer.answered()
     assert pacer.ready()
+
+
+@pytest.mark.parametrize(
+    ("line", "slow"),
+    [
+        pytest.param(Line(), False, id="local"),
+        pytest.param(Line(1e6, 0.150), False, id="quick but far"),
+        pytest.param(Line(10_000), True, id="a frame takes 0.1 s"),
+        pytest.param(Line(6_000, 0.150), True, id="slow and far"),
+    ],
+)
+def test_fine_frames_are_for_quick_links(line: Line, slow: bool) -> None:
+    line.drive(3.0)
+
+    assert line.pacer.is_slow is slow
+
+
+def test_a_link_is_slow_until_the_first_answer_and_quick_again_after_a_rest() -> None:
+    line = Line(10_000)
+    assert line.pacer.is_slow
+
+    line.drive(3.0)
+    line.drive(3.0, size=10)
+
+    assert not line.pacer.is_slow
+    assert line.pacer.is_idle

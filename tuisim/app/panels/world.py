@@ -20,6 +20,7 @@ from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesView, PixelView
 from tuisim.charts.axes import time_limits
+from tuisim.charts.glyphs import glyph_set
 from tuisim.charts.text_runs import Run
 from tuisim.charts.world_image import Viewport, drawn_scale
 from tuisim.core.geometry import Pose
@@ -208,7 +209,9 @@ class WorldView(PixelView):
         if self._snapshot is None or self._mat is None or not self.size or not self.is_mounted:
             return
         scene = self._scene_of(self._snapshot)
-        port = following(self.size.width, 2 * self.size.height, self.zoom, scene.pose, self._port)
+        glyphs = glyph_set(self.cell_set)
+        width_px, height_px = glyphs.cols * self.size.width, glyphs.rows * self.size.height
+        port = following(width_px, height_px, self.zoom, scene.pose, self._port, (glyphs.cols, glyphs.rows))
         if self._painter is None:
             self._painter = ScenePainter(self._mat, self.ground_rgb, self.trace, self.color_mode.grey)
         trace = self.trace if self.past_trace is None else self.past_trace
@@ -216,7 +219,12 @@ class WorldView(PixelView):
             return
         self._scene, self._port, self._trace_drawn = scene, port, trace.count
         self._painter.trace = trace
-        self.set_picture(self._painter.paint(port, scene))
+        self.set_fine_picture(self._painter.paint(port, scene))
+
+    def redraw(self) -> None:
+        """Draw the image again: the app's glyphs or colours have changed."""
+        self._painter = None
+        self.repaint_scene()
 
     def _scene_of(self, snapshot: Snapshot) -> SceneState:
         spec = snapshot.spec
@@ -247,13 +255,19 @@ class WorldView(PixelView):
         still = moved_mm + turned_mm > 0 and snapshot.instant.left_speed_dps == snapshot.instant.right_speed_dps == 0
         return still or max(moved_mm, turned_mm, lengthened_mm) > _RAY_LAG_PX * self._port.mm_per_px
 
+    @property
+    def _cell_mm(self) -> float:
+        """The width of a cell."""
+        return self._port.mm_per_px * self._port.cell_px[0] if self._port else 0.0
+
     def _at(self, event: events.MouseEvent) -> tuple[float, float]:
         """Return the world position under the mouse: the cell centre, or finer if the terminal supports it."""
         assert self._port is not None
         col, row = event.pointer_x, event.pointer_y
         if col == event.x and row == event.y:
             col, row = col + 0.5, row + 0.5
-        return self._port.to_mm(col, 2 * row)
+        cols, rows = self._port.cell_px
+        return self._port.to_mm(cols * col, rows * row)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
         if event.button != 1 or self._port is None or self._snapshot is None:
@@ -261,7 +275,7 @@ class WorldView(PixelView):
         if not self._grip_robot(event) and self._edits_boxes:
             x_mm, y_mm = self._at(event)
             boxes = self._snapshot.spec.world.obstacles
-            self._box_grip = BoxGrip(boxes, box_at(boxes, x_mm, y_mm, self._port.mm_per_px / 2), x_mm, y_mm)
+            self._box_grip = BoxGrip(boxes, box_at(boxes, x_mm, y_mm, self._cell_mm / 2), x_mm, y_mm)
             self.capture_mouse()
             event.stop()
 
@@ -271,7 +285,7 @@ class WorldView(PixelView):
         x_mm, y_mm = self._at(event)
         robot = self._snapshot.spec.robot
         half_mm = robot.wheel_spacing_mm / 2
-        reach_mm = half_mm * drawn_scale(outline_of(robot), self._port) + 1.5 * self._port.mm_per_px
+        reach_mm = half_mm * drawn_scale(outline_of(robot), self._port) + 1.5 * self._cell_mm
         if math.hypot(x_mm - pose.x_mm, y_mm - pose.y_mm) > max(reach_mm, half_mm - robot.back_mm / 2):
             return False
         self._grip = _Grip(pose, x_mm, y_mm, turns=event.shift or event.ctrl)

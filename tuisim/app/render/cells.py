@@ -1,4 +1,4 @@
-"""Cells: two pixels one above the other, the difference between two frames, and the colours that terminals support."""
+"""Cells: a glyph in two colours fitted to picture points, the difference between two frames, terminals' colours."""
 
 from __future__ import annotations
 
@@ -9,20 +9,146 @@ import numpy as np
 import numpy.typing as npt
 
 from tuisim.app.render.mat import Pixels
+from tuisim.charts.glyphs import GlyphSet
 
 Cells = npt.NDArray[np.int64]
-"""Shape (rows, columns): the upper colour in bits 24 to 47, the lower in bits 0 to 23, each 0xRRGGBB."""
+"""Shape (rows, columns): the glyph's number in `GLYPHS` in bits 48 to 62, the colour of the points that it covers in
+bits 24 to 47, that of the others in bits 0 to 23, each 0xRRGGBB."""
 
 MERGE_GAP = 3
 """Unchanged cells between two runs that are cheaper to send again than to jump over."""
 
+_FLAT = 3
+"""Points whose channels differ by no more than this are one colour."""
+_KEPT_LAB = 2.0
+"""A cell keeps its glyph if that is further from its points, as the square of a colour difference, by no more than
+this for each of them."""
+_OTHER = 1e9
+"""Added to the distance of a point of the other group; more than any distance."""
+_AT_ONCE = 1024
+"""Cells that are fitted in one step, to limit memory."""
 
-def to_cells(picture: Pixels) -> Cells:
-    """Return the half-block cells of a picture with an even number of rows."""
-    colors = picture.astype(np.int64)
-    packed = colors[..., 0] << 16 | colors[..., 1] << 8 | colors[..., 2]
-    cells: Cells = packed[0::2] << 24 | packed[1::2]
+
+CellIndex = tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]
+"""The rows and columns of some cells."""
+
+
+def all_cells(rows: int, cols: int) -> CellIndex:
+    """Return every cell of a picture."""
+    at_rows, at_cols = np.indices((rows, cols)).reshape(2, -1)
+    return at_rows, at_cols
+
+
+def changed_cells(old: Pixels, new: Pixels, glyphs: GlyphSet) -> CellIndex:
+    """Return the cells in which two pictures of the same shape differ."""
+    cols = new.shape[1] // glyphs.cols
+    at = np.flatnonzero((new != old).ravel())
+    row_bytes = new.shape[1] * 3
+    changed = np.zeros((len(new) // glyphs.rows, cols), bool)
+    changed[at // (row_bytes * glyphs.rows), at % row_bytes // (3 * glyphs.cols)] = True
+    at_rows, at_cols = np.nonzero(changed)
+    return at_rows, at_cols
+
+
+def fit_cells(picture: Pixels, glyphs: GlyphSet, at: CellIndex, before: Cells | None = None) -> Cells:
+    """Return the glyphs and colours that show some cells of a picture best.
+
+    Args:
+        picture: A whole number of cells, each with the points of the glyphs.
+        glyphs: The glyphs to choose from.
+        at: Which cells.
+        before: What they show now, shape (n,): a glyph that is as good as the best one stays.
+
+    Returns:
+        Shape (n,).
+    """
+    rows, cols = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
+    points = picture.reshape(rows, glyphs.rows, cols, glyphs.cols, 3)
+    cells: Cells = np.empty(len(at[0]), np.int64)
+    for first in range(0, len(cells), _AT_ONCE):
+        some = slice(first, first + _AT_ONCE)
+        chosen = points[at[0][some], :, at[1][some]].reshape(-1, glyphs.rows * glyphs.cols, 3)
+        cells[some] = _fitted(chosen, glyphs, None if before is None else before[some] >> 48)
     return cells
+
+
+def _fitted(points: npt.NDArray[np.uint8], glyphs: GlyphSet, before: npt.NDArray[np.int64] | None) -> Cells:
+    """Return the cells for points of shape (n, points of a cell, 3); `before` are the numbers of their glyphs."""
+    packed = _packed(points.astype(np.int64))
+    if points.shape[1] == 2:
+        # The two points are the two colours.
+        halves: Cells = packed[:, 0] << 24 | packed[:, 1]
+        return halves
+    first = packed[:, 0]
+    cells: Cells = first << 24 | first
+    uneven = np.flatnonzero((points.max(axis=1) - points.min(axis=1) > _FLAT).any(axis=1))
+    lab = _lab(points[uneven])
+    chosen = _best_glyphs(lab, glyphs, None if before is None else before[uneven])
+    fore, back = _typical(lab, glyphs.covered[chosen])
+    colors = packed[uneven]
+    at = np.arange(len(uneven))
+    cells[uneven] = glyphs.numbers[chosen] << 48 | colors[at, fore] << 24 | colors[at, back]
+    return cells
+
+
+def _typical(lab: npt.NDArray[np.float32], covered: npt.NDArray[np.float32]) -> list[npt.NDArray[np.intp]]:
+    """Return the point of each cell's two groups that is nearest to the mean of its group.
+
+    It is a colour of the picture; the mean of three colours is often none, and looks blurred.
+    """
+    found: list[npt.NDArray[np.intp]] = []
+    for share in (covered, 1 - covered):
+        mean = np.matmul(share[:, None], lab) / share.sum(axis=1)[:, None, None]
+        found.append((np.square(lab - mean).sum(axis=2) + _OTHER * (share < 0.5)).argmin(axis=1))
+    return found
+
+
+def _best_glyphs(
+    lab: npt.NDArray[np.float32], glyphs: GlyphSet, before: npt.NDArray[np.int64] | None
+) -> npt.NDArray[np.intp]:
+    """Return which glyph splits the points of each cell into the two most even groups.
+
+    The search is exhaustive: with the points relative to their mean, the sum of those that a glyph covers gives the
+    variance that the split explains.
+    """
+    lab = lab - lab.mean(axis=1, keepdims=True)
+    sums = np.matmul(lab.transpose(0, 2, 1), glyphs.covered.T)
+    count = glyphs.covered.sum(axis=1)
+    explained = np.square(sums, out=sums).sum(axis=1) * (1 / count + 1 / (lab.shape[1] - count))
+    best: npt.NDArray[np.intp] = explained.argmax(axis=1)
+    if before is None:
+        return best
+    at = np.arange(len(best))
+    kept = np.searchsorted(glyphs.numbers, before).clip(max=len(glyphs.numbers) - 1)
+    was_here = glyphs.numbers[kept] == before
+    as_good = explained[at, kept] >= explained[at, best] - _KEPT_LAB * lab.shape[1]
+    return np.where(was_here & as_good, kept, best)
+
+
+def _packed(colors: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    return colors[..., 0] << 16 | colors[..., 1] << 8 | colors[..., 2]
+
+
+@lru_cache(maxsize=1)
+def _linear() -> npt.NDArray[np.float32]:
+    """Return the light of each sRGB value."""
+    value = np.arange(256) / 255
+    return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4).astype(np.float32)
+
+
+_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]], np.float32) / np.array(
+    [[0.9505], [1.0], [1.089]], np.float32
+)
+"""From linear sRGB to XYZ, relative to white (D65)."""
+
+
+def _lab(points: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
+    """Return colours in CIE L*a*b*, where distances are about as large as they look."""
+    xyz = _linear()[points] @ _XYZ.T
+    root = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16 / 116)
+    x, y, z = root[..., 0], root[..., 1], root[..., 2]
+    lab: npt.NDArray[np.float32] = np.stack((116 * y - 16, 500 * (x - y), 200 * (y - z)), axis=-1)
+    return lab
 
 
 def changed_runs(old: Cells, new: Cells, gap: int = MERGE_GAP) -> list[tuple[int, int, int]]:
@@ -79,6 +205,36 @@ class ColorMode:
     grey: bool = False
     """Colours are unwanted (NO_COLOR)."""
 
+    @property
+    def dithers(self) -> bool:
+        """Whether there are so few colours that shades between them are dithered."""
+        return self.depth < PALETTE_256
+
+
+def reduce_cells(cells: Cells, mode: ColorMode) -> Cells:
+    """Return cells in colours that the terminal supports."""
+    if mode.depth >= TRUECOLOR and not mode.grey:
+        return cells
+    colors = np.stack((cells >> 24, cells), axis=-1)[..., None] >> np.array([16, 8, 0]) & 255
+    flat = colors.reshape(-1, 3).astype(np.uint8)
+    reduced = _packed(_nearest(_greyed(flat, mode), mode.depth).astype(np.int64)).reshape(*cells.shape, 2)
+    return cells >> 48 << 48 | reduced[..., 0] << 24 | reduced[..., 1]
+
+
+def _greyed(pixels: Pixels, mode: ColorMode) -> Pixels:
+    if not mode.grey:
+        return pixels
+    return np.repeat(np.rint(pixels @ _LUMA).astype(np.uint8)[:, None], 3, axis=1)
+
+
+def _nearest(pixels: Pixels, depth: int) -> Pixels:
+    """Return the nearest colours of a palette."""
+    if depth >= TRUECOLOR:
+        return pixels
+    if depth >= PALETTE_256:
+        return _palette_rgb()[_nearest_256(pixels.astype(np.int32))]
+    return _STANDARD[_nearest_16(pixels.astype(np.int32))].astype(np.uint8)
+
 
 def reduce_pixels(pixels: Pixels, rows: npt.NDArray[np.intp], cols: npt.NDArray[np.intp], mode: ColorMode) -> Pixels:
     """Return pixels in colours that the terminal supports.
@@ -94,17 +250,13 @@ def reduce_pixels(pixels: Pixels, rows: npt.NDArray[np.intp], cols: npt.NDArray[
     Returns:
         Shape (n, 3).
     """
-    if mode.grey:
-        pixels = np.repeat(np.rint(pixels @ _LUMA).astype(np.uint8)[:, None], 3, axis=1)
-    if mode.depth >= TRUECOLOR:
-        return pixels
-    if mode.depth >= PALETTE_256:
-        return _palette_rgb()[_nearest_256(pixels.astype(np.int32))]
+    pixels = _greyed(pixels, mode)
+    if not mode.dithers:
+        return _nearest(pixels, mode.depth)
     # Strong colours are close enough to one of the 16; dithering would only spoil them.
     paleness = 1 - (pixels.max(axis=1).astype(np.float32) - pixels.min(axis=1)) / 255
     offset = (_BAYER[rows % 4, cols % 4] - 7.5) / 8 * _DITHER * paleness
-    shaded = np.clip(pixels + offset[:, None], 0, 255).astype(np.int32)
-    return _STANDARD[_nearest_16(shaded)].astype(np.uint8)
+    return _nearest(np.clip(pixels + offset[:, None], 0, 255).astype(np.uint8), mode.depth)
 
 
 def sgr_index(rgb: int, depth: int) -> int:

@@ -25,12 +25,20 @@ _KEEP_INSIDE = 0.22
 """A following view moves once the robot is nearer to an edge than this share of its size."""
 
 
-def whole_field(width_px: int, height_px: int) -> Viewport:
+def whole_field(width_px: int, height_px: int, cell_px: tuple[int, int] = (1, 2)) -> Viewport:
     """Return the viewport that shows the whole field, centred, in a picture of that size (each at least 1)."""
-    return _around(width_px, height_px, _fit_mm_per_px(width_px, height_px), FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2)
+    mm_per_px = _fit_mm_per_px(width_px, height_px, cell_px)
+    return _around(width_px, height_px, mm_per_px, FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2, cell_px)
 
 
-def following(width_px: int, height_px: int, zoom: int, pose: Pose, previous: Viewport | None) -> Viewport:
+def following(
+    width_px: int,
+    height_px: int,
+    zoom: int,
+    pose: Pose,
+    previous: Viewport | None,
+    cell_px: tuple[int, int] = (1, 2),
+) -> Viewport:
     """Return a viewport that keeps the robot visible.
 
     The view stays still until the robot comes near an edge, and then jumps so that the robot is in the middle again: a
@@ -42,32 +50,42 @@ def following(width_px: int, height_px: int, zoom: int, pose: Pose, previous: Vi
         zoom: One of `ZOOMS`; 1 shows the whole field and never moves.
         pose: The pose of the robot.
         previous: The viewport of the last frame, if any.
+        cell_px: Columns and rows of pixels in a character cell.
     """
     if zoom == 1:
-        return whole_field(width_px, height_px)
-    mm_per_px = _fit_mm_per_px(width_px, height_px) / zoom
+        return whole_field(width_px, height_px, cell_px)
+    mm_per_px = _fit_mm_per_px(width_px, height_px, cell_px) / zoom
     same_scale = (
         previous is not None
-        and (previous.width_px, previous.height_px) == (width_px, height_px)
+        and (previous.width_px, previous.height_px, previous.cell_px) == (width_px, height_px, cell_px)
         and math.isclose(previous.mm_per_px, mm_per_px)
     )
     if same_scale and previous is not None and _well_inside(previous, pose):
         return previous
     x_mm = _clamped(pose.x_mm, width_px * mm_per_px, FIELD_WIDTH_MM)
-    y_mm = _clamped(pose.y_mm, height_px * mm_per_px, FIELD_HEIGHT_MM)
-    moved = _around(width_px, height_px, mm_per_px, x_mm, y_mm)
+    y_mm = _clamped(pose.y_mm, height_px * mm_per_px * _tall(cell_px), FIELD_HEIGHT_MM)
+    moved = _around(width_px, height_px, mm_per_px, x_mm, y_mm, cell_px)
     return previous if previous is not None and moved == previous else moved
 
 
-def _fit_mm_per_px(width_px: int, height_px: int) -> float:
-    return max(FIELD_WIDTH_MM / width_px, FIELD_HEIGHT_MM / height_px)
+def _tall(cell_px: tuple[int, int]) -> float:
+    """Return the height of a pixel, as a multiple of its width."""
+    return 2 * cell_px[0] / cell_px[1]
 
 
-def _around(width_px: int, height_px: int, mm_per_px: float, x_mm: float, y_mm: float) -> Viewport:
+def _fit_mm_per_px(width_px: int, height_px: int, cell_px: tuple[int, int]) -> float:
+    return max(FIELD_WIDTH_MM / width_px, FIELD_HEIGHT_MM / (height_px * _tall(cell_px)))
+
+
+def _around(
+    width_px: int, height_px: int, mm_per_px: float, x_mm: float, y_mm: float, cell_px: tuple[int, int]
+) -> Viewport:
     # Whole-pixel margins: a field edge that falls between pixels would be a blurred line.
+    mm_per_row = mm_per_px * _tall(cell_px)
     left_px = round(width_px / 2 - x_mm / mm_per_px)
-    top_px = round(height_px / 2 - (FIELD_HEIGHT_MM - y_mm) / mm_per_px)
-    return Viewport(width_px, height_px, mm_per_px, -left_px * mm_per_px, FIELD_HEIGHT_MM + top_px * mm_per_px)
+    top_px = round(height_px / 2 - (FIELD_HEIGHT_MM - y_mm) / mm_per_row)
+    left_mm, top_mm = -left_px * mm_per_px, FIELD_HEIGHT_MM + top_px * mm_per_row
+    return Viewport(width_px, height_px, mm_per_px, left_mm, top_mm, cell_px)
 
 
 def _clamped(centre_mm: float, shown_mm: float, field_mm: float) -> float:
@@ -84,7 +102,7 @@ def _well_inside(view: Viewport, pose: Pose) -> bool:
     left = view.left_mm <= 0 or col >= margin_col
     right = view.left_mm + view.width_px * view.mm_per_px >= FIELD_WIDTH_MM or col <= view.width_px - margin_col
     top = view.top_mm >= FIELD_HEIGHT_MM or row >= margin_row
-    bottom = view.top_mm - view.height_px * view.mm_per_px <= 0 or row <= view.height_px - margin_row
+    bottom = view.top_mm - view.height_px * view.mm_per_row <= 0 or row <= view.height_px - margin_row
     return left and right and top and bottom
 
 
@@ -94,8 +112,8 @@ _REMEMBERED = 4
 def shrink(mat: Pixels, view: Viewport, outside_rgb: tuple[int, int, int]) -> Pixels:
     """Return what a viewport shows of a mat.
 
-    Each picture pixel is the mean of the mat pixels under it, moved toward the colour that
-    is rarer there, so that a line of 10 mm can still be seen when a pixel covers 30 mm.
+    Each picture pixel is the mean of the mat pixels under it. Where a pixel is as wide as a cell, it is moved toward
+    the colour that is rarer there, so that a line of 10 mm can still be seen when a pixel covers 30 mm.
 
     Args:
         mat: The mat, one pixel a mm, row 0 at the top of the field.
@@ -109,10 +127,10 @@ def shrink(mat: Pixels, view: Viewport, outside_rgb: tuple[int, int, int]) -> Pi
     picture[:] = outside_rgb
     height_mm, width_mm = mat.shape[:2]
     cols, col_edges = _edges(view.left_mm, view.mm_per_px, view.width_px, width_mm)
-    rows, row_edges = _edges(height_mm - view.top_mm, view.mm_per_px, view.height_px, height_mm)
+    rows, row_edges = _edges(height_mm - view.top_mm, view.mm_per_row, view.height_px, height_mm)
     if len(col_edges) < 2 or len(row_edges) < 2:
         return picture
-    picture[rows, cols] = _reduced(mat, row_edges, col_edges)
+    picture[rows, cols] = _reduced(mat, row_edges, col_edges, keep_detail=view.cell_px[0] == 1)
     return picture
 
 
@@ -131,7 +149,9 @@ def _edges(start_mm: float, mm_per_px: float, count: int, size_mm: int) -> tuple
     return slice(first, last), edges
 
 
-def _reduced(mat: Pixels, row_edges: npt.NDArray[np.intp], col_edges: npt.NDArray[np.intp]) -> Pixels:
+def _reduced(
+    mat: Pixels, row_edges: npt.NDArray[np.intp], col_edges: npt.NDArray[np.intp], keep_detail: bool
+) -> Pixels:
     part = mat[row_edges[0] : row_edges[-1], col_edges[0] : col_edges[-1]]
     rows, cols = row_edges[:-1] - row_edges[0], col_edges[:-1] - col_edges[0]
     # The sum over the rows of a pixel stays below 2^16 as long as it covers at most 257 mm.
@@ -139,6 +159,9 @@ def _reduced(mat: Pixels, row_edges: npt.NDArray[np.intp], col_edges: npt.NDArra
     sums = np.add.reduceat(_reduced_rows(np.add, part, rows, narrow), cols, axis=1, dtype=np.uint32)
     areas = np.maximum(np.diff(row_edges), 1)[:, None, None] * np.maximum(np.diff(col_edges), 1)[None, :, None]
     mean = (sums / areas).astype(np.float32)
+    if not keep_detail:
+        plain: Pixels = np.rint(mean).astype(np.uint8)
+        return plain
     low = np.minimum.reduceat(_reduced_rows(np.minimum, part, rows, np.uint8), cols, axis=1).astype(np.float32)
     high = np.maximum.reduceat(_reduced_rows(np.maximum, part, rows, np.uint8), cols, axis=1).astype(np.float32)
     return _keep_detail(mean, low, high)

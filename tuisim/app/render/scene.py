@@ -119,13 +119,18 @@ def trace_pixels(view: Viewport, xs_mm: FloatArray, ys_mm: FloatArray, width_mm:
     """
     xs, ys = _joined(xs_mm, ys_mm, view.mm_per_px / 2)
     cols = (xs - view.left_mm) / view.mm_per_px
-    rows = (view.top_mm - ys) / view.mm_per_px
-    across = max(1, round(width_mm / view.mm_per_px))
-    spread = np.arange(across) - (across - 1) / 2
-    cols = np.floor(cols[:, None, None] + spread[None, :, None] + 0 * spread[None, None, :]).ravel()
-    rows = np.floor(rows[:, None, None] + 0 * spread[None, :, None] + spread[None, None, :]).ravel()
+    rows = (view.top_mm - ys) / view.mm_per_row
+    across, down = _spread(width_mm / view.mm_per_px), _spread(width_mm / view.mm_per_row)
+    cols = np.floor(cols[:, None, None] + across[None, :, None] + 0 * down[None, None, :]).ravel()
+    rows = np.floor(rows[:, None, None] + 0 * across[None, :, None] + down[None, None, :]).ravel()
     inside = (cols >= 0) & (cols < view.width_px) & (rows >= 0) & (rows < view.height_px)
     return rows[inside].astype(np.intp), cols[inside].astype(np.intp)
+
+
+def _spread(width_px: float) -> FloatArray:
+    """Return the pixels across a line, relative to its middle."""
+    count = max(1, round(width_px))
+    return np.arange(count, dtype=np.float64) - (count - 1) / 2
 
 
 def _joined(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatArray, FloatArray]:
@@ -162,19 +167,20 @@ def draw_rays(picture: Pixels, view: Viewport, x_mm: float, y_mm: float, rays: S
     high_col, high_row = (round(edge) for edge in view.to_px(FIELD_WIDTH_MM, 0.0))
     low_col, low_row = max(low_col, 0), max(low_row, 0)
     high_col, high_row = min(high_col, view.width_px), min(high_row, view.height_px)
+    angles, lengths_mm = np.radians([angle for angle, _ in rays]), np.array([length for _, length in rays])
+    across, down = np.cos(angles) / view.mm_per_px, np.sin(angles) / view.mm_per_row
+    # One sample for each step along the longer axis: an even line without doubled pixels.
+    step_mm = 1 / np.maximum(np.abs(across), np.abs(down))
+    along_mm = np.arange(math.ceil((lengths_mm / step_mm).max())) * step_mm[:, None]
+    cols = np.floor(col + along_mm * across[:, None]).astype(np.intp)
+    rows = np.floor(row - along_mm * down[:, None]).astype(np.intp)
+    inside = (cols >= low_col) & (cols < high_col) & (rows >= low_row) & (rows < high_row)
+    inside &= along_mm < lengths_mm[:, None]
     covered = np.zeros(picture.shape[:2], bool)
-    for angle_deg, length_mm in rays:
-        angle = math.radians(angle_deg)
-        cos, sin = math.cos(angle), math.sin(angle)
-        # One sample for each step along the longer axis: an even line without doubled pixels.
-        longer = max(abs(cos), abs(sin))
-        along = np.arange(0, length_mm / view.mm_per_px * longer) / longer
-        cols = np.floor(col + along * cos).astype(np.intp)
-        rows = np.floor(row - along * sin).astype(np.intp)
-        inside = (cols >= low_col) & (cols < high_col) & (rows >= low_row) & (rows < high_row)
-        covered[rows[inside], cols[inside]] = True
-    mixed = picture[covered] * (1 - _RAY_OPACITY) + np.array(RAY_RGB) * _RAY_OPACITY
-    picture[covered] = np.rint(mixed).astype(np.uint8)
+    covered[rows[inside], cols[inside]] = True
+    covered_at = np.nonzero(covered)
+    mixed = picture[covered_at] * (1 - _RAY_OPACITY) + np.array(RAY_RGB) * _RAY_OPACITY
+    picture[covered_at] = np.rint(mixed).astype(np.uint8)
 
 
 def draw_obstacles(picture: Pixels, view: Viewport, obstacles: Sequence[Obstacle], marked: int | None = None) -> None:
@@ -207,9 +213,11 @@ def draw_beacon(picture: Pixels, view: Viewport, x_mm: float, y_mm: float) -> No
     """
     col, row = (math.floor(at) for at in view.to_px(x_mm, y_mm))
     radius = max(1, round(_BEACON_MM / view.mm_per_px))
+    tall = view.mm_per_row / view.mm_per_px
     aside = np.arange(-radius, radius + 1)
-    rows, cols = np.nonzero(np.hypot(aside[:, None], aside[None, :]) <= radius + 0.5)
-    light = np.hypot(rows - radius, cols - radius) <= radius / 3
+    away = np.hypot(aside[:, None] * tall, aside[None, :])
+    rows, cols = np.nonzero(away <= radius + 0.5)
+    light = away[rows, cols] <= radius / 3
     rows, cols = rows + row - radius, cols + col - radius
     inside = (rows >= 0) & (rows < view.height_px) & (cols >= 0) & (cols < view.width_px)
     shades = np.where(light[:, None], np.array(BEACON_CORE_RGB, np.uint8), np.array(BEACON_RGB, np.uint8))

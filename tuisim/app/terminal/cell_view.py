@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
 import numpy as np
+import numpy.typing as npt
 from rich.color import Color
 from rich.console import Console
 from rich.segment import Segment
@@ -16,20 +18,28 @@ from textual.events import MouseEvent
 from textual.filter import LineFilter
 from textual.geometry import Region
 from textual.strip import Strip
+from textual.timer import Timer
 from textual.widget import Widget
 
 from tuisim.app.render.cells import (
     PALETTE_16,
     PALETTE_256,
     TRUECOLOR,
+    CellIndex,
     Cells,
     ColorMode,
+    all_cells,
+    changed_cells,
     changed_runs,
+    fit_cells,
+    reduce_cells,
     reduce_pixels,
-    to_cells,
 )
 from tuisim.app.render.mat import Pixels
+from tuisim.app.terminal.drawing import BLOCKS, drawing_of
+from tuisim.charts.glyphs import GLYPHS, GlyphSet, glyph_set, half_block_of
 from tuisim.charts.text_runs import Run, cut_line
+from tuisim.config.options import CellSet
 
 _TEXT_GAP = 8
 """This many unchanged characters cost less than a new cursor position and style."""
@@ -45,14 +55,29 @@ class RowsView(Widget):
         return _cut([self.render_line(y) for y in crop.line_range], crop, self.size.width, self.rich_style)
 
 
+REFINE_S = 0.1
+"""Time between two steps in which coarse cells become fine."""
+REFINED_CELLS = 100
+"""Cells that become fine in one step."""
+STILL_S = 0.3
+"""An image that has not changed for this long stands still."""
+
+
 class PixelView(RowsView):
-    """Shows an image as half blocks: one column per pixel, one row per two pixels."""
+    """Shows an image in cells of two colours."""
 
     def __init__(self) -> None:
         super().__init__()
         self._raw: Pixels | None = None
+        self._square: Pixels | None = None
+        """The image, if its pixels are square."""
         self._shown: Pixels = np.empty((0, 0, 3), np.uint8)
         self._cells: Cells = np.empty((0, 0), np.int64)
+        self._coarse: npt.NDArray[np.bool_] = np.empty((0, 0), bool)
+        """The cells that are drawn as half blocks, to be refined."""
+        self._glyphs = glyph_set(CellSet.HALF)
+        self._refine: Timer | None = None
+        self._changed_s = 0.0
         self._strips: list[Strip | None] = []
 
     @property
@@ -61,14 +86,52 @@ class PixelView(RowsView):
         return ColorMode(color_depth(self.app.console), bool(self.app.no_color))
 
     @property
+    def cell_set(self) -> CellSet:
+        """The glyphs of the app."""
+        return drawing_of(self.app).cells
+
+    @property
     def ground_rgb(self) -> tuple[int, int, int]:
         """Background colour of the widget."""
         return self.background_colors[1].rgb
 
     def set_picture(self, picture: Pixels) -> None:
-        """Show an image with an even number of rows; only cells that differ are repainted."""
+        """Show an image of square pixels, two in a cell; only cells that differ are repainted."""
+        self._square = picture
+        if self.cell_set in BLOCKS:
+            self._show(picture, CellSet.HALF)
+            return
+        fine = glyph_set(self.cell_set)
+        self._show(picture.repeat(fine.rows // 2, axis=0).repeat(fine.cols, axis=1), self.cell_set)
+
+    def set_fine_picture(self, picture: Pixels) -> None:
+        """Show an image with the points of the app's glyphs; only cells that differ are repainted."""
+        self._show(picture, self.cell_set)
+
+    def _show(self, picture: Pixels, cell_set: CellSet) -> None:
+        old, was = self._shown, self._cells
+        fine = glyph_set(cell_set)
         self._reduce(picture)
-        cells = to_cells(self._shown)
+        shape = len(picture) // fine.rows, picture.shape[1] // fine.cols
+        as_before = was.shape == shape and old.shape == picture.shape and fine is self._glyphs
+        at = changed_cells(old, self._shown, fine) if as_before else all_cells(*shape)
+        self._glyphs = fine
+        is_coarse = cell_set in BLOCKS and cell_set != CellSet.HALF and drawing_of(self.app).is_slow()
+        if not as_before:
+            self._coarse = np.zeros(shape, bool)
+        self._coarse[at] = is_coarse
+        cells = was.copy() if as_before else np.empty(shape, np.int64)
+        glyphs = half_block_of(cell_set) if is_coarse else fine
+        cells[at] = self._fitted(glyphs, at, was[at] if as_before else None)
+        self._put(cells)
+        self._changed_s = time.monotonic()
+        if self._coarse.any() and self._refine is None:
+            self._refine = self.set_interval(REFINE_S, self._refine_some)
+
+    def _fitted(self, glyphs: GlyphSet, at: CellIndex, before: Cells | None) -> Cells:
+        return reduce_cells(fit_cells(self._shown, glyphs, at, before), self.color_mode)
+
+    def _put(self, cells: Cells) -> None:
         if cells.shape != self._cells.shape:
             self._cells, self._strips = cells, [None] * len(cells)
             self.refresh()
@@ -80,27 +143,51 @@ class PixelView(RowsView):
         if runs:
             self.refresh(*[Region(col, row, length, 1) for row, col, length in runs])
 
+    def _refine_some(self) -> None:
+        """Draw some of the coarse cells with fine glyphs: on a slow link only while nothing else is drawn."""
+        drawing = drawing_of(self.app)
+        is_still = time.monotonic() - self._changed_s >= STILL_S
+        if not drawing.is_idle() or (drawing.is_slow() and not is_still):
+            return
+        rows, cols = np.nonzero(self._coarse)
+        at = rows[:REFINED_CELLS], cols[:REFINED_CELLS]
+        self._coarse[at] = False
+        cells = self._cells.copy()
+        cells[at] = self._fitted(self._glyphs, at, None)
+        self._put(cells)
+        if not self._coarse.any() and self._refine is not None:
+            self._refine.stop()
+            self._refine = None
+
+    def redraw(self) -> None:
+        """Draw the image again: the app's glyphs or colours have changed."""
+        self._raw = None
+        if self._square is not None:
+            self.set_picture(self._square)
+
     def clear_picture(self) -> None:
         """Clear the image."""
         if self._cells.size:
-            self._raw = None
+            self._raw = self._square = None
             self._cells = np.empty((0, 0), np.int64)
+            self._coarse = np.empty((0, 0), bool)
             self._strips = []
             self.refresh()
 
     def _reduce(self, picture: Pixels) -> None:
-        """Convert an image to the terminal's colours, where it differs from the last one."""
+        """Dither an image where the terminal has few colours, if it differs from the last one."""
         mode = self.color_mode
-        if mode.depth >= TRUECOLOR and not mode.grey:
+        if not mode.dithers:
             self._raw = self._shown = picture
             return
         if self._raw is None or self._raw.shape != picture.shape:
-            self._shown = np.empty_like(picture)
+            shown = np.empty_like(picture)
             rows, cols = np.indices(picture.shape[:2]).reshape(2, -1)
         else:
+            shown = self._shown.copy()
             rows, cols = np.nonzero((self._raw != picture).any(axis=2))
-        self._shown[rows, cols] = reduce_pixels(picture[rows, cols], rows, cols, mode)
-        self._raw = picture
+        shown[rows, cols] = reduce_pixels(picture[rows, cols], rows, cols, mode)
+        self._shown, self._raw = shown, picture
 
     def render_line(self, y: int) -> Strip:
         """Return one row."""
@@ -220,8 +307,6 @@ def _changes(before: Sequence[Run], now: Sequence[Run]) -> list[tuple[int, int]]
     return runs
 
 
-UPPER_HALF = "▀"
-
 _DEPTHS = {"standard": PALETTE_16, "windows": PALETTE_16, "256": PALETTE_256}
 """Number of colours by the name of Rich's colour system."""
 
@@ -233,8 +318,8 @@ def color_depth(console: Console) -> int:
 
 @lru_cache(maxsize=8192)
 def _segment(cell: int) -> Segment:
-    top, bottom = Color.from_rgb(*_channels(cell >> 24)), Color.from_rgb(*_channels(cell & 0xFFFFFF))
-    return Segment(UPPER_HALF if top != bottom else " ", Style(color=top, bgcolor=bottom))
+    fore, back = Color.from_rgb(*_channels(cell >> 24 & 0xFFFFFF)), Color.from_rgb(*_channels(cell & 0xFFFFFF))
+    return Segment(GLYPHS[cell >> 48] if fore != back else " ", Style(color=fore, bgcolor=back))
 
 
 def _channels(rgb: int) -> tuple[int, int, int]:

@@ -19,10 +19,12 @@ from textual._compositor import ChopsUpdate, CompositorUpdate, LayoutUpdate
 from textual.strip import SGR_STYLES, Strip
 
 from tuisim.app.render.cells import PALETTE_256, TRUECOLOR, sgr_index
-from tuisim.app.terminal.cell_view import UPPER_HALF, CellStrip, color_depth
+from tuisim.app.terminal.cell_view import CellStrip, color_depth
+from tuisim.charts.glyphs import GLYPHS
 
 _SEEN_ON_BLANKS = frozenset({"4", "7", "9", "21", "51", "52", "53"})
 """Attributes that are visible on a blank: underline, reverse, strike, frame, overline."""
+_UPPER_HALF = "▀"
 _REWRITTEN = 4
 """Rewriting this many unchanged characters costs no more than a jump over them."""
 
@@ -109,15 +111,20 @@ def _pieces_of_part(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
 def _cells(strip: Strip, console: Console) -> Sequence[Cell]:
     if isinstance(strip, CellStrip):
         depth = color_depth(console)
-        return [_half_block(cell, depth) for cell in strip.cells]
+        return [_image_cell(cell, depth) for cell in strip.cells]
     system = console._color_system or ColorSystem.TRUECOLOR
     return [cell for text, style, control in strip if not control for cell in _written(text, style, system)]
 
 
 @lru_cache(maxsize=16384)
-def _half_block(cell: int, depth: int) -> Cell:
-    top, bottom = _rgb_codes(cell >> 24, depth), _rgb_codes(cell & 0xFFFFFF, depth)
-    return _simplest(UPPER_HALF, CellLook((), top[0], bottom[1]))
+def _image_cell(cell: int, depth: int) -> Cell:
+    fore, back = _rgb_codes(cell >> 24 & 0xFFFFFF, depth)[0], _rgb_codes(cell & 0xFFFFFF, depth)[1]
+    return (" ", CellLook((), "", back)) if _is_same(fore, back) else (GLYPHS[cell >> 48], CellLook((), fore, back))
+
+
+def _is_same(fore: str, back: str) -> bool:
+    """Return whether the codes of a foreground and a background are those of one color."""
+    return fore[1:] == back[1:] if ";" in fore else fore.isdigit() and str(int(fore) + 10) == back
 
 
 @lru_cache(maxsize=8192)
@@ -147,7 +154,7 @@ def _written(text: str, style: Style | None, system: ColorSystem) -> tuple[Cell,
 
 def _simplest(text: str, look: CellLook) -> Cell:
     """Return the cell that looks the same with the fewest codes."""
-    if text == UPPER_HALF and look.foreground[1:] == look.background[1:] and not look.attributes:
+    if text == _UPPER_HALF and _is_same(look.foreground, look.background) and not look.attributes:
         text = " "
     if text == " " and _SEEN_ON_BLANKS.isdisjoint(look.attributes):
         return text, look._replace(attributes=(), foreground="")

@@ -64,8 +64,12 @@ LARGE_BYTES = 1_500
 """After this many bytes the terminal is queried even if they are no frame, such as a dialog."""
 
 
+SLOW_S = 2.0
+"""A link on which a frame had to queue counts as slow for this long."""
+
+
 class Pacer:
-    """Decides when a frame may be drawn.
+    """Decides when a frame may be drawn, and whether the link is too slow for fine ones.
 
     Args:
         fps: Maximum frames per second.
@@ -89,8 +93,25 @@ class Pacer:
         self._last_s = -1.0
         self._round_trip_s = 0.0
         self._allowed = 1
+        self._queued_s: float | None = None
+        """When a frame was last found to have queued on the link."""
         self.answers = False
         """Whether the terminal has ever answered."""
+
+    @property
+    def is_slow(self) -> bool:
+        """Whether the link is too slow for fine frames now, or not known yet."""
+        if not self.asks:
+            return False
+        now = self._clock()
+        if not self.answers:
+            return self._proof_s is None or now < self._proof_s
+        return self._queued_s is not None and now - self._queued_s < SLOW_S
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether the terminal has shown everything that was sent."""
+        return not self._asked or self.ready()
 
     def ready(self) -> bool:
         """Return whether a frame may be drawn now."""
@@ -137,7 +158,10 @@ class Pacer:
         took_s = self._heard_s - self._asked.popleft()[0]
         # Falls at once, rises slowly: a backlog must not be taken for latency.
         self._round_trip_s = took_s if first else min(took_s, self._round_trip_s + 0.001)
-        if took_s > self._round_trip_s + 2 * self._gap_s:
+        queued_s = took_s - self._round_trip_s
+        if queued_s > self._gap_s:
+            self._queued_s = self._heard_s
+        if queued_s > 2 * self._gap_s:
             self._allowed = 1
         else:
             # At least two, or an answer that arrives just after a frame timer would cost the next frame.

@@ -35,6 +35,7 @@ from tuisim.app.action import ActionProvider, Palette
 from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.terminal.browser import in_browser
+from tuisim.app.terminal.drawing import Drawing
 from tuisim.app.terminal.frame_buffer import FrameBuffer
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
@@ -111,6 +112,8 @@ class TerminalApp(App[None]):
     def __init__(self) -> None:
         super().__init__(driver_class=_driver_class())
         self.frame_buffer = FrameBuffer()
+        self.drawing = Drawing()
+        """How pictures are drawn."""
         self.too_small: Size | None = None
         """Size of a terminal that is too small, else None."""
         self._waiting_keys: deque[events.Key] = deque()
