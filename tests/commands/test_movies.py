@@ -18,8 +18,8 @@ from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import PenSpec, RobotSpec, RunSpec, WorldSpec
-from tuisim.movies import files
 from tuisim.movies.clip import END_MS
+from tuisim.movies.painter import FramePainter
 from tuisim.runs.records import TELEMETRY_FILE, OutputWriter, TelemetryWriter
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
@@ -163,7 +163,7 @@ def test_ctrl_c_leaves_nothing(here: Command, tmp_path: Path, monkeypatch: pytes
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(files.FramePainter, "image", interrupted)
+    monkeypatch.setattr(FramePainter, "image", interrupted)
     before = set(tmp_path.iterdir())
     assert here("runs", "movie", "last").returncode == 130
     assert set(tmp_path.iterdir()) == before

@@ -46,7 +46,7 @@ def test_wheel_holds_every_mat_program_style_and_module(installed: Path) -> None
     for folder, pattern in (("backgrounds", "*.png"), ("backgrounds", "*.toml"), ("programs", "*.py")):
         wanted = {path.name for path in (ROOT / folder).glob(pattern)}
         assert wanted == {path.name for path in (installed / "tuisim" / "_assets" / folder).glob(pattern)}
-    for pattern in ("*.tcss", "*.py"):
+    for pattern in ("*.tcss", "*.py", "*.ttf", "LICENSE-*"):
         wanted = {str(path.relative_to(ROOT)) for path in (ROOT / "tuisim").rglob(pattern)}
         found = {path.relative_to(installed) for path in (installed / "tuisim").rglob(pattern)}
         assert wanted == {str(path) for path in found if "_assets" not in path.parts}

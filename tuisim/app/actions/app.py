@@ -57,6 +57,11 @@ def redraw(workspace: Workspace) -> None:
     workspace.app.action_redraw()
 
 
+def screenshot(workspace: Workspace) -> None:
+    """Save the whole screen as SVG and PNG."""
+    workspace.app.action_save_screen()
+
+
 def suspend(workspace: Workspace) -> None:
     """Suspend the app as a shell job; a live run is paused first."""
     workspace.app.action_suspend_process()

@@ -138,6 +138,7 @@ def _travels() -> list[LabAction]:
     ]
 
 
+_SCREENSHOT = "Save a screenshot: SVG and PNG (also F12)"
 _SLOWER, _FASTER = (partial(program.change_speed, by=by) for by in (-1, 1))
 
 # The footer shows the actions in this order, as far as they fit; `help` and `quit` always.
@@ -181,6 +182,7 @@ ACTIONS: Mapping[str, LabAction] = {
         *_nudges(),
         Action("help", "question_mark", "Help: all keys", APP, app.show_help, footer="help"),
         Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, app.redraw),
+        Action("screenshot", "I,f12", _SCREENSHOT, APP, app.screenshot, shown_key="I"),
         Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, app.suspend),
         Action("quit", "q", "Quit", APP, app.leave, footer="quit"),
     )

@@ -38,6 +38,7 @@ class ClosesOnce(ModalScreen[Result], Generic[Result]):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+z", "app.suspend_process", "Suspend", show=False),
         Binding("ctrl+l", "app.redraw", "Redraw", show=False),
+        Binding("f12", "app.save_screen", "Screenshot", show=False),
     ]
 
     class Changed(Message):

@@ -31,12 +31,14 @@ from textual.filter import LineFilter
 from textual.geometry import Size
 from textual.screen import Screen
 
+from tuisim.app import background
 from tuisim.app.action import ActionProvider, Palette
 from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.terminal.browser import in_browser
 from tuisim.app.terminal.drawing import Drawing
 from tuisim.app.terminal.frame_buffer import FrameBuffer
+from tuisim.app.terminal.screenshot import save_screenshot, screen_cells
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
 
@@ -216,6 +218,16 @@ class TerminalApp(App[None]):
         """Redraw the whole screen: something else has written over it, such as the shell while the app was stopped."""
         self.frame_buffer.forget()
         self.refresh(layout=True)
+
+    def action_save_screen(self) -> None:
+        """Save the whole screen as SVG and PNG, in the working directory."""
+
+        def saved(files: tuple[Path, Path]) -> None:
+            svg, png = files
+            self.notify(f"Saved {svg.name} and {png.name} in {png.parent}", markup=False)
+
+        work = partial(save_screenshot, screen_cells(self), Path.cwd())
+        background.run(self, work, saved, lambda error: self.notify(str(error), severity="error", markup=False))
 
     def action_suspend_process(self) -> None:
         if isinstance(self._driver, TerminalDriver):

@@ -43,6 +43,10 @@ def _redraw(screen: LogScreen) -> None:
     screen.call_next(screen.run_action, "app.redraw")
 
 
+def _screenshot(screen: LogScreen) -> None:
+    screen.call_next(screen.run_action, "app.save_screen")
+
+
 def _suspend(screen: LogScreen) -> None:
     screen.app.action_suspend_process()
 
@@ -115,6 +119,7 @@ ACTIONS: Mapping[str, LogAction] = {
         Action("world", "w", "Show or hide the world", PANE, panes.world, _log),
         Action("help", "question_mark", "Help: all keys", APP, _help, footer="help"),
         Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, _redraw),
+        Action("screenshot", "I,f12", "Save a screenshot: SVG and PNG (also F12)", APP, _screenshot, shown_key="I"),
         Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, _suspend),
         Action("leave", "q,escape", "Leave the analyser", APP, _leave, footer="leave", shown_key="q"),
     )
