@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
+import pyte
 import pytest
 from PIL import Image
 
@@ -18,7 +20,8 @@ from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import PenSpec, RobotSpec, RunSpec, WorldSpec
-from tuisim.movies.clip import END_MS
+from tuisim.movies.cell_painter import CellPainter
+from tuisim.movies.clip import END_MS, Panel, Recorded
 from tuisim.movies.painter import FramePainter
 from tuisim.runs.records import TELEMETRY_FILE, OutputWriter, TelemetryWriter
 from tuisim.runs.run_folder import StoredRun
@@ -94,6 +97,49 @@ def test_a_part_at_another_speed(here: Command, tmp_path: Path) -> None:
     assert [(frame == (255, 0, 255)).all(axis=2).any() for frame in frames] == [True] * 3
 
 
+def replayed(path: Path, until_s: float) -> tuple[pyte.Screen, float]:
+    """The screen of a cast at a time, and how long it is."""
+    head, *events = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+    assert head["version"] == 2
+    screen = pyte.Screen(head["width"], head["height"])
+    for time_s, kind, text in events:
+        assert kind == "o"
+        if time_s <= until_s:
+            pyte.Stream(screen).feed(text)
+    return screen, events[-1][0]
+
+
+@pytest.mark.parametrize("panels", ["world", "world,chart", "chart", "arrays", "world,chart,arrays"])
+@pytest.mark.parametrize("size", ["80x36", "100x30"])
+def test_a_cast_shows_in_a_terminal_what_was_drawn(
+    here: Command, run: StoredRun, tmp_path: Path, panels: str, size: str
+) -> None:
+    here("runs", "movie", "last", "--out", "a.cast", "--fps", "5", "--size", size, "--panels", panels)
+    columns, rows = map(int, size.split("x"))
+    recorded = Recorded(run)
+    painter = CellPainter(recorded, [Panel(name) for name in panels.split(",")], (0, 1), (columns, rows))
+    for time_s in (0.0, 0.2, 0.4, 0.6, 0.8, 1.0):
+        screen, lasts_s = replayed(tmp_path / "a.cast", time_s)
+        assert lasts_s == 6 / 5 + END_MS / 1000
+        for y, row in enumerate(painter.cells(recorded.moment(time_s))):
+            shown = [screen.buffer[y][x] for x in range(columns)]
+            assert [cell.data for cell in shown] == [text for text, _ in row]
+            assert [cell.bg for cell in shown] == [bytes(look.ground).hex() for _, look in row]
+            inks = [
+                (cell.fg, bytes(look.ink).hex()) for cell, (text, look) in zip(shown, row, strict=True) if text != " "
+            ]
+            assert [fg for fg, _ in inks] == [ink for _, ink in inks]
+
+
+def test_a_cast_has_the_robot_the_chart_and_the_value(here: Command, tmp_path: Path) -> None:
+    assert here("runs", "movie", "last", "--out", "a.cast").returncode == 0
+    screen, _ = replayed(tmp_path / "a.cast", 100)
+    assert screen.display[0].split() == ["1.00", "s", "Colour:", "50"]
+    assert any("[x] Colour" in line for line in screen.display)
+    body = bytes(COLORED.body).hex()
+    assert any(body in (cell.fg, cell.bg) for row in screen.buffer.values() for cell in row.values())
+
+
 @pytest.mark.parametrize(("at", "value"), [("0.2", "100"), ("0.7", "50")])
 def test_a_picture_shows_an_instant(here: Command, tmp_path: Path, at: str, value: str) -> None:
     here("runs", "picture", "last", "--at", at, "--out", "a.svg", "--panels", "world,chart,arrays")
@@ -128,7 +174,18 @@ BAD = {
     "frames a second": ("movie last --fps 60", "--fps: must be from 1 to 50, got 60"),
     "panel": ("movie last --panels wrld", "--panels: no such panel 'wrld' (did you mean world?)"),
     "no panel": ("movie last --panels ,", "--panels: no panel given (some of world, chart, arrays)"),
-    "size": ("movie last --size 20x20", "--size: no such size '20x20' (width and height, 160x120 to 3840x2160)"),
+    "size": (
+        "movie last --size 20x20",
+        "--size: no such size '20x20' (width and height in pixels, 160x120 to 3840x2160)",
+    ),
+    "size of a cast": (
+        "movie last --out a.cast --size 10x10",
+        "--size: no such size '10x10' (width and height in characters, 20x10 to 400x200)",
+    ),
+    "no room in a cast": (
+        "movie last --out a.cast --size 20x10",
+        "--size: 20x10 is too small (no room for all panels)",
+    ),
     "no room": ("movie last --size 160x120", "--size: 160x120 is too small (no room for the panel world)"),
     "too large": ("movie last --speed 0.01 --fps 50", "too large: 5,001 frames of 600x545, at most 1,529"),
 }

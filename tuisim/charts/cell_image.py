@@ -7,7 +7,7 @@ Mono, of which `fonts` holds the characters of Latin, Greek and Cyrillic text, a
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
@@ -17,6 +17,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
+from rich.cells import split_graphemes
+from rich.color import Color
+from rich.style import Style
 
 from tuisim.charts.glyph_shapes import Area, Bend, Dot, GlyphShape, shapes_of
 from tuisim.core.css_colors import Rgb
@@ -59,6 +62,38 @@ _FINE = 4
 """Shapes are drawn this many times larger and then reduced, for smooth curves."""
 _ITALIC = 0.2
 """Slant of the letters: the font has only upright ones."""
+
+_DIM = 0.5
+"""Share of its own colour that dim text keeps."""
+
+
+def row_of_cells(runs: Iterable[tuple[str, Style | None]], width: int) -> list[Cell]:
+    """Return pieces of styled text as cells, cut or padded to a width."""
+    row: list[Cell] = []
+    for text, style in runs:
+        look = _look(style) if style else PLAIN
+        for start, end, cells in split_graphemes(text)[0]:
+            if cells:
+                row += [(text[start:end], look), *[("", look)] * (cells - 1)]
+    return row[:width] + [(" ", PLAIN)] * (width - len(row))
+
+
+def _look(style: Style) -> Look:
+    ink, ground = _rgb(style.color, PLAIN.ink), _rgb(style.bgcolor, PLAIN.ground)
+    if style.reverse:
+        ink, ground = ground, ink
+    if style.dim:
+        red, green, blue = (round(_DIM * one + (1 - _DIM) * other) for one, other in zip(ink, ground, strict=True))
+        ink = red, green, blue
+    return Look(ink, ground, bool(style.bold), bool(style.italic), bool(style.underline), bool(style.strike))
+
+
+def _rgb(color: Color | None, default: Rgb) -> Rgb:
+    if color is None or color.is_default:
+        return default
+    red, green, blue = color.get_truecolor()
+    return red, green, blue
+
 
 Mask = npt.NDArray[np.uint8]
 """The share of each pixel that a character covers, 0 to 255."""

@@ -1,8 +1,7 @@
 """Block elements, box drawing and braille as shapes, so that neighbouring cells join without gaps in any font.
 
-Sources: The Unicode Standard 16.0, code charts Box Drawing (U+2500), Block Elements (U+2580), Braille Patterns
-(U+2800), Symbols for Legacy Computing (U+1FB00) and its Supplement (U+1CC00). The names of box drawing characters say
-which arms they have and how thick these are.
+Sources: The Unicode Standard 16.0, code charts Box Drawing (U+2500), Block Elements (U+2580) and Braille Patterns
+(U+2800). The names of box drawing characters say which arms they have and how thick these are.
 """
 
 from __future__ import annotations
@@ -13,6 +12,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TypeAlias
+
+from tuisim.charts.glyphs import block_patterns
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,37 +48,12 @@ GlyphShape: TypeAlias = Area | Dot | Bend
 
 _EIGHTHS: Mapping[str, tuple[int, int, int, int]] = {
     "▀": (0, 0, 8, 4), "▐": (4, 0, 8, 8), "▔": (0, 0, 8, 1), "▕": (7, 0, 8, 8),
-    "\U0001fb82": (0, 0, 8, 2), "\U0001fb85": (0, 0, 8, 6), "\U0001fbe6": (0, 2, 4, 6), "\U0001fbe7": (4, 2, 8, 6),
-    "\U0001cea8": (0, 0, 4, 2), "\U0001ceab": (4, 0, 8, 2), "\U0001cea3": (0, 6, 4, 8), "\U0001cea0": (4, 6, 8, 8),
     **{chr(0x2580 + rows): (0, 8 - rows, 8, 8) for rows in range(1, 9)},
     **{chr(0x2590 - columns): (0, 0, columns, 8) for columns in range(1, 8)},
 }  # fmt: skip
 """Left, top, right and bottom of rectangles in eighths of the cell."""
 
 _SHADES = {"░": 0.25, "▒": 0.5, "▓": 0.75}
-
-_QUADRANTS = {
-    "▖": 0b0100, "▗": 0b1000, "▘": 0b0001, "▙": 0b1101, "▚": 0b1001, "▛": 0b0111, "▜": 0b1011, "▝": 0b0010,
-    "▞": 0b0110, "▟": 0b1110,
-}  # fmt: skip
-"""Bit 0 is the upper left quarter; the others follow row by row."""
-
-_OCTANTS_ELSEWHERE = frozenset({0x01, 0x02, 0x03, 0x14, 0x28, 0x3F, 0x40, 0x80, 0xC0, 0xFC})
-"""Patterns of eight that have other code points; so have those that are quadrants."""
-
-
-def _is_quadrants(octant: int) -> bool:
-    return octant & 0b11 == octant >> 2 & 0b11 and octant >> 4 & 0b11 == octant >> 6
-
-
-_SEXTANTS = [bits for bits in range(1, 63) if bits not in (0b010101, 0b101010)]
-_OCTANTS = [bits for bits in range(256) if bits not in _OCTANTS_ELSEWHERE and not _is_quadrants(bits)]
-_GRIDS: Mapping[str, tuple[int, int]] = {
-    **{char: (2, bits) for char, bits in _QUADRANTS.items()},
-    **{chr(0x1FB00 + at): (3, bits) for at, bits in enumerate(_SEXTANTS)},
-    **{chr(0x1CD00 + at): (4, bits) for at, bits in enumerate(_OCTANTS)},
-}
-"""Number of rows of two parts, and which parts are filled: bit 0 is the upper left, the others follow row by row."""
 
 _BOX, _BRAILLE = range(0x2500, 0x2580), range(0x2800, 0x2900)
 _BRAILLE_PLACES = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3))
@@ -96,8 +72,8 @@ def shapes_of(char: str, width: int, height: int) -> tuple[GlyphShape, ...] | No
         return (_area(left / 8, top / 8, right / 8, bottom / 8, width, height),)
     if char in _SHADES:
         return (Area(0, 0, width, height, _SHADES[char]),)
-    if char in _GRIDS:
-        rows, bits = _GRIDS[char]
+    if char in block_patterns():
+        rows, bits = block_patterns()[char]
         parts = [(at % 2, at // 2) for at in range(2 * rows) if bits >> at & 1]
         return tuple(_area(x / 2, y / rows, (x + 1) / 2, (y + 1) / rows, width, height) for x, y in parts)
     if ord(char) in _BRAILLE:

@@ -55,6 +55,13 @@ GLYPHS: tuple[str, ...] = ("▀", *_octants()[1:], *_sextants(), *_braille(), *m
 """Every glyph by its number in a cell. 0 is the upper half block: two colours without a glyph are a half block."""
 
 
+@cache
+def block_patterns() -> dict[str, tuple[int, int]]:
+    """Return for each block glyph the number of rows of two points, and which it covers; bit 0 is the upper left."""
+    octants = {char: (4, pattern) for pattern, char in enumerate(_octants())}
+    return {char: (3, pattern) for pattern, char in enumerate(_sextants())} | octants
+
+
 @dataclass(frozen=True, slots=True)
 class GlyphSet:
     """A grid of points in a cell, and the glyphs that cover some of them."""

@@ -256,6 +256,12 @@ def fitting_view(robot: RobotSpec, width_px: int, height_px: int) -> Viewport:
     return world_view(robot, mm_per_px)
 
 
+def field_view(width_px: int, height_px: int) -> Viewport:
+    """Return the field alone, without a rim, in the largest scale that fits a size."""
+    mm_per_px = max(FIELD_WIDTH_MM / width_px, FIELD_HEIGHT_MM / height_px)
+    return Viewport(*_field_px(mm_per_px), mm_per_px, 0.0, FIELD_HEIGHT_MM)
+
+
 @dataclass(frozen=True, slots=True)
 class PenTrace:
     """The pen trace of a run."""
@@ -305,7 +311,7 @@ class WorldPainter:
     Args:
         spec: The specification of the run.
         mat: Shape (height, width, 3), rows from the top.
-        view: From `world_view` or `fitting_view`.
+        view: From `world_view`, `fitting_view` or `field_view`.
     """
 
     def __init__(self, spec: RunSpec, mat: Pixels, view: Viewport) -> None:

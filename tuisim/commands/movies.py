@@ -15,6 +15,7 @@ from tuisim.runs.store import RunStore
 
 if TYPE_CHECKING:
     from tuisim.movies.clip import Panel, Recorded
+    from tuisim.movies.painter import Size
     from tuisim.runs.run_folder import StoredRun
 
 _SIZE = re.compile(r"(\d{1,6})[x×](\d{1,6})")
@@ -26,17 +27,20 @@ _panels = option(
     "--panels", default=_DEFAULT_PANELS, metavar="NAMES", help=f"What is shown: some of {_PANELS} ({_DEFAULT_PANELS})."
 )
 _size = option("--size", default="", metavar="WxH", help="Width and height in pixels (600 wide).")
+_movie_size = option(
+    "--size", default="", metavar="WxH", help="Width and height in pixels (600 wide); of a .cast in characters (80)."
+)
 
 
 @command(
     _run,
-    option("--out", metavar="FILE", type=Value(), help="The file: .gif, .webp or .apng (PROGRAM.gif)."),
+    option("--out", metavar="FILE", type=Value(), help="The file: .gif, .webp, .apng or .cast (PROGRAM.gif)."),
     option("--from", "start_s", type=float, metavar="S", help="Start, in simulated seconds."),
     option("--to", "stop_s", type=float, metavar="S", help="End, in simulated seconds."),
     option("--speed", type=float, default=1.0, metavar="N", help="Multiple of real time (1)."),
     option("--fps", type=float, default=20.0, metavar="N", help="Frames per second, 1 to 50 (20)."),
     _panels,
-    _size,
+    _movie_size,
 )
 def movie(
     word: str,
@@ -56,7 +60,8 @@ def movie(
     check_target(path, "movie", MOVIE_FORMATS)
     _check_number(speed, 0.01, 1000, "--speed")
     _check_number(fps, 1, 50, "--fps")
-    shown, sides = _panels_of(panels), _size_of(size)
+    kind = MOVIE_FORMATS[path.suffix.lower()]
+    shown, sides = _panels_of(panels), _size_of(size, kind.least, kind.most, kind.unit)
     with Progress(f"drawing {path.name}"):
         recorded = _recorded(run)
         clip = Clip(recorded, shown, recorded.span_s(start_s, stop_s), speed, fps, sides)
@@ -77,11 +82,12 @@ def movie(
 def picture(word: str, out: str | None, time_s: float | None, panels: str, size: str) -> int:
     """Save one instant of a run as a picture: the world, the chart, the sensor arrays."""
     from tuisim.movies.files import PICTURE_FORMATS, check_target, save_picture
+    from tuisim.movies.painter import LEAST, MOST
 
     run = RunStore().load_run(word)
     path = Path(out or _default_name(run, ".png"))
     check_target(path, "picture", PICTURE_FORMATS)
-    shown, sides = _panels_of(panels), _size_of(size)
+    shown, sides = _panels_of(panels), _size_of(size, LEAST, MOST, "pixels")
     with Progress(f"drawing {path.name}"):
         recorded = _recorded(run)
         at_s = recorded.end_s if time_s is None else time_s
@@ -121,14 +127,12 @@ def _panels_of(text: str) -> tuple[Panel, ...]:
     return tuple(panel for panel in Panel if panel in names)
 
 
-def _size_of(text: str) -> tuple[int, int] | None:
-    from tuisim.movies.painter import LEAST, MOST
-
+def _size_of(text: str, least: Size, most: Size, unit: str) -> Size | None:
     if not text:
         return None
     match = _SIZE.fullmatch(text)
     size = (int(match[1]), int(match[2])) if match else (0, 0)
-    if not all(low <= side <= high for low, side, high in zip(LEAST, size, MOST, strict=True)):
-        allowed = " to ".join(f"{width}x{height}" for width, height in (LEAST, MOST))
-        raise ConfigError(f"no such size {text!r}", f"width and height, {allowed}", key="--size")
+    if not all(low <= side <= high for low, side, high in zip(least, size, most, strict=True)):
+        allowed = " to ".join(f"{width}x{height}" for width, height in (least, most))
+        raise ConfigError(f"no such size {text!r}", f"width and height in {unit}, {allowed}", key="--size")
     return size

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
+from tuisim.core.profile import NS_PER_S
 from tuisim.errors import ConfigError, LogError
 from tuisim.protocol import Unended
 from tuisim.runs.run_folder import StoredRun
@@ -89,8 +90,10 @@ class Recorded:
         self.run = run
         self.telemetry = run.telemetry.array()
         self._hz = run.spec.profile.tick_hz
+        self.samples = [replace(sample, time_s=sample.time_ns / NS_PER_S) for sample in samples_of(run.output.rows())]
+        """What was printed, at the simulated times of the prints."""
         self._values: dict[str, tuple[list[int], list[float]]] = {}
-        for sample in samples_of(run.output.rows()):
+        for sample in self.samples:
             ticks, values = self._values.setdefault(sample.name, ([], []))
             ticks.append(sample.tick)
             values.append(sample.value)

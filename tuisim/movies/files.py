@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tuisim.charts.cell_image import CellGrid
 from tuisim.charts.files import svg_of, write_whole
-from tuisim.errors import ConfigError, ExportError
+from tuisim.errors import ConfigError, ExportError, printable
 from tuisim.logs.export import check_place
-from tuisim.movies import image_files
+from tuisim.movies import cell_painter, image_files
+from tuisim.movies.cast import cast_of
+from tuisim.movies.cell_painter import CellPainter
 from tuisim.movies.clip import Panel, Recorded, Shot, shot_count, shots_of
-from tuisim.movies.painter import FramePainter, Size
+from tuisim.movies.painter import LEAST, MOST, FramePainter, Size
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -50,12 +53,21 @@ class MovieFormat:
     """One line of `MOVIE_FORMATS`."""
 
     write: Callable[[Clip, Watch], bytes]
-    px_bytes: int
-    """Bytes of a pixel of a frame in memory."""
+    frame_bytes: int
+    """Bytes of a pixel or of a character of a frame in memory."""
+    painter: type[FramePainter | CellPainter] = FramePainter
+    least: Size = LEAST
+    most: Size = MOST
+    unit: str = "pixels"
 
 
 class _Frames:
-    """The frames of a clip as images."""
+    """The frames of a clip as images.
+
+    Args:
+        clip: The clip.
+        watch: Told before each frame.
+    """
 
     def __init__(self, clip: Clip, watch: Watch) -> None:
         self._clip, self._watch, self._shots = clip, watch, clip.shots
@@ -92,10 +104,24 @@ def _apng(clip: Clip, watch: Watch) -> bytes:
     return image_files.apng(frames.draw, frames.durations_ms)
 
 
+def _cast(clip: Clip, watch: Watch) -> bytes:
+    shots, recorded = clip.shots, clip.recorded
+    painter = CellPainter(recorded, clip.panels, clip.span_s, clip.size)
+
+    def frames() -> Iterator[CellGrid]:
+        for at, shot in enumerate(shots):
+            watch(at, len(shots))
+            yield painter.cells(recorded.moment(shot.time_s))
+
+    durations_ms = [shot.duration_ms for shot in shots]
+    return cast_of(frames(), durations_ms, painter.size, printable(recorded.run.program.name))
+
+
 MOVIE_FORMATS: Mapping[str, MovieFormat] = {
     ".gif": MovieFormat(_gif, 1),
     ".webp": MovieFormat(_webp, 3),
     ".apng": MovieFormat(_apng, 3),
+    ".cast": MovieFormat(_cast, 24, CellPainter, cell_painter.LEAST, cell_painter.MOST, "characters"),
 }
 """Every format of a movie by the suffix of its files. To add one: write its function and a line here."""
 
@@ -147,8 +173,8 @@ def save_movie(clip: Clip, path: Path, watch: Watch = lambda done, total: None) 
 
 
 def _check_size(clip: Clip, kind: MovieFormat) -> None:
-    width, height = FramePainter(clip.recorded, clip.panels, clip.span_s, clip.size).size
-    most = MOST_BYTES // (kind.px_bytes * width * height)
+    width, height = kind.painter(clip.recorded, clip.panels, clip.span_s, clip.size).size
+    most = MOST_BYTES // (kind.frame_bytes * width * height)
     count = shot_count(*clip.span_s, clip.speed, clip.fps)
     if count > most:
         raise ConfigError(

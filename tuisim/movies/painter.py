@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,16 +24,10 @@ from tuisim.charts.layout import (
     shortened,
 )
 from tuisim.charts.sample_chart import sample_chart
-from tuisim.charts.world_image import WorldPainter, arrays_picture, fitting_view, pen_trace, sound_pose
-from tuisim.config.mat_cache import mat_pixels
-from tuisim.core.profile import NS_PER_S
-from tuisim.core.sensors.color import pixel_array
+from tuisim.charts.world_image import fitting_view
 from tuisim.errors import ConfigError, printable
 from tuisim.movies.clip import Moment, Panel, Recorded
-from tuisim.runs.recorded_run import Recording
-from tuisim.runs.run_folder import mat_files, open_mat
-from tuisim.runs.samples import samples_of
-from tuisim.runs.views import instant_of
+from tuisim.movies.pictures import MovingWorld, SensorArrays
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -83,24 +77,22 @@ class FramePainter:
         self, recorded: Recorded, panels: Sequence[Panel], span_s: tuple[float, float], size: Size | None = None
     ) -> None:
         run = recorded.run
-        self._recorded, self._spec, self._panels = recorded, run.spec, panels
+        self._recorded, self._panels = recorded, panels
         self.size = size or self._fitting_size()
         boxes = self._boxes = _boxes(panels, self.size, len(run.spec.robot.color_sensors))
         if Panel.WORLD in boxes:
             box = boxes[Panel.WORLD]
-            view = fitting_view(run.spec.robot, box.width, box.height)
-            self._world = WorldPainter(run.spec, mat_pixels(mat_files(run)), view)
-            self._traced = 0
+            self._world = MovingWorld(recorded, fitting_view(run.spec.robot, box.width, box.height))
         if Panel.CHART in boxes:
             box = boxes[Panel.CHART]
             self._chart = laid_out(_chart(recorded, box.width, span_s), box.width, box.height, titled=False)
         if Panel.ARRAYS in boxes:
-            self._mat, self._recording = open_mat(run), Recording(run)
+            self._arrays = SensorArrays(recorded)
 
     def _fitting_size(self) -> Size:
         height_px = _CAPTION_PX
         if Panel.WORLD in self._panels:
-            height_px += fitting_view(self._spec.robot, WIDTH_PX - 2 * PAD, MOST[1]).height_px
+            height_px += fitting_view(self._recorded.run.spec.robot, WIDTH_PX - 2 * PAD, MOST[1]).height_px
         if Panel.CHART in self._panels or Panel.ARRAYS in self._panels:
             height_px += _STRIP_PX
         return WIDTH_PX, height_px + PAD
@@ -129,35 +121,23 @@ class FramePainter:
         caption = Box(0, 0, self.size[0], _CAPTION_PX)
         yield caption, _caption(moment, caption)
         if box := self._boxes.get(Panel.WORLD):
-            picture = self._world_at(moment)
+            picture = self._world.at(moment)
             yield _centred(box, picture.size), picture
         if box := self._boxes.get(Panel.ARRAYS):
             yield from self._arrays_at(moment, box)
         if box := self._boxes.get(Panel.CHART):
             yield box, drawn_until(self._chart, moment.time_s)
 
-    def _world_at(self, moment: Moment) -> Image:
-        # From the last record that was drawn, so that the line goes on.
-        new = self._recorded.telemetry[max(self._traced - 1, 0) : moment.tick + 1]
-        self._world.add_trace(pen_trace(self._spec, new))
-        self._traced = moment.tick + 1
-        return self._world.picture(sound_pose(moment.record))
-
     def _arrays_at(self, moment: Moment, box: Box) -> Iterable[tuple[Box, Drawing | Image]]:
         from PIL import Image
 
-        instant = instant_of(moment.record, self._spec, self._recorded.run.noise_at(moment.record))
-        field = self._recording.field_at(moment.tick, self._mat)
-        sensors = self._spec.robot.color_sensors
-        each = box.width // max(len(sensors), 1)
+        arrays = self._arrays.at(moment)
+        each = box.width // max(len(arrays), 1)
         side = min(each - PAD, box.height - _LABEL_PX)
-        for at, sensor in enumerate(sensors):
+        for at, (name, picture) in enumerate(arrays):
             place = Box(box.left + at * each + (each - side) // 2, box.top + _LABEL_PX, side, side)
-            picture = arrays_picture([(sensor, pixel_array(sensor, instant, field))])
-            # Without the gap to a neighbour.
-            picture = picture.crop((0, 0, picture.height, picture.height))
             yield place, picture.resize((side, side), Image.Resampling.NEAREST)
-            label = shortened(sensor.name, side)
+            label = shortened(name, side)
             words = Words(side / 2, _LABEL_PX / 2, label, "middle")
             yield Box(place.left, box.top, side, _LABEL_PX), Drawing(label, side, _LABEL_PX, (words,))
 
@@ -198,9 +178,8 @@ def _centred(box: Box, size: Size) -> Box:
 
 def _chart(recorded: Recorded, columns: int, span_s: tuple[float, float]) -> Chart:
     """Return the chart of the printed samples, at the times at which they were printed."""
-    samples = (replace(sample, time_s=sample.time_ns / NS_PER_S) for sample in samples_of(recorded.run.output.rows()))
     low, high = span_s
-    return sample_chart(samples, columns, span_s if high > low else (low - 0.5, low + 0.5))
+    return sample_chart(recorded.samples, columns, span_s if high > low else (low - 0.5, low + 0.5))
 
 
 def _caption(moment: Moment, box: Box) -> Drawing:

@@ -1,0 +1,71 @@
+"""The world and the sensor arrays of a recorded run, at one instant after the other."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tuisim.charts.world_image import Viewport, WorldPainter, arrays_picture, pen_trace, sound_pose
+from tuisim.config.mat_cache import mat_pixels
+from tuisim.core.sensors.color import pixel_array
+from tuisim.movies.clip import Moment, Recorded
+from tuisim.runs.recorded_run import Recording
+from tuisim.runs.run_folder import mat_files, open_mat
+from tuisim.runs.views import instant_of
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+
+class MovingWorld:
+    """The world with the robot and what its pen has drawn.
+
+    Args:
+        recorded: The run.
+        view: Scale and size.
+
+    Raises:
+        LogError: the mat no longer exists.
+    """
+
+    def __init__(self, recorded: Recorded, view: Viewport) -> None:
+        self._recorded, self._spec = recorded, recorded.run.spec
+        self._painter = WorldPainter(self._spec, mat_pixels(mat_files(recorded.run)), view)
+        self._traced = 0
+        """Records whose pen traces are drawn."""
+
+    def at(self, moment: Moment) -> Image:
+        """Return the picture. The instants of successive calls must not decrease."""
+        # From the last record that was drawn, so that the line goes on.
+        new = self._recorded.telemetry[max(self._traced - 1, 0) : moment.tick + 1]
+        self._painter.add_trace(pen_trace(self._spec, new))
+        self._traced = moment.tick + 1
+        return self._painter.picture(sound_pose(moment.record))
+
+
+class SensorArrays:
+    """What the colour sensors see.
+
+    Args:
+        recorded: The run.
+
+    Raises:
+        LogError: the mat no longer exists.
+    """
+
+    def __init__(self, recorded: Recorded) -> None:
+        self._run = recorded.run
+        self._mat, self._recording = open_mat(recorded.run), Recording(recorded.run)
+
+    def at(self, moment: Moment) -> list[tuple[str, Image]]:
+        """Return name and square picture of each sensor."""
+        if sound_pose(moment.record) is None:
+            return []
+        spec = self._run.spec
+        instant = instant_of(moment.record, spec, self._run.noise_at(moment.record))
+        field = self._recording.field_at(moment.tick, self._mat)
+        found = []
+        for sensor in spec.robot.color_sensors:
+            picture = arrays_picture([(sensor, pixel_array(sensor, instant, field))])
+            # Without the gap to a neighbour.
+            found.append((sensor.name, picture.crop((0, 0, picture.height, picture.height))))
+        return found
