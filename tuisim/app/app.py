@@ -36,9 +36,10 @@ from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import GOOD_ENDS, AppState, Situation, end_label
 from tuisim.app.speech import Voice
+from tuisim.app.terminal.drawing import Drawing, drawing_for
 from tuisim.app.terminal.pacer import Pacer
 from tuisim.app.workspace import Workspace
-from tuisim.config.options import DEFAULT_FPS, CellSet, Settings
+from tuisim.config.options import DEFAULT_FPS, Settings
 from tuisim.core.spec import RunSpec
 from tuisim.errors import TuisimError
 from tuisim.protocol import End, Ended
@@ -111,6 +112,7 @@ class LabApp(PanelMessages):
 
     Args:
         settings: What the command line decided.
+        drawing: How pictures are drawn.
     """
 
     CSS_PATH = "tuisim.tcss"
@@ -120,11 +122,9 @@ class LabApp(PanelMessages):
         Binding("escape", "leave_field", "Leave a field", show=False),
     ]
 
-    def __init__(self, settings: AppSettings) -> None:
-        super().__init__()
+    def __init__(self, settings: AppSettings, drawing: Drawing | None = None) -> None:
+        super().__init__(drawing)
         self.settings = settings
-        if settings.cells not in (None, "auto"):
-            self.drawing.cells = CellSet(settings.cells)
         self.run_controller = RunController(settings.program, _first_next_run(settings), settings.speed)
         self.panel_area = PanelArea(settings.panels_on, settings.panels_off)
         self.key_footer = KeyFooter()
@@ -500,7 +500,7 @@ def _choose_colors(colors: str) -> None:
 def run_app(settings: AppSettings) -> int:
     """Run the app in this terminal until the user quits; return the exit code."""
     _choose_colors(settings.colors)
-    lab = LabApp(settings)
+    lab = LabApp(settings, drawing_for(settings.cells))
     lab.run()
     return lab.return_code or 0
 

@@ -52,6 +52,23 @@ def show_help(workspace: Workspace) -> None:
     workspace.app.push_screen(KeyHelp("Help", _START, {**groups, "In the code": EDITOR_KEYS, "": _EVERYWHERE}))
 
 
+def choose_cells(workspace: Workspace) -> None:
+    """Show the test card, and draw the world with the glyphs that are chosen."""
+    from tuisim.app.dialogs.cells import CellsCard
+
+    app = workspace.app
+
+    def chosen(name: str | None) -> None:
+        if name is None:
+            return
+        try:
+            app.choose_cells(name)
+        except OSError as error:
+            app.say(f"The choice applies to this session only: {error}")
+
+    app.push_screen(CellsCard(app.drawing.chosen, app.drawing.best), chosen)
+
+
 def redraw(workspace: Workspace) -> None:
     """Redraw the whole screen."""
     workspace.app.action_redraw()

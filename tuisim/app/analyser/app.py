@@ -12,6 +12,7 @@ from tuisim.analysis.source import LogRequest
 from tuisim.app.action import key_bindings
 from tuisim.app.analyser.actions.keys import ACTIONS
 from tuisim.app.analyser.screen import LogScreen
+from tuisim.app.terminal.drawing import Drawing, drawing_for
 from tuisim.app.terminal.terminal_app import TerminalApp
 from tuisim.errors import TuisimError
 
@@ -31,12 +32,13 @@ class AnalyserApp(TerminalApp):
 
     Args:
         request: What to open.
+        drawing: How pictures are drawn.
     """
 
     CSS_PATH = "../tuisim.tcss"
 
-    def __init__(self, request: LogRequest) -> None:
-        super().__init__()
+    def __init__(self, request: LogRequest, drawing: Drawing | None = None) -> None:
+        super().__init__(drawing)
         self.request = request
         self.failure: TuisimError | None = None
         """The error that prevented the log from being opened."""
@@ -73,7 +75,7 @@ def run_analyser(request: LogRequest) -> int:
     """
     # Modules imported by now stay until the end: exclude them from garbage collection.
     gc.freeze()
-    app = AnalyserApp(request)
+    app = AnalyserApp(request, drawing_for(None))
     app.run()
     if app.failure is not None:
         raise app.failure

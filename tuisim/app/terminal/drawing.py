@@ -7,10 +7,17 @@ from dataclasses import dataclass
 
 from textual.app import App
 
-from tuisim.config.options import CellSet
+from tuisim.app.terminal.browser import in_browser
+from tuisim.app.terminal.probe import best_cells
+from tuisim.config.options import AUTO, CELLS, CellSet
+from tuisim.config.preferences import keep, preference
 
 BLOCKS = frozenset({CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT})
 """The sets whose glyphs fill their cells."""
+
+
+_KEPT = "cells"
+"""Name of the preference."""
 
 
 @dataclass(slots=True)
@@ -18,10 +25,35 @@ class Drawing:
     """How an app draws pictures."""
 
     cells: CellSet = CellSet.HALF
+    chosen: str = AUTO
+    """What the user has chosen: `AUTO`, or the name of a set."""
+    best: CellSet = CellSet.HALF
+    """The finest set that the terminal is known to show."""
     is_slow: Callable[[], bool] = lambda: False
     """Whether the link to the terminal is too slow for fine cells now."""
     is_idle: Callable[[], bool] = lambda: True
     """Whether the terminal has shown everything that was sent."""
+
+    def choose(self, chosen: str) -> None:
+        """Switch to a set, or to the best one for `AUTO`, and keep the choice.
+
+        Raises:
+            OSError: it cannot be kept; it still applies.
+        """
+        self.chosen, self.cells = chosen, self.best if chosen == AUTO else CellSet(chosen)
+        keep(_KEPT, None if chosen == AUTO else chosen)
+
+
+def drawing_for(given: str | None) -> Drawing:
+    """Return how an app that starts draws pictures.
+
+    Args:
+        given: The option of the command line, if there is one; else what was chosen in the app applies.
+    """
+    kept = preference(_KEPT)
+    chosen = given or (kept if isinstance(kept, str) and kept in CELLS else AUTO)
+    best = CellSet.QUADRANT if in_browser() else best_cells(ask=chosen == AUTO)
+    return Drawing(best if chosen == AUTO else CellSet(chosen), chosen, best)
 
 
 def drawing_of(app: App[object]) -> Drawing:

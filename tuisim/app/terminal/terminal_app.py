@@ -36,6 +36,7 @@ from tuisim.app.action import ActionProvider, Palette
 from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.terminal.browser import in_browser
+from tuisim.app.terminal.cell_view import PixelView
 from tuisim.app.terminal.drawing import Drawing
 from tuisim.app.terminal.frame_buffer import FrameBuffer
 from tuisim.app.terminal.screenshot import save_screenshot, screen_cells
@@ -111,10 +112,10 @@ class TerminalApp(App[None]):
     # The palette offers the app's own actions: Textual's help, zoom and themes would be a second set of them.
     COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = {ActionProvider}
 
-    def __init__(self) -> None:
+    def __init__(self, drawing: Drawing | None = None) -> None:
         super().__init__(driver_class=_driver_class())
         self.frame_buffer = FrameBuffer()
-        self.drawing = Drawing()
+        self.drawing = drawing or Drawing()
         """How pictures are drawn."""
         self.too_small: Size | None = None
         """Size of a terminal that is too small, else None."""
@@ -181,6 +182,13 @@ class TerminalApp(App[None]):
         super()._display(screen, renderable)
         if codes:
             self.painted(len(codes))
+
+    def choose_cells(self, chosen: str) -> None:
+        """Draw every picture with another set of glyphs, and keep the choice; `AUTO` or the name of a set."""
+        self.drawing.choose(chosen)
+        for screen in self.screen_stack:
+            for view in screen.query(PixelView):
+                view.redraw()
 
     def painted(self, size: int) -> None:
         """Called with the number of characters after an update was sent to the terminal."""

@@ -1,0 +1,74 @@
+"""The glyphs of the world: the option, the test card, and the choice that is kept."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from textual.widgets import OptionList
+
+from tests.app.app_help import LOGS, ready, settings, until
+from tests.app.wires import on_wire, until_quiet
+from tuisim.app.app import LabApp
+from tuisim.app.dialogs.cells import CellsCard
+from tuisim.app.terminal import drawing as drawings
+from tuisim.app.terminal.cell_view import PixelView
+from tuisim.app.terminal.drawing import Drawing, drawing_for
+from tuisim.charts.glyphs import GLYPHS
+from tuisim.config import preferences
+from tuisim.config.options import CellSet
+
+
+@pytest.fixture(autouse=True)
+def known_terminal(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(preferences, "preferences_file", lambda: tmp_path / "preferences.json")
+    monkeypatch.setattr(drawings, "best_cells", lambda ask: CellSet.SEXTANT)
+
+
+def glyphs(view: PixelView) -> set[str]:
+    """The glyphs of a picture."""
+    return {GLYPHS[cell >> 48] for cell in view._cells.ravel().tolist()}
+
+
+@pytest.mark.parametrize("size", [(80, 24), (60, 18), (120, 40)], ids=["80x24", "60x18", "120x40"])
+async def test_a_set_is_chosen_by_eye_and_kept(size: tuple[int, int]) -> None:
+    async with LabApp(settings(LOGS), drawing_for(None)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        assert app.drawing.cells is CellSet.SEXTANT
+        await pilot.press("V")
+        await until(pilot, lambda: isinstance(app.screen, CellsCard))
+        listed = app.screen.query_one(OptionList)
+        card = app.screen.query_one(PixelView)
+        listed.highlighted = listed.get_option_index("octant")
+        await until(pilot, lambda: any("\U0001cd00" <= glyph <= "\U0001cde5" for glyph in glyphs(card)))
+        assert app.screen.query_one(".dialog").region.contains_region(card.region)
+        await pilot.press("enter")
+        world = app.panel_area.screen.query_one("WorldView", PixelView)
+        await until(pilot, lambda: any("\U0001cd00" <= glyph <= "\U0001cde5" for glyph in glyphs(world)))
+
+    assert drawing_for(None).cells is CellSet.OCTANT
+    assert drawing_for("half").cells is CellSet.HALF
+    assert drawing_for("auto").cells is CellSet.SEXTANT
+
+
+async def test_on_a_slow_link_cells_are_coarse_while_something_moves() -> None:
+    slow = True
+    drawing = Drawing(CellSet.OCTANT)
+    async with on_wire(LabApp(settings(LOGS), drawing)) as pilot:
+        app = pilot.app
+        drawing.is_slow = lambda: slow
+        await until(pilot, lambda: app.query_one("WorldView", PixelView)._cells.size > 0)
+        view = app.query_one("WorldView", PixelView)
+        assert glyphs(view) == {"▀"}
+
+        # Once nothing has moved for a moment, the picture becomes fine, on a slow link, too.
+        await until(pilot, lambda: not view._coarse.any())
+        assert len(glyphs(view)) > 5
+        await until_quiet(pilot)
+        still = view._cells.copy()
+        await pilot.press("up")
+        await until(pilot, lambda: bool((view._cells != still).any()))
+        assert view._coarse.any()
+        slow = False
+        await pilot.press("up")
+        await until(pilot, lambda: not view._coarse.any())

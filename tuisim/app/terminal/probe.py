@@ -1,0 +1,152 @@
+"""Which glyphs the terminal shows: what its environment says, and what it answers before the app starts.
+
+No terminal tells whether its font has a glyph. One that does not know a character drops it, as tmux 3.3a does, or draws
+a box. So fine glyphs are taken only from terminals that are known to draw them themselves, without a font.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import select
+import sys
+import termios
+import time
+import tty
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from tuisim.config.options import CellSet
+
+ANSWER_S = 0.4
+"""Longest time to wait for an answer."""
+_OCTANT = "\U0001cd02"
+WIDTH_QUERY = f"\r{_OCTANT}\x1b[6n"
+"""Prints an octant at the left edge and asks for the position of the cursor."""
+NAME_QUERY = "\x1b[>0q\x1b[c"
+"""XTVERSION, and the primary device attributes, which every terminal answers: without a name before them there is
+none. See https://invisible-island.net/xterm/ctlseqs/ctlseqs.html."""
+_CLEAR = "\r\x1b[K"
+_POSITION = re.compile(rb"\x1b\[\d+;(\d+)R")
+_NAME = re.compile(rb"\x1bP>\|([^\x1b\x07]*)(?:\x1b\\|\x07)")
+_ATTRIBUTES = re.compile(rb"\x1b\[\?[\d;]*c")
+_NAME_AND_VERSION = re.compile(r"([A-Za-z0-9]+)[ (/-]*v?([\d.-]*)")
+
+Version = tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """Since which version a terminal draws glyphs itself."""
+
+    sextants: Version
+    octants: Version | None
+    source: str
+
+
+TERMINALS: Mapping[str, Drawn] = {
+    "kitty": Drawn((0, 20), (0, 40), "https://sw.kovidgoyal.net/kitty/changelog/"),
+    "foot": Drawn((1, 9), (1, 21), "https://codeberg.org/dnkl/foot/src/branch/master/CHANGELOG.md"),
+    "ghostty": Drawn((1, 0), (1, 2), "https://ghostty.org/docs/install/release-notes/1-2-0"),
+    "WezTerm": Drawn((20220319,), None, "https://wezterm.org/changelog.html"),
+    "VTE": Drawn((6600,), None, "https://gitlab.gnome.org/GNOME/vte/-/blob/master/src/minifont.cc"),
+}
+"""By the name that a terminal answers to XTVERSION. A version that is missing here gets quadrants; `--cells`, or the
+test card in the app, chooses any other set."""
+
+
+def cells_of(name: str, octant_cols: int | None) -> CellSet:
+    """Return the finest set that a terminal with UTF-8 is known to show.
+
+    Args:
+        name: What it answered to XTVERSION; empty if nothing.
+        octant_cols: By how many columns an octant moved its cursor; None if it did not answer.
+    """
+    found = _NAME_AND_VERSION.match(name)
+    known = TERMINALS.get(found[1]) if found else None
+    if found is None or known is None or octant_cols != 1:
+        return CellSet.QUADRANT
+    version = tuple(int(part) for part in re.findall(r"\d+", found[2]))
+    if known.octants is not None and version >= known.octants:
+        return CellSet.OCTANT
+    return CellSet.SEXTANT if version >= known.sextants else CellSet.QUADRANT
+
+
+def cells_without_asking(environment: Mapping[str, str]) -> CellSet | None:
+    """Return the set that the environment decides; None if the terminal has to be asked.
+
+    Args:
+        environment: As it was when the process started: Python changes the locale C to UTF-8.
+    """
+    terminal = environment.get("TERM", "")
+    if terminal in ("", "dumb", "unknown") or not _may_be_utf8(environment):
+        return CellSet.ASCII
+    # The fonts of the Linux console have the characters of code page 437.
+    return CellSet.HALF if terminal == "linux" else None
+
+
+def _may_be_utf8(environment: Mapping[str, str]) -> bool:
+    """Return whether the locale is UTF-8, or not set at all, as in many containers."""
+    locale = next((value for name in ("LC_ALL", "LC_CTYPE", "LANG") if (value := environment.get(name))), "")
+    return not locale or "utf-8" in locale.lower() or "utf8" in locale.lower()
+
+
+def first_environment() -> Mapping[str, str]:
+    """Return the environment that this process was started with, where the system tells."""
+    try:
+        entries = Path("/proc/self/environ").read_bytes().split(b"\0")
+    except OSError:
+        return os.environ
+    pairs = (os.fsdecode(entry).partition("=") for entry in entries if b"=" in entry)
+    return {name: value for name, _, value in pairs}
+
+
+def best_cells(*, ask: bool = True) -> CellSet:
+    """Return the finest set that this terminal is known to show; `ask` it if the environment does not decide."""
+    decided = cells_without_asking({**first_environment(), "TERM": os.environ.get("TERM", "")})
+    if decided is not None or not ask:
+        return decided or CellSet.QUADRANT
+    try:
+        return _asked()
+    except (OSError, termios.error, ValueError):
+        return CellSet.QUADRANT
+
+
+def _asked() -> CellSet:
+    """Ask the terminal of the standard input and output.
+
+    The name is asked for only once an octant has moved the cursor: an answer that comes too late would be taken for
+    keys, so a terminal that answers nothing is asked for as little as possible.
+    """
+    fd = sys.stdin.fileno()
+    before = termios.tcgetattr(fd)
+    try:
+        tty.setcbreak(fd, termios.TCSANOW)
+        position = _ask(fd, WIDTH_QUERY, _POSITION.search)
+        _write(_CLEAR)
+        cols = int(found[1]) - 1 if (found := _POSITION.search(position)) else None
+        if cols != 1:
+            return cells_of("", cols)
+        name = _NAME.search(_ask(fd, NAME_QUERY, _ATTRIBUTES.search))
+        return cells_of(name[1].decode("ascii", "replace") if name else "", cols)
+    finally:
+        termios.tcsetattr(fd, termios.TCSANOW, before)
+
+
+def _ask(fd: int, query: str, is_answered: Callable[[bytes], object]) -> bytes:
+    _write(query)
+    answer, give_up = b"", time.monotonic() + ANSWER_S
+    while not is_answered(answer) and (left := give_up - time.monotonic()) > 0:
+        if select.select([fd], [], [], left)[0]:
+            data = os.read(fd, 1024)
+            if not data:
+                break
+            answer += data
+    return answer
+
+
+def _write(text: str) -> None:
+    with suppress(OSError):
+        os.write(sys.stdout.fileno(), text.encode())
