@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.app.render.mat import Pixels
 from tuisim.charts.glyphs import GlyphSet
+
+if TYPE_CHECKING:
+    from tuisim.charts.world_image import Pixels
 
 Cells = npt.NDArray[np.int64]
 """Shape (rows, columns): the glyph's number in `GLYPHS` in bits 48 to 62, the colour of the points that it covers in

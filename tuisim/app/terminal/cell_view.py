@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -35,11 +36,13 @@ from tuisim.app.render.cells import (
     reduce_cells,
     reduce_pixels,
 )
-from tuisim.app.render.mat import Pixels
 from tuisim.app.terminal.drawing import BLOCKS, drawing_of
 from tuisim.charts.glyphs import GLYPHS, GlyphSet, glyph_set, half_block_of
 from tuisim.charts.text_runs import Run, cut_line
 from tuisim.config.options import CellSet
+
+if TYPE_CHECKING:
+    from tuisim.charts.world_image import Pixels
 
 _TEXT_GAP = 8
 """This many unchanged characters cost less than a new cursor position and style."""
