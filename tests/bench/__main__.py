@@ -19,6 +19,7 @@ from tests.bench.listing import listing
 from tests.bench.logs import logs
 from tests.bench.recording import recording
 from tests.bench.references import forget
+from tests.bench.run_key import run_key
 from tests.bench.running import EMPTY, begin
 from tests.bench.speed import LOADS, speeds
 from tests.bench.starts import first_line, first_paint, help_text, imports
@@ -46,6 +47,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "listing": listing,
     "wire": wire,
     "batch": batches,
+    "run-key": run_key,
 }
 """Every bench by name."""
 

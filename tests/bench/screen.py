@@ -25,10 +25,10 @@ class Screen:
         self._stream = pyte.ByteStream(self._screen)
         self._fed = 0
 
-    def text(self) -> str:
-        """Return what is on the screen."""
+    def text(self, length: int | None = None) -> str:
+        """Return what is on the screen; with a length, after so many bytes. Later calls take no smaller one."""
         # What may be but the beginning of a sequence waits for its end.
-        seen = bytes(self._terminal.seen[self._fed :])
+        seen = bytes(self._terminal.seen[self._fed : length])
         whole = len(seen) if b"\x1b" not in seen[-40:] else seen.rfind(b"\x1b")
         self._stream.feed(_UNKNOWN.sub(b"", seen[:whole]))
         self._fed += whole

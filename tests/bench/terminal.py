@@ -49,6 +49,8 @@ class Terminal:
         self.pid = self._process.pid
         self.seen = bytearray()
         """Everything that the app has written."""
+        self.arrivals: list[tuple[float, int]] = []
+        """When something arrived, on the monotonic clock, and the length of `seen` with it."""
         self.queries = 0
         """How often the app has asked for the cursor position, which it does after each frame."""
         self.shown = 0
@@ -95,6 +97,7 @@ class Terminal:
             data = b""
         assert data, f"the app has ended: {bytes(self.seen[-500:])!r}"
         self.seen += data
+        self.arrivals.append((time.monotonic(), len(self.seen)))
         while (at := self.seen.find(CURSOR_QUERY, self.shown)) >= 0:
             self.shown = at + len(CURSOR_QUERY)
             self.queries += 1

@@ -6,6 +6,7 @@ import os
 import signal
 from collections.abc import Iterator
 from contextlib import closing
+from pathlib import Path
 
 import pytest
 
@@ -85,6 +86,21 @@ def test_a_run_whose_warm_process_was_killed_is_not_left_behind(warm: WarmProces
         over(handle)
     assert handle.ended is not None
     assert handle.ended.end == "crashed"
+
+
+def _parent(handle: RunHandle) -> int:
+    return int(Path(f"/proc/{handle._process.pid}/stat").read_text().rpartition(")")[2].split()[1])
+
+
+def test_a_run_is_forked_from_the_process_that_an_earlier_one_has_prepared(warm: WarmProcess) -> None:
+    with closing(_start()) as first:
+        first.prepare_next()
+        until_tick(first, 1)
+        with closing(_start()) as second:
+            until_tick(second, 1)
+            (template,) = process._Starts.templates.values()
+
+            assert (_parent(first), _parent(second)) == (warm._process.pid, template._process.pid)
 
 
 def test_a_process_that_was_forked_does_not_use_the_warm_process_of_the_other(warm: WarmProcess) -> None:

@@ -34,7 +34,7 @@ from tuisim.app.panels import PANELS
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
-from tuisim.app.snapshot import GOOD_ENDS, AppState, Situation, end_label
+from tuisim.app.snapshot import GOOD_ENDS, AppState, RunPhase, Situation, end_label
 from tuisim.app.speech import Voice
 from tuisim.app.terminal.drawing import Drawing, drawing_for
 from tuisim.app.terminal.pacer import Pacer
@@ -60,7 +60,9 @@ _CURSOR_QUERY = "\x1b[6n"
 _REST_GAP_S = 0.25
 """Seconds between two polls of the run while nothing happens."""
 _WARM_UP_AFTER_S = 0.3
-"""Seconds until the warm process is started, from which runs are forked: the first paint needs the processor."""
+"""Seconds until the process is started from which runs are forked: the first paint, or frame, needs the processor."""
+_STARTING_S, _START_GAP_S = 0.25, 0.004
+"""Until its first tick, but not for longer, a run that starts is polled so often: that tick is drawn at once."""
 _AWAKE_S = 1.0
 """Seconds to keep polling at frame rate after something has happened."""
 
@@ -154,6 +156,8 @@ class LabApp(PanelMessages):
         self._run_when_ready = settings.autorun and settings.replay is None
         self._frame_timer: Timer | None = None
         self._awake_until_s = 0.0
+        self._starting_until_s = 0.0
+        """While a run starts, when to stop waiting for its first tick; else 0."""
         self._last_words = ""
         """How the run ended, for the output panel once it has shown every row."""
 
@@ -181,7 +185,7 @@ class LabApp(PanelMessages):
         self.document.begin()
         # Breakpoints apply, and are saved, whether or not a panel shows the program.
         self.debugger.program_changed(self.run_controller.program)
-        self._frame_timer = self.set_interval(1 / self.settings.fps, self._on_frame_timer)
+        self._set_frame_gap(1 / self.settings.fps)
         self.set_interval(_REST_GAP_S, self._seldom)
         self.set_interval(PERIOD_S, self.check_files)
         self.set_timer(_WARM_UP_AFTER_S, warm_up)
@@ -242,6 +246,9 @@ class LabApp(PanelMessages):
         except TuisimError as error:
             self.complain(error)
             return False
+        self._starting_until_s = time.monotonic() + _STARTING_S
+        self._set_frame_gap(_START_GAP_S)
+        self.set_timer(_WARM_UP_AFTER_S, self.run_controller.prepare_next)
         self.run_changed()
         self.brick_hint.started(self.run_controller.program.text if self.run_controller.program else "")
         return True
@@ -268,7 +275,7 @@ class LabApp(PanelMessages):
             self.debugger.poll()
             self.goals.update()
             # A frame that has to wait counts as drawn.
-            drew = not self.pacer.ready() or self.draw()
+            drew = self._awaits_first_tick() or not self.pacer.ready() or self.draw()
             if drew or news or self.debugger.busy:
                 self._wake()
         except TuisimError as error:
@@ -279,6 +286,25 @@ class LabApp(PanelMessages):
 
         if self._frame_timer is not None and not self._is_awake:
             self._frame_timer.pause()
+
+    def _set_frame_gap(self, gap_s: float) -> None:
+        """Poll the run, and draw, at this interval from now on."""
+        if self._frame_timer is not None:
+            self._frame_timer.stop()
+        self._frame_timer = self.set_interval(gap_s, self._on_frame_timer)
+
+    def _awaits_first_tick(self) -> bool:
+        """Return whether the run is starting: a frame drawn now would delay the one that shows its first tick."""
+        if not self._starting_until_s:
+            return False
+        runs, recording = self.run_controller, self.run_controller.timeline.recording
+        ticked = recording is not None and recording.telemetry.count > 1
+        goes_on = runs.state in (RunPhase.STARTING, RunPhase.RUNNING)
+        if goes_on and not ticked and time.monotonic() < self._starting_until_s:
+            return True
+        self._starting_until_s = 0.0
+        self._set_frame_gap(1 / self.settings.fps)
+        return False
 
     def _seldom(self) -> None:
         # An extra call between two frames would leave the next one no time.

@@ -267,6 +267,11 @@ class RunController(RunView):
         self.run, self._end = run, None
         self._show_recording(Recording(self.run))
 
+    def prepare_next(self) -> None:
+        """Prepare a process for the next run, which moves the robot sooner; a run in another world needs its own."""
+        if self.run:
+            self.run.prepare_next()
+
     @property
     def _options(self) -> RunOptions:
         return RunOptions(live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True)

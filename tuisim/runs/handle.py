@@ -45,6 +45,7 @@ from tuisim.runs.process import (
     end_group,
     end_left_over,
     mark,
+    prepare_template,
     start_child,
     stuck_line,
     what_ended,
@@ -145,8 +146,8 @@ def _needs(program: Program, field: FieldFiles) -> list[Path]:
 class RunHandle:
     """One run: its child process, pipes and recording. Create it with `start_run`.
 
-    With `of_many` its process is forked from a template that is kept for other runs of the same robot and world. With
-    `isolated` it is started through bubblewrap instead.
+    Its process is forked from a template for runs of the same robot and world, if there is one. With `of_many` one is
+    made; `prepare_next` makes one for later runs. With `isolated` the process is started through bubblewrap instead.
     """
 
     def __init__(
@@ -188,7 +189,8 @@ class RunHandle:
             self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(
                 run.folder,
                 program.working_directory,
-                _template_key(program, spec, field) if of_many else None,
+                _template_key(program, spec, field),
+                of_many,
                 _needs(program, field) if isolated else None,
             )
         except OSError as error:
@@ -395,6 +397,10 @@ class RunHandle:
         if self._stop_at is None:
             self._stop_at = time.monotonic()
         end_group(self._process.pid)
+
+    def prepare_next(self) -> None:
+        """Prepare a process for later runs of this robot and world, which then start sooner. Does not block."""
+        prepare_template(_template_key(self.program, self.spec, self.field), self.folder)
 
     def close(self) -> None:
         """Make sure that the child is gone and the end of the run is recorded."""

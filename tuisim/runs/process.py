@@ -82,6 +82,7 @@ def start_child(
     folder: Path,
     working_directory: str,
     template_key: Hashable = None,
+    makes_template: bool = False,
     isolated_with: Sequence[Path] | None = None,
 ) -> tuple[ChildProcess, int, int, int]:
     """Start the process that executes the run of a folder.
@@ -92,6 +93,7 @@ def start_child(
         folder: The run folder.
         working_directory: Initial working directory, if it still exists.
         template_key: What a template must be prepared for to fork the child; None forks it from the warm process.
+        makes_template: Whether such a template is made if there is none; otherwise the warm process forks the child.
         isolated_with: The files and folders that it needs besides its run folder and its working directory; it is then
             started by itself, isolated from the others. None starts it without isolation.
 
@@ -111,7 +113,8 @@ def start_child(
             cwd = working_directory if os.path.isdir(working_directory) else None
             process: ChildProcess
             if isolated_with is None:
-                forked = _fork(folder, cwd, log.fileno(), inherited, template_key)
+                key = template_key if makes_template or template_key in _Starts.templates else None
+                forked = _fork(folder, cwd, log.fileno(), inherited, key)
                 process = forked or _spawn(folder, cwd, log, inherited)
             else:
                 command = [*_command(), str(folder), *map(str, inherited)]
@@ -123,6 +126,19 @@ def start_child(
     os.set_blocking(event_fd, False)
     os.set_blocking(command_fd, False)
     return process, command_fd, event_fd, lifeline_fd
+
+
+def prepare_template(key: Hashable, folder: Path) -> None:
+    """Make a template unless there is one, if the warm process runs. Does not block until it is ready.
+
+    Args:
+        key: What it is prepared for.
+        folder: A run folder with that.
+    """
+    if _Starts.warm is not None and _Starts.warm.is_usable:
+        # Without a template, children are forked from the warm process.
+        with suppress(OSError):
+            _template(_Starts.warm, key, folder)
 
 
 def _command() -> list[str]:

@@ -14,9 +14,11 @@ from textual.pilot import Pilot
 from tests.app.app_help import ENDLESS, LOGS, ready, settings, until
 from tests.app.wires import on_wire, until_quiet, wire_of
 from tuisim.analysis.source import LogRequest
+from tuisim.app import app as app_module
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.run_controller import RunUpdate
+from tuisim.app.snapshot import RunPhase
 from tuisim.app.terminal.pacer import Pacer
 from tuisim.protocol import Resumed
 
@@ -140,3 +142,23 @@ async def test_what_the_robot_does_is_shown_while_the_program_prints(monkeypatch
         app._on_frame_timer()
 
         assert drawn
+
+
+@pytest.mark.parametrize(("key", "shown"), [("R", (RunPhase.RUNNING, True)), ("n", (RunPhase.PAUSED, False))])
+async def test_the_first_frame_of_a_run_waits_for_its_first_tick_unless_it_is_paused(
+    monkeypatch: pytest.MonkeyPatch, key: str, shown: tuple[RunPhase, bool]
+) -> None:
+    monkeypatch.setattr(app_module, "_STARTING_S", 60.0)
+    async with on_wire(LabApp(settings(ENDLESS))) as pilot:
+        app = await ready(pilot)
+        drawn: list[tuple[RunPhase, bool]] = []
+
+        def note() -> None:
+            now = app.run_controller.snapshot()
+            drawn.append((now.state, now.instant.tick > 0))
+
+        monkeypatch.setattr(app.pacer, "drawn", note)
+        await pilot.press(key)
+        await until(pilot, lambda: any(state is not RunPhase.IDLE for state, _ in drawn))
+
+        assert next(one for one in drawn if one[0] is not RunPhase.IDLE) == shown
