@@ -15,7 +15,8 @@ window.WebSocket = class extends Socket {
     this.addEventListener("close", (event) => {
       const usual = event.wasClean ? "The session has ended." : "The connection to the server is lost.";
       document.getElementById("reason").textContent = event.reason || usual;
-      document.getElementById("again").focus();
+      // textual.js shows the dialog when it hears of the end, after this.
+      setTimeout(() => document.getElementById("again").focus());
     });
     // The place must be free before this page is asked for again.
     window.addEventListener("beforeunload", () => this.close());
