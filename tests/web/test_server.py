@@ -65,10 +65,14 @@ async def visited() -> AsyncIterator[Visited]:
     async with AsyncExitStack() as stack:
 
         async def start(
-            command: Sequence[str] = (), visitors: int = 2, idle_s: float = PATIENCE_S, patience_s: float = 0.01
+            command: Sequence[str] = (),
+            visitors: int = 2,
+            idle_s: float = PATIENCE_S,
+            patience_s: float = 0.01,
+            report: Callable[[str], None] = lambda _: None,
         ) -> Visitor:
             limits = Limits(visitors, idle_s, patience_s)
-            server = Server(command or stand_in(), Gate("127.0.0.1", TOKEN), limits)
+            server = Server(command or stand_in(), Gate("127.0.0.1", TOKEN), limits, report)
             port = await stack.enter_async_context(listening(server, "127.0.0.1", 0))
             return Visitor(await stack.enter_async_context(ClientSession()), port)
 
@@ -111,6 +115,25 @@ async def test_a_stranger_gets_no_app(
     with pytest.raises(WSServerHandshakeError) as refused:
         await visitor.client.ws_connect(url, headers={"Origin": visitor.origin} | headers)
     assert (refused.value.status, started) == (403, [])
+
+
+WRONG = {
+    "no host": b"GET / HTTP/1.1\r\n\r\n",
+    "an endless path": b"GET /" + b"a" * 20_000 + b" HTTP/1.1\r\n\r\n",
+    "encryption": b"\x16\x03\x01\r\n\r\n",
+}
+
+
+@pytest.mark.parametrize("request_bytes", WRONG.values(), ids=WRONG)
+async def test_a_wrong_request_leaves_no_trace_in_the_terminal(
+    request_bytes: bytes, visited: Visited, caplog: pytest.LogCaptureFixture
+) -> None:
+    visitor = await visited()
+    reader, writer = await asyncio.open_connection("127.0.0.1", int(visitor.origin.rpartition(":")[2]))
+    writer.write(request_bytes)
+    assert b" 400 " in await reader.readline()
+    writer.close()
+    assert caplog.records == []
 
 
 VISITS = {
@@ -204,22 +227,28 @@ async def test_the_app_does_not_take_the_servers_terminal_for_its_own(
     assert seen.read_text() == "xterm-256color kept\n"
 
 
+GONE = "tuisim: mine.py: there is no such program"
 ENDS = {
-    "the user quits": ("0 a note", ""),
-    "what to open is gone": (
-        "2 note: x\ntuisim: mine.py: there is no such program\n",
-        "tuisim: mine.py: there is no such program",
-    ),
-    "a long reason": ("2 tuisim: " + "é" * 300, "tuisim: " + "é" * 57),
-    "a failure": ("1 Traceback", "The app has failed; the server's terminal tells more."),
+    "the user quits": ("0 a note", "", []),
+    "what to open is gone": (f"2 note: x\n{GONE}\n", GONE, [f"note: x\n{GONE}\n"]),
+    "a long reason": ("2 tuisim: " + "é" * 300, "tuisim: " + "é" * 57, ["tuisim: " + "é" * 300]),
+    "a failure": ("1 Traceback", "The app has failed; the server's terminal tells more.", ["Traceback"]),
 }
 
 
-@pytest.mark.parametrize(("how", "reason"), ENDS.values(), ids=ENDS)
-async def test_a_visitor_is_told_why_the_app_has_ended(how: str, reason: str, visited: Visited) -> None:
-    socket, _ = await (await visited()).started()
+@pytest.mark.parametrize(("how", "reason", "reported"), ENDS.values(), ids=ENDS)
+async def test_visitor_and_server_are_told_why_the_app_has_ended(
+    how: str, reason: str, reported: list[str], visited: Visited
+) -> None:
+    reports: list[str] = []
+    socket, _ = await (await visited(report=reports.append)).started()
     await socket.send_json(["stdin", f"end {how}"])
-    assert await heard(socket) == reason
+    assert (await heard(socket), reports) == (reason, reported)
+
+
+async def test_a_visitor_is_told_that_the_app_cannot_be_started(visited: Visited) -> None:
+    socket = await (await visited(["/no/such/program"])).socket()
+    assert await heard(socket) == "The app cannot be started: No such file or directory"
 
 
 async def test_a_visitor_that_does_nothing_is_sent_away(visited: Visited) -> None:

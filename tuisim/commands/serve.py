@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.commands.app import OPENED, read_opened
-from tuisim.commands.echo import echo
+from tuisim.commands.echo import echo, echo_error_lines
 from tuisim.config.command_line import Arguments, Value, command, option, words_without
 from tuisim.config.options import number, whole
 from tuisim.errors import ConfigError
@@ -75,7 +75,7 @@ def serve(**given: Any) -> int:
     gate = Gate(arguments.host)
     idle_s = float("inf") if arguments.idle is None else 60 * arguments.idle
     command_of_app = [sys.executable, "-P", "-c", _BOOT, _PACKAGE_FOLDER, "open", *words_without(_SERVER)]
-    visitors = server.Server(command_of_app, gate, server.Limits(arguments.max_visitors, idle_s))
+    visitors = server.Server(command_of_app, gate, server.Limits(arguments.max_visitors, idle_s), echo_error_lines)
     return server.serve(visitors, arguments.host, arguments.port, lambda port: _announce(gate, port))
 
 

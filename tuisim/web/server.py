@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import errno
+import logging
 import signal
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
@@ -13,6 +14,7 @@ from urllib.parse import quote
 
 import textual_serve
 from aiohttp import WSCloseCode, web
+from aiohttp.http import HttpProcessingError
 from aiohttp.typedefs import Handler, Middleware
 from textual_serve.download_manager import DownloadManager
 
@@ -49,10 +51,13 @@ class Server:
         command: The command of the app, as words.
         gate: Decides which requests are answered.
         limits: What visitors may use.
+        report: Called with what an app that has failed wrote to stderr.
     """
 
-    def __init__(self, command: Sequence[str], gate: Gate, limits: Limits) -> None:
-        self._command, self._gate, self._limits = command, gate, limits
+    def __init__(
+        self, command: Sequence[str], gate: Gate, limits: Limits, report: Callable[[str], None] = lambda _: None
+    ) -> None:
+        self._command, self._gate, self._limits, self._report = command, gate, limits, report
         self._downloads = DownloadManager()
         self._visits: set[Visit] = set()
         self._place_is_free = asyncio.Condition()
@@ -100,7 +105,7 @@ class Server:
         if not await self._has_place():
             await socket.close(code=WSCloseCode.TRY_AGAIN_LATER, message=self._full.encode())
             return socket
-        visit = Visit(Session(self._command, socket, self._downloads), socket, self._limits.idle_s)
+        visit = Visit(Session(self._command, socket, self._downloads), socket, self._limits.idle_s, self._report)
         self._visits.add(visit)
         try:
             await visit.proceed(*_size(request))
@@ -207,7 +212,9 @@ async def listening(server: Server, host: str, port: int) -> AsyncIterator[int]:
     Raises:
         ConfigError: the address cannot be used.
     """
-    runner = web.AppRunner(server.application(), access_log=None, shutdown_timeout=2 * END_WITHIN_S)
+    logger = logging.getLogger(__name__)
+    logger.addFilter(_is_no_wrong_request)
+    runner = web.AppRunner(server.application(), access_log=None, logger=logger, shutdown_timeout=2 * END_WITHIN_S)
     await runner.setup()
     try:
         try:
@@ -217,6 +224,11 @@ async def listening(server: Server, host: str, port: int) -> AsyncIterator[int]:
         yield runner.addresses[0][1]
     finally:
         await runner.cleanup()
+
+
+def _is_no_wrong_request(record: logging.LogRecord) -> bool:
+    """Return whether to log something: anybody can send a request that is not HTTP, which is no failure of ours."""
+    return not (record.exc_info and isinstance(record.exc_info[1], HttpProcessingError))
 
 
 def _note(ended_by: asyncio.Future[signal.Signals], number: signal.Signals) -> None:

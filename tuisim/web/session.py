@@ -84,11 +84,20 @@ class Session(AppService):
             payload = await output.readexactly(int.from_bytes(await output.readexactly(4), "big"))
             await handlers[kind](payload)
 
-    async def ended(self) -> str:
-        """Wait until the app has ended by itself; return what to tell the visitor, empty if nothing has failed."""
-        assert self._task is not None and self._process is not None
+    async def ended(self) -> None:
+        """Wait until the app has ended by itself."""
+        assert self._task is not None
         await asyncio.shield(self._task)
-        if self._process.returncode == 0:
+
+    @property
+    def has_failed(self) -> bool:
+        """Whether the app has ended with an error."""
+        return self._process is not None and bool(self._process.returncode)
+
+    @property
+    def reason(self) -> str:
+        """What to tell the visitor after the app has ended; empty if nothing has failed."""
+        if not self.has_failed:
             return ""
         last = self.errors.rstrip().rpartition("\n")[2]
         return last if last.startswith("tuisim: ") else "The app has failed; the server's terminal tells more."

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+from collections.abc import Callable
 from contextlib import suppress
 
 from aiohttp import WSMsgType, web
@@ -23,10 +24,13 @@ class Visit:
         session: The app.
         socket: The connection to the browser.
         idle_s: The visit ends when the visitor does nothing for this time.
+        report: Called with what an app that has failed wrote to stderr.
     """
 
-    def __init__(self, session: Session, socket: web.WebSocketResponse, idle_s: float) -> None:
-        self._session, self._socket, self._idle_s = session, socket, idle_s
+    def __init__(
+        self, session: Session, socket: web.WebSocketResponse, idle_s: float, report: Callable[[str], None]
+    ) -> None:
+        self._session, self._socket, self._idle_s, self._report = session, socket, idle_s, report
         self._activity = Activity()
 
     async def proceed(self, width: int, height: int) -> None:
@@ -36,7 +40,11 @@ class Visit:
             width: Columns of the visitor's terminal.
             height: Its rows.
         """
-        await self._session.start(*_within(width, height))
+        try:
+            await self._session.start(*_within(width, height))
+        except OSError as error:
+            await self.end(f"The app cannot be started: {error.strerror}")
+            return
         watchers = [asyncio.create_task(watch()) for watch in (self._until_app_ends, self._until_idle)]
         try:
             async for message in self._socket:
@@ -53,7 +61,10 @@ class Visit:
         await self._socket.close(message=text.encode())
 
     async def _until_app_ends(self) -> None:
-        await self.end(await self._session.ended())
+        await self._session.ended()
+        if self._session.has_failed:
+            self._report(self._session.errors)
+        await self.end(self._session.reason)
 
     async def _until_idle(self) -> None:
         while (left_s := self._idle_s - self._activity.idle_s) > 0:

@@ -1,0 +1,257 @@
+"""The real server with the real app, asked by a client that answers like the terminal of a page."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import os
+import re
+import signal
+import subprocess
+import sys
+from asyncio.subprocess import PIPE, Process
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import AsyncExitStack, asynccontextmanager, suppress
+from itertools import product
+from pathlib import Path
+
+import pyte
+import pytest
+from aiohttp import ClientSession, ClientWebSocketResponse, WSMsgType
+
+from tests.conftest import ROOT
+from tests.running import PATIENCE_S
+from tests.web.test_server import is_there
+
+pytestmark = pytest.mark.slow
+
+DRIVES = "# %%sim_magic_preloaded -b Grey_bands\ntank_drive.on_for_seconds(20, 20, 2)\nprint('Light: 5')\n"
+RUNS_ON = "# %%sim_magic_preloaded -b Loop\nprint('Light: 5')\nwhile True:\n    pass\n"
+QUERY, ANSWER = b"\x1b[6n", "\x1b[20;40R"
+
+
+class Tab:
+    """A page without a picture: what its terminal shows, and how its session has ended."""
+
+    def __init__(self, socket: ClientWebSocketResponse, columns: int, rows: int) -> None:
+        self._socket = socket
+        self._screen = pyte.Screen(columns, rows)
+        self._stream = pyte.ByteStream(self._screen)
+        self._news = asyncio.Event()
+        self.seen = b""
+        self.reason: str | None = None
+
+    async def read(self) -> None:
+        """Show what the app sends, and answer it, until it ends."""
+        while (message := await self._socket.receive()).type is WSMsgType.BINARY:
+            self.seen += message.data
+            self._stream.feed(message.data)
+            for _ in range(message.data.count(QUERY)):
+                await self._socket.send_json(["stdin", ANSWER])
+            self._news.set()
+        self.reason = str(message.extra or "")
+        self._news.set()
+
+    @property
+    def text(self) -> str:
+        return "\n".join(self._screen.display)
+
+    def color(self, column: int, row: int) -> str:
+        """Return the colour of a character."""
+        return str(self._screen.buffer[row][column].fg)
+
+    async def say(self, *words: str) -> None:
+        await self._socket.send_json(words)
+
+    async def press(self, keys: str) -> None:
+        await self.say("stdin", keys)
+
+    async def resize(self, columns: int, rows: int) -> None:
+        self._screen.resize(rows, columns)
+        await self._socket.send_json(["resize", {"width": columns, "height": rows}])
+
+    async def until(self, condition: Callable[[], object]) -> None:
+        """Wait until something has happened."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(PATIENCE_S):
+                while not condition():
+                    self._news.clear()
+                    await self._news.wait()
+        assert condition(), self.text
+
+
+class Serving:
+    """A server in a process of its own."""
+
+    def __init__(self, process: Process, address: str) -> None:
+        self.process, self.address = process, address
+
+    @asynccontextmanager
+    async def tab(self, columns: int = 120, rows: int = 40) -> AsyncIterator[Tab]:
+        """Open the app in a tab, and close the tab."""
+        query = f"ws?width={columns}&height={rows}"
+        origin = self.address.rsplit("/", 2)[0]
+        async with (
+            ClientSession(headers={"Origin": origin}) as client,
+            client.ws_connect(self.address + query) as socket,
+            asyncio.TaskGroup() as tasks,
+        ):
+            tab = Tab(socket, columns, rows)
+            reading = tasks.create_task(tab.read())
+            yield tab
+            reading.cancel()
+
+
+Serve = Callable[..., Awaitable[Serving]]
+
+
+@pytest.fixture
+async def serve(tmp_path: Path) -> AsyncIterator[Serve]:
+    """Start a server that opens a program."""
+    async with AsyncExitStack() as stack:
+
+        async def start(program: str, *words: str) -> Serving:
+            (tmp_path / "prog.py").write_text(program)
+            process = await asyncio.create_subprocess_exec(
+                *(sys.executable, "-m", "tuisim", "serve", "prog.py", "--port", "0", *words),
+                cwd=tmp_path,
+                env={**os.environ, "PYTHONPATH": str(ROOT), "TUISIM_HOME": str(tmp_path / "home")},
+                stdout=PIPE,
+            )
+            stack.push_async_callback(_end, process)
+            assert process.stdout is not None
+            line = await asyncio.wait_for(process.stdout.readline(), PATIENCE_S)
+            return Serving(process, line.decode().split()[1])
+
+        yield start
+
+
+async def _end(process: Process) -> None:
+    with suppress(ProcessLookupError):
+        process.send_signal(signal.SIGINT)
+    await asyncio.wait_for(process.wait(), PATIENCE_S)
+
+
+def descendants(pid: int) -> set[int]:
+    """Return all processes that a process has started, and that they have."""
+    listed = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True, check=False)
+    children = {int(word) for word in listed.stdout.split()} - {pid}
+    return children.union(*map(descendants, children))
+
+
+async def gone(processes: set[int]) -> None:
+    """Wait until processes have ended."""
+    async with asyncio.timeout(PATIENCE_S):
+        while any(map(is_there, processes)):
+            await asyncio.sleep(0.02)
+
+
+def place(tab: Tab) -> str:
+    """Return where the robot is, as the panel says."""
+    found = re.search(r"x +([\d.]+) +y +([\d.]+)", tab.text)
+    return found[0] if found else ""
+
+
+def cells_of_robot(tab: Tab) -> list[tuple[int, int]]:
+    """Return the cells that are blue in the left of the world, its border left out."""
+    cells = {(x, y): tab._screen.buffer[y][x] for x, y in product(range(2, 30), range(2, 18))}
+    # A blank shows only its background.
+    return [at for at, cell in cells.items() if is_blue(cell.bg) or (cell.data != " " and is_blue(cell.fg))]
+
+
+def is_blue(color: str) -> bool:
+    return re.fullmatch("[0-9a-f]{6}", color) is not None and int(color[4:], 16) - int(color[:2], 16) > 100
+
+
+async def test_a_program_runs_and_is_charted_at_the_pace_of_the_page(serve: Serve) -> None:
+    async with (await serve(DRIVES, "-R", "--chart")).tab() as tab:
+        await tab.until(lambda: "finished" in tab.text and "Light" in tab.text)
+        assert tab.seen.count(QUERY) > 10
+
+
+async def test_the_mouse_drags_the_robot(serve: Serve) -> None:
+    async with (await serve(DRIVES)).tab() as tab:
+        await tab.until(lambda: "150.0" in place(tab) and len(cells_of_robot(tab)) > 9)
+        column, row = (sum(values) // len(values) for values in zip(*cells_of_robot(tab), strict=True))
+        for code, right, end in ((0, 0, "M"), (32, 20, "M"), (32, 30, "M"), (0, 30, "m")):
+            await tab.press(f"\x1b[<{code};{column + 1 + right};{row + 1}{end}")
+        await tab.until(lambda: place(tab) and "150.0" not in place(tab))
+
+
+async def test_the_app_follows_the_size_of_the_page(serve: Serve) -> None:
+    async with (await serve(DRIVES)).tab() as tab:
+        await tab.until(lambda: "quit" in tab._screen.display[39])
+        await tab.resize(90, 28)
+        await tab.until(lambda: "quit" in tab._screen.display[27])
+
+
+async def test_what_is_copied_reaches_the_clipboard_of_the_browser(serve: Serve) -> None:
+    async with (await serve(DRIVES)).tab() as tab:
+        await tab.until(lambda: "idle" in tab.text)
+        await tab.press("d")
+        await tab.until(lambda: "esc done" in tab.text)
+        await tab.press("\x01")
+        await tab.press("\x03")
+        await tab.until(lambda: b"\x1b]52;c;" + base64.b64encode(DRIVES.encode()) in tab.seen)
+
+
+async def test_ctrl_z_says_that_there_is_nothing_to_go_back_to(serve: Serve) -> None:
+    async with (await serve(DRIVES)).tab() as tab:
+        await tab.until(lambda: "idle" in tab.text)
+        await tab.press("\x1a")
+        await tab.until(lambda: "tuisim cannot be suspended in a browser" in tab.text)
+
+
+async def test_q_ends_the_session(serve: Serve) -> None:
+    async with (await serve(DRIVES)).tab() as tab:
+        await tab.until(lambda: "idle" in tab.text)
+        await tab.press("q")
+        await tab.until(lambda: tab.reason is not None)
+        assert tab.reason == ""
+
+
+async def test_two_visitors_have_an_app_each(serve: Serve) -> None:
+    server = await serve(DRIVES)
+    async with server.tab() as one, server.tab(90, 28) as other:
+        await one.until(lambda: "idle" in one.text)
+        await other.until(lambda: "idle" in other.text)
+        await one.press("R")
+        await one.until(lambda: "finished" in one.text)
+        assert "idle" in other.text
+
+
+async def test_a_closed_tab_ends_its_app_and_its_program_only(serve: Serve) -> None:
+    server = await serve(RUNS_ON, "-R")
+    async with server.tab() as kept:
+        await kept.until(lambda: "running" in kept.text)
+        others = descendants(server.process.pid)
+        async with server.tab() as tab:
+            await tab.until(lambda: "running" in tab.text)
+            ended = descendants(server.process.pid) - others
+        assert len(ended) > 1
+        await gone(ended)
+        assert all(map(is_there, others))
+
+
+ENDS = {"ctrl+c": (signal.SIGINT, 0), "termination": (signal.SIGTERM, 143), "no chance": (signal.SIGKILL, -9)}
+
+
+@pytest.mark.parametrize(("number", "code"), ENDS.values(), ids=ENDS)
+async def test_the_end_of_the_server_ends_apps_and_programs(number: signal.Signals, code: int, serve: Serve) -> None:
+    server = await serve(RUNS_ON, "-R")
+    async with server.tab() as tab:
+        await tab.until(lambda: "running" in tab.text)
+        started = descendants(server.process.pid)
+        assert len(started) > 1
+        server.process.send_signal(number)
+        assert await server.process.wait() == code
+        await gone(started)
+
+
+async def test_a_page_that_has_the_focus_from_the_start_keeps_it(serve: Serve) -> None:
+    async with (await serve(DRIVES)).tab() as tab:
+        await tab.say("focus")
+        await tab.until(lambda: "idle" in tab.text)
+        await tab.resize(90, 28)
+        await tab.until(lambda: "quit" in tab._screen.display[27])
+        assert tab.color(0, 0) == "5fafff"
