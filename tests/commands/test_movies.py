@@ -22,6 +22,7 @@ from tuisim.core.simulation import Simulation
 from tuisim.core.spec import PenSpec, RobotSpec, RunSpec, WorldSpec
 from tuisim.movies.cell_painter import CellPainter
 from tuisim.movies.clip import END_MS, Panel, Recorded
+from tuisim.movies.files import SMALL_BYTES, small_movie
 from tuisim.movies.painter import FramePainter
 from tuisim.runs.records import TELEMETRY_FILE, OutputWriter, TelemetryWriter
 from tuisim.runs.run_folder import StoredRun
@@ -31,17 +32,22 @@ ROBOT = RobotSpec(pen=PenSpec(down=True, color="#ff00ff"))
 START = Pose(600, 570, 0)
 
 
-@pytest.fixture(autouse=True)
-def run(home: Path) -> StoredRun:
-    """A run of one second that drives a line, and prints two values."""
+def record(*speeds_dps: float) -> StoredRun:
+    """Store a run that drives each speed for half a second."""
     store, spec = RunStore(), RunSpec(ROBOT, WorldSpec("Grey_bands", start=START), ROBOLAB)
     new = store.new_run(PROGRAM, spec)
     telemetry = TelemetryWriter(new.folder)
     recorder = Recorder(store, new, spec, telemetry, OutputWriter(new.folder), Simulation(spec, telemetry))
-    for text in ("Colour: 100.0", "Colour: 50.0"):
-        recorder.print(text)
-        recorder.drive(1000, 1000, 50)
+    for number, speed_dps in enumerate(speeds_dps):
+        recorder.print(f"Colour: {100.0 / (number + 1)}")
+        recorder.drive(speed_dps, speed_dps, 50)
     return recorder.end()
+
+
+@pytest.fixture(autouse=True)
+def run(home: Path) -> StoredRun:
+    """A run of one second that drives a line, and prints two values."""
+    return record(1000, 1000)
 
 
 def frames_of(path: Path) -> tuple[list[Any], list[int]]:
@@ -155,6 +161,20 @@ def test_a_picture_shows_an_instant(here: Command, tmp_path: Path, at: str, valu
 def test_without_a_file_it_is_named_after_the_program(here: Command, tmp_path: Path) -> None:
     assert here("runs", "picture", "last").stdout == "log.png\n"
     assert (tmp_path / "log.png").is_file()
+
+
+def test_a_small_movie_of_a_long_run_is_faster() -> None:
+    made = small_movie(Recorded(record(*[100, -100] * 25)))
+    assert made is not None
+    clip, content = made
+    assert (clip.speed, len(clip.shots)) == (3, 85)
+    assert len(content) < SMALL_BYTES
+
+
+@pytest.mark.parametrize(("speed_dps", "most"), [(0, SMALL_BYTES), (100, 1000)], ids=["stands still", "too large"])
+def test_no_small_movie(monkeypatch: pytest.MonkeyPatch, speed_dps: float, most: int) -> None:
+    monkeypatch.setattr("tuisim.movies.files.SMALL_BYTES", most)
+    assert small_movie(Recorded(record(speed_dps))) is None
 
 
 # Words after `runs`, and what the line on stderr must say.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import re
 from contextlib import redirect_stdout
 from dataclasses import dataclass
 from html.parser import HTMLParser
@@ -123,15 +124,39 @@ def test_a_page_needs_nothing_from_elsewhere(driven: Driven) -> None:
     assert not {"script", "link", "iframe", "object", "i", "b"} & set(driven.page.tags)
     for name, value in driven.page.attributes:
         assert not name.startswith("on")
-        assert name not in ("href", "srcset") and (name != "src" or value.startswith("data:image/png;base64,"))
+        assert name not in ("href", "srcset") and (name != "src" or re.match("data:image/(png|webp);base64,", value))
 
 
 def test_the_world_shows_the_way(driven: Driven) -> None:
-    (source,) = (value for name, value in driven.page.attributes if name == "src")
+    source, _ = (value for name, value in driven.page.attributes if name == "src")
     with Image.open(io.BytesIO(base64.b64decode(source.partition(",")[2]))) as picture:
         colors = {color: count for count, color in picture.convert("RGB").getcolors(1 << 20) or ()}
     # About 1.3 m at 3 mm a pixel, two pixels wide.
     assert colors[(230, 90, 0)] > 500
+
+
+def test_a_small_movie_shows_the_run(driven: Driven) -> None:
+    _, source = (value for name, value in driven.page.attributes if name == "src")
+    content = base64.b64decode(source.partition(",")[2])
+    (said,) = [text for text in driven.page.section["World"] if text.startswith("Movie of the run: ")]
+    end_s = (driven.run.telemetry.count - 1) / 100
+    assert said == f"Movie of the run: {end_s:.1f} s in real time, {len(content) / 1000:.0f} kB"
+    assert len(content) < 100_000
+    with Image.open(io.BytesIO(content)) as movie:
+        assert (movie.format, getattr(movie, "n_frames", 1)) == ("WEBP", driven.run.telemetry.count // 10 + 2)
+
+
+def test_the_same_run_gives_the_same_bytes(here: Command, tmp_path: Path, driven: Driven) -> None:
+    for name in ("one.html", "two.html"):
+        here("log", "report", driven.run.id, "--out", name)
+    assert (tmp_path / "one.html").read_bytes() == (tmp_path / "two.html").read_bytes()
+
+
+def test_a_robot_that_stands_still_has_no_movie(here: Command, home: Path, tmp_path: Path) -> None:
+    (tmp_path / "still.py").write_text("print('Colour: 1')\n")
+    here("run", "still.py", "--preload", "preloaded")
+    here("log", "report", "last")
+    assert "details" not in page_of(tmp_path / "still-report.html").tags
 
 
 def test_several_runs_stand_side_by_side(here: Command, tmp_path: Path, driven: Driven) -> None:

@@ -25,6 +25,8 @@ from tuisim.logs.export import check_place
 from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Plateau, plateaus
 from tuisim.logs.signals import QUANTILES
+from tuisim.movies.clip import Recorded
+from tuisim.movies.files import small_movie
 from tuisim.protocol import SetNoise
 from tuisim.runs.arrays import FloatArray
 from tuisim.runs.run_folder import StoredRun
@@ -71,14 +73,17 @@ def write_report(opened: OpenedLog, path: Path, names: Sequence[str] = (), searc
     """
     check_report(path)
     # A program may contain lone surrogates, which `clean` has replaced.
-    write_whole(path, report_of(opened, names, search).encode())
+    write_whole(path, report_of(opened, names, search, movie=len(opened.runs) == 1).encode())
 
 
-def report_of(opened: OpenedLog, names: Sequence[str] = (), search: Search = plateaus, title: str = "") -> str:
+def report_of(
+    opened: OpenedLog, names: Sequence[str] = (), search: Search = plateaus, title: str = "", *, movie: bool = False
+) -> str:
     """Return the page that `write_report` writes; arguments and errors are the same.
 
     Args:
         title: The title of a page that is the same for identical runs: it names no run and no date.
+        movie: Whether the page has a movie of each run.
     """
     opened, remark = _with_rows(opened)
     if title:
@@ -95,7 +100,7 @@ def report_of(opened: OpenedLog, names: Sequence[str] = (), search: Search = pla
         paragraph(remark, soft=True) if remark else "",
         "</header>",
         section("Facts", facts(known if runs else log_facts(log)), *map(_error, runs)),
-        section("World", *(_world(run, many=len(runs) > 1) for run in runs)),
+        section("World", *(_world(run, many=len(runs) > 1) for run in runs), *map(_movie, runs if movie else ())),
         section("Chart", *_chart(model)),
         section("Bands", *_bands(model)),
         section("Statistics", _statistics(model)),
@@ -155,7 +160,27 @@ def _way_picture(run: StoredRun) -> Image:
 def _as_source(picture: Image) -> str:
     content = io.BytesIO()
     picture.save(content, "png", optimize=True)
-    return f"data:image/png;base64,{base64.b64encode(content.getvalue()).decode()}"
+    return _data("png", content.getvalue())
+
+
+def _data(kind: str, content: bytes) -> str:
+    return f"data:image/{kind};base64,{base64.b64encode(content).decode()}"
+
+
+def _movie(run: StoredRun) -> str:
+    """Return a small movie of a run, closed at first: a page that moves by itself distracts from its text."""
+    try:
+        made = small_movie(Recorded(run))
+    except LogError:
+        # Where there is no picture either, it says why.
+        return ""
+    if made is None:
+        return ""
+    clip, content = made
+    speed = f"{clip.speed:g} times real time" if clip.speed > 1 else "real time"
+    text = clean(f"Movie of the run: {clip.recorded.end_s:.1f} s in {speed}, {len(content) / 1000:.0f} kB")
+    image = f'<img src="{_data("webp", content)}" alt="{text}">'
+    return f'<details class="movie"><summary>{text}</summary>{image}</details>'
 
 
 def _chart(model: Model) -> list[str]:
@@ -333,6 +358,7 @@ figcaption, .soft { color: var(--soft); font-size: .9rem; }
 figure { margin: .5rem 0; break-inside: avoid; }
 img, svg { display: block; max-width: 100%; height: auto; }
 img { border: 1px solid var(--rule); }
+summary { cursor: pointer; color: var(--soft); font-size: .9rem; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .15rem .7rem .15rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid var(--rule); }
@@ -349,6 +375,7 @@ pre { padding: .5rem; white-space: pre-wrap; }
   :root { color-scheme: light; --ink: #000; --soft: #444; --paper: #fff; --rule: #bbb; --area: #fff; }
   body { margin: 0; padding: 0; max-width: none; font-size: 10pt; }
   .wide { overflow: visible; }
+  .movie { display: none; }
 }
 """
 

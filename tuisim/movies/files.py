@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from tuisim.charts.cell_image import CellGrid
 from tuisim.charts.files import svg_of, write_whole
@@ -181,6 +184,34 @@ def _check_size(clip: Clip, kind: MovieFormat) -> None:
             f"too large: {count:,} frames of {width}x{height}, at most {most:,}",
             "a higher --speed, a lower --fps, a smaller --size, or a shorter range between --from and --to",
         )
+
+
+SMALL_BYTES = 300_000
+"""Maximum size of a movie in a page."""
+_SMALL_S, _SMALL_FPS = 10, 10
+"""Its longest duration, and its frames per second."""
+
+
+def small_movie(recorded: Recorded) -> tuple[Clip, bytes] | None:
+    """Return a movie of the world as WebP, small enough for a page; a long run is shown faster.
+
+    Returns:
+        None if the robot does not move, and if the movie would be too large.
+
+    Raises:
+        LogError: the mat no longer exists.
+    """
+    moves = any(np.ptp(recorded.telemetry[name]) > 0 for name in ("x_mm", "y_mm", "heading_deg"))
+    if not moves:
+        return None
+    speed = max(1, math.ceil(recorded.end_s / _SMALL_S))
+    clip = Clip(recorded, (Panel.WORLD,), recorded.span_s(None, None), speed, _SMALL_FPS)
+    for lossless in (True, False):
+        frames = _Frames(clip, lambda done, total: None)
+        content = image_files.webp(frames.draw, frames.durations_ms, lossless=lossless)
+        if len(content) <= SMALL_BYTES:
+            return clip, content
+    return None
 
 
 def save_picture(
