@@ -139,6 +139,7 @@ def test_several_programs_are_compared(batch: Batch, capsys: pytest.CaptureFixtu
     [
         pytest.param(("--set", "noise.motr=1"), "--set: noise.motr: no such key (did you mean motor?)", id="key"),
         pytest.param(("--set", "noise.motor=1", "-M", "5"), "noise.motor varies what an option sets", id="option"),
+        pytest.param(("--scheduler", "localhost"), "--scheduler: is no address of a scheduler: 'localhost'", id="port"),
         pytest.param(("--seeds", "1..3", "--seed", "5"), "seed varies what an option sets", id="seed option"),
         pytest.param(("--seeds", "1..3", "--set", "seed=5"), "--seeds: is given together with", id="two seeds"),
         pytest.param(("--set", "pen.down=on", "--set", "pen.down=off"), "pen.down is given twice", id="twice"),

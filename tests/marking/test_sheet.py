@@ -70,6 +70,14 @@ def test_a_row_has_mean_points_robustness_and_the_first_failure() -> None:
     assert (SHEET.rows[1].source_line, SHEET.rows[2].stopped_early) == ("stop()  # <b>too late</b>", True)
 
 
+def test_in_a_task_without_points_a_run_is_complete_if_it_meets_every_goal() -> None:
+    columns = [replace(column, points=0.0) for column in COLUMNS]
+    sheet = sheet_of("", columns, range(4), STUDENTS[:2], OUTCOMES)
+
+    assert [(row.robustness, row.reason) for row in sheet.rows] == [(1.0, ""), (0.75, "it stopped 40 mm away")]
+    assert 'class="number part">0<' in page_of(sheet)
+
+
 def test_a_table_has_a_column_a_goal_and_names_the_line() -> None:
     heads, rows = lines_of(SHEET)
     assert heads == ["student", "points", "robust", "place", "wall", "reason"]

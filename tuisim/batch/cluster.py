@@ -6,6 +6,7 @@ a folder that every worker sees under the same path.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from itertools import islice
 from typing import TYPE_CHECKING, Any
@@ -26,6 +27,7 @@ AHEAD = 400
 MOST_TRIES = 10
 """How many workers may die of a chunk before the batch fails."""
 CONNECT_S = 10
+_ADDRESS = re.compile(r"(\w+://)?[^\s/]+:\d+")
 
 _folders: dict[str, Path] = {}
 """Folder for recordings in this process, if it is a worker."""
@@ -45,6 +47,9 @@ def run_on_cluster(tasks: Iterable[Task], scheduler: str = "", workers: int = 0)
         ConfigError: Dask is not installed, or there is no scheduler at the address.
         HostError: the connection to the cluster is lost, or its workers die again and again.
     """
+    if scheduler and not _ADDRESS.fullmatch(scheduler):
+        hint = "its host and port, such as tcp://host:8786"
+        raise ConfigError(f"is no address of a scheduler: {scheduler!r}", hint, key="--scheduler")
     distributed = _dask()
     try:
         if scheduler:

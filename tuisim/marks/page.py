@@ -55,7 +55,7 @@ def _students(sheet: Sheet, links: Links) -> str:
 
 
 def _row(row: Row, sheet: Sheet, links: Links) -> str:
-    level = _level(row.points, sheet.most_points)
+    level = _level(row.points, sheet.most_points) if sheet.most_points else _level(row.robustness, 1.0)
     cells = (
         f'<th class="name" scope="row">{clean(row.name)}</th>',
         f'<td class="number {level}">{in_words(row.points)}</td>',

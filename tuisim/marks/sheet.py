@@ -51,7 +51,7 @@ class Row:
     points: float
     """Mean over the runs."""
     robustness: float
-    """Share of the runs with all points, 0 to 1."""
+    """Share of the runs with all points, 0 to 1; in a task without points, of those that met every goal."""
     cells: tuple[Cell, ...]
     """In the order of the columns."""
     reason: str = ""
@@ -111,17 +111,18 @@ def row_of(student: Student, columns: Sequence[Column], outcomes: Sequence[Outco
     ordered = tuple(sorted(outcomes, key=lambda one: one.seed))
     if not ordered:
         return Row(student.name, student.main, 0.0, 0.0, tuple(Cell(0.0, 0, "not run") for _ in columns), "not run")
-    most = math.fsum(column.points for column in columns)
     totals = [_points(columns, one) for one in ordered]
-    full = sum(math.isclose(total, most) for total in totals)
-    failed = next((one for one, total in zip(ordered, totals, strict=True) if not math.isclose(total, most)), None)
-    reason, line = _reason(failed, columns) if failed else ("", 0)
+    # In a task without points, every goal counts.
+    counted_goals = [column.name for column in columns if column.points] or [column.name for column in columns]
+    incomplete = [one for one in ordered if _missed(one, counted_goals)]
+    failed = incomplete[0] if incomplete else None
+    reason, line = _reason(failed, counted_goals) if failed else ("", 0)
     lines = source_lines(student.text)
     return Row(
         name=student.name,
         program=student.main,
         points=_rounded(math.fsum(totals) / len(totals)),
-        robustness=_rounded(full / len(totals)),
+        robustness=_rounded(1 - len(incomplete) / len(ordered)),
         cells=tuple(_cell(column, ordered) for column in columns),
         reason=reason,
         line=line,
@@ -153,9 +154,14 @@ def _cell(column: Column, outcomes: Sequence[Outcome]) -> Cell:
     return Cell(points, met)
 
 
-def _reason(outcome: Outcome, columns: Sequence[Column]) -> tuple[str, int]:
+def _missed(outcome: Outcome, names: Sequence[str]) -> list[str]:
+    """Return which of the goals a run has not met."""
+    met = {goal.name for goal in outcome.goals if goal.met}
+    return [name for name in names if name not in met]
+
+
+def _reason(outcome: Outcome, names: Sequence[str]) -> tuple[str, int]:
     """Return why a run failed, and the program's line: an error comes before the goals that it prevented."""
-    names = [column.name for column in columns if column.points]
     missed = [goal for goal in outcome.goals if not goal.met and goal.name in names]
     if outcome.failure:
         # A program that was stopped has no line of an error; what it did not get done has one.
