@@ -76,3 +76,15 @@ def test_the_readme_example_does_as_it_says(tmp_path: Path, monkeypatch: pytest.
     exec(example, names)
     assert names["run"].state == "finished"
     assert (tmp_path / "world.png").stat().st_size > 1000
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        pytest.param({"seeds": 3}, "seeds: must be several, got 3", id="one seed"),
+        pytest.param({"jobs": -1}, "jobs: must be a whole number from 0 to 1000, got -1", id="jobs"),
+    ],
+)
+def test_a_wrong_experiment_is_refused(given: dict[str, Any], words: str) -> None:
+    with pytest.raises(ConfigError, match=words):
+        tuisim.experiment("log_greys", **given)

@@ -206,13 +206,15 @@ def experiment(
     from tuisim.batch.plan import Plan, Subject
     from tuisim.batch.sweep import run_plan
     from tuisim.batch.table import Row, check_expressions, frame_of
-    from tuisim.batch.task import Keep
+    from tuisim.batch.task import MAX_JOBS, Keep
     from tuisim.batch.workers import Workers
     from tuisim.goals.files import load_goals
 
     _check_timeout(timeout_s)
     if keep not in [*Keep]:
         raise ConfigError(f"no such value {keep!r}", f"one of {', '.join(Keep)}", key="keep")
+    if jobs not in range(MAX_JOBS + 1):
+        raise ConfigError(f"must be a whole number from 0 to {MAX_JOBS}, got {jobs!r}", key="jobs")
     given = choices_of(choices)
     task = load_goals(goals) if goals is not None else None
     subjects = []
@@ -225,6 +227,8 @@ def experiment(
     if not subjects:
         raise ConfigError("no program is named", key="program")
     varied = {name: _choice(name, values) for name, values in (parameters or {}).items()}
+    if not isinstance(seeds, Iterable):
+        raise ConfigError(f"must be several, got {seeds!r}", "such as range(200) or '0..199'", key="seeds")
     chosen = parse_seeds(seeds, "seeds") if isinstance(seeds, str) else checked_seeds(list(seeds), "seeds")
     if chosen:
         varied[SEED] = chosen

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pandas as pd
@@ -16,7 +17,10 @@ from tests.conftest import ROOT, Command
 from tests.marking.student import GOAL_POINTS, Student
 from tests.marking.the_class import CLASS, write_class
 from tests.running import PATIENCE_S
+from tuisim.cli import run_command
+from tuisim.commands import mark
 from tuisim.errors import printable
+from tuisim.marks.outcome import Outcome
 
 GOALS = Path(__file__).with_name("goals.toml")
 SEEDS = "0,1"
@@ -197,3 +201,22 @@ def test_the_world_of_the_goals_replaces_that_of_a_magic_line(tmp_path: Path, he
     (tmp_path / "class" / "cheat.py").write_text(cheat)
     done = here("mark", GOALS, "class", "--seeds", "0", "--jobs", "1", "--keep", "none")
     assert done.stdout.splitlines()[1].split()[:2] == ["cheat.py", "0"]
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["int", "term"])
+def test_a_signal_ends_a_marking_in_good_order(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], number: int, code: int
+) -> None:
+    def interrupted(*_: object) -> Iterator[tuple[str, Outcome]]:
+        os.kill(os.getpid(), number)
+        yield "ada.py", Outcome(0, "finished")
+
+    write_class(tmp_path / "class", _few("ada.py"))
+    # Where the command does not handle it, the signal must not end the tests.
+    monkeypatch.setattr(mark, "outcomes_of", interrupted)
+    before = signal.signal(number, lambda *_: None)
+    try:
+        assert run_command(["mark", str(GOALS), str(tmp_path / "class")]) == code
+    finally:
+        signal.signal(number, before)
+    assert "--resume goes on" in capsys.readouterr().err

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import math
 import shutil
-import signal
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 from tuisim import __version__
@@ -33,11 +30,12 @@ from tuisim.batch.table import (
 from tuisim.commands import exit_status
 from tuisim.commands.batch_request import OPTIONS, Request, read_request
 from tuisim.commands.echo import Progress, echo, echo_drawn, echo_error, echo_json, echo_lines, table, tell
+from tuisim.commands.interruption import Interrupted, signals_raise
 from tuisim.commands.listings import names_of
 from tuisim.config.command_line import Arguments, command
 from tuisim.config.options import APP, PANEL
 from tuisim.config.shared_options import shared_options
-from tuisim.errors import SIGNALLED, ConfigError, counted
+from tuisim.errors import ConfigError, counted
 from tuisim.logs.export import export_frame
 from tuisim.logs.signals import QUANTILES
 from tuisim.protocol import End
@@ -89,29 +87,6 @@ def batch(**given: Any) -> int:
     return _Batch(read_request(arguments), as_json=arguments.as_json).run()
 
 
-class _Interrupted(KeyboardInterrupt):
-    """Ctrl-C or SIGTERM."""
-
-    def __init__(self, number: int) -> None:
-        super().__init__()
-        self.exit_code = SIGNALLED + number
-
-
-@contextmanager
-def _signals_raise() -> Iterator[None]:
-    """Raise `_Interrupted` in the block for SIGINT and SIGTERM."""
-
-    def stop(number: int, frame: FrameType | None) -> None:
-        raise _Interrupted(number)
-
-    before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-
-
 @dataclass(slots=True)
 class _Batch:
     """The run of a batch."""
@@ -129,9 +104,9 @@ class _Batch:
         plan, code = self.request.plan, 0
         with Progress(counted(len(plan), "run"), len(plan)):
             try:
-                with _signals_raise():
+                with signals_raise():
                     run_plan(plan, self.rows, workers=self.request.workers, partial=partly, on_row=self._rate())
-            except _Interrupted as interrupted:
+            except Interrupted as interrupted:
                 code = interrupted.exit_code
             finally:
                 if partly is not None:

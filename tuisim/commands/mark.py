@@ -17,13 +17,14 @@ from tuisim.batch.task import Keep
 from tuisim.charts.files import write_whole
 from tuisim.commands.batch_options import jobs_option, keep_option
 from tuisim.commands.echo import Progress, echo, echo_error, echo_lines, table, tell
+from tuisim.commands.interruption import Interrupted, signals_raise
 from tuisim.commands.listings import names_of
 from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import Arguments, Value, argument, command, option
 from tuisim.config.options import APP, PANEL, settings_of
 from tuisim.config.shared_options import shared_options
-from tuisim.errors import EXIT_INTERRUPTED, ConfigError, ExportError, counted, listed, printable
+from tuisim.errors import ConfigError, ExportError, counted, listed, printable
 from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
 from tuisim.marks.feedback import write_feedback
@@ -114,11 +115,12 @@ def mark(**given: Any) -> int:
     outcomes: dict[str, list[Outcome]] = {student.name: [] for student in students}
     with Progress("marking"):
         try:
-            _collect(entries, plan, journal_of(task.path), outcomes, resumes=arguments.resume)
-        except KeyboardInterrupt:
+            with signals_raise():
+                _collect(entries, plan, journal_of(task.path), outcomes, resumes=arguments.resume)
+        except Interrupted as interrupted:
             done = sum(map(len, outcomes.values()))
             echo_error(f"tuisim: interrupted; {counted(done, 'run')} kept: the same command with --resume goes on")
-            return EXIT_INTERRUPTED
+            return interrupted.exit_code
         sheet = sheet_of(task.title, _columns(task), seeds, students, outcomes)
         # First, so that marks are seen also if a file cannot be written.
         _print(sheet, found.ignored)
