@@ -36,7 +36,7 @@ def earlier(run: Run) -> Earlier:
     [
         (
             "nbev3devsim",
-            ("recorded with an earlier motor model of the profile nbev3devsim: a rerun may give another result",),
+            ("recorded with an earlier motor law of the profile nbev3devsim: a rerun may give another result",),
         ),
         ("robolab", ()),
         ("ev3", ()),

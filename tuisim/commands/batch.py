@@ -63,8 +63,8 @@ _LEAST_COLUMNS, _ROWS = 40, (12, 40)
     passes_arguments=True,
     help="""Run programs with many seeds and settings; print or write one row per run.
 
-    SPEC.toml is a file with a table [batch], whose keys are named like the options; options override it. Rows are in
-    the order of the parameters and do not depend on the number of jobs.
+    SPEC.toml is a file with a table [batch], whose keys are named like the options; options on the command line take
+    precedence. The rows are in the order of the parameters, and are the same for any number of jobs.
 
     Exit code: the highest of all runs, as for `tuisim run`; 2 bad input, 130 interrupted.
     """,

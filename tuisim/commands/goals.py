@@ -29,7 +29,8 @@ _MARKS = {GoalState.MET: "✓", GoalState.MISSED: "✗", GoalState.OPEN: "·"}
     AS_JSON,
     help="""Check whether stored runs meet the goals in a file.
 
-    GOALS is a TOML file. A RUN is given as for `tuisim runs`, or as a range of numbers such as 3..7; default: last.
+    GOALS is a goals file, or the name of an example such as square. A RUN is given as for `tuisim runs`, or as a range
+    of numbers such as 3..7; without one, the last run is checked.
 
     Exit code: 0 if all runs meet all goals, else 1; 2 if the file or a run cannot be read.
     """,

@@ -73,12 +73,12 @@ _OPTIONS = (
     help="""Mark the programs of a class.
 
     GOALS is a file with the goals of the task and its world. A FOLDER contains a file NAME.py or a folder for each
-    student; a student's folder contains the program main.py, or a single one, or the one named in GOALS.
+    student; a student's folder contains the program main.py, a single program, or the one that GOALS names.
 
-    The world is that of GOALS; only where it names none, that of a program's magic line. A program that hangs, floods
-    or crashes affects its own marks only, but tuisim is not a sandbox: see --isolate.
+    Programs run in the world of GOALS; if it names none, in that of their magic line. A program that hangs, floods or
+    crashes affects its own marks only, but tuisim is not a sandbox: see --isolate.
 
-    Exit code: 0 all programs have marks, 2 bad input, 130 interrupted: --resume goes on.
+    Exit code: 0 all programs have marks, 2 bad input, 130 interrupted (--resume goes on).
     """,
 )
 def mark(**given: Any) -> int:

@@ -229,10 +229,10 @@ def read_run(folder: Path) -> StoredRun:
 
 
 def _model_note(profile: Mapping[str, Any]) -> str:
-    """Return a note for runs recorded with another motor model; empty for any other run."""
+    """Return a note for runs recorded with another motor law; empty for any other run."""
     if "motor_law" in profile or law_of_earlier(profile) != MotorLaw.NBEV3DEVSIM:
         return ""
-    return f"recorded with an earlier motor model of the profile {profile['name']}: a rerun may give another result"
+    return f"recorded with an earlier motor law of the profile {profile['name']}: a rerun may give another result"
 
 
 def field_files(spec: RunSpec) -> FieldFiles:
