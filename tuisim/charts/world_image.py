@@ -213,11 +213,15 @@ def _mount(
 
 def _blend(target: Pixels, blocks: npt.NDArray[np.intp], colors: RobotColors, opacity: float) -> None:
     drawn = (colors.edge, colors.body, colors.wheel, colors.sensor, colors.marker)
-    table = np.array([(0, 0, 0), *drawn, colors.bumper, colors.pressed, colors.spot], np.float32)
-    samples = blocks.shape[1] * blocks.shape[3]
-    total = table[blocks].sum(axis=(1, 3))
-    covered = (blocks != _NONE).sum(axis=(1, 3))[..., None] / samples
-    mixed = target * (1 - opacity * covered) + total * (opacity / samples)
+    table = np.array([(0, 0, 0), *drawn, colors.bumper, colors.pressed, colors.spot], np.int64)
+    # The sums of the three channels and the number of covered samples are added up together, in 16 bits each.
+    packed = table[:, 0] | table[:, 1] << 16 | table[:, 2] << 32 | (np.arange(len(table)) != _NONE) << 48
+    _, down, _, across = blocks.shape
+    samples = packed[blocks]
+    total = sum(samples[:, row, :, col] for row in range(down) for col in range(across))
+    red, green, blue, covered = (np.right_shift(total, 16 * field) & 0xFFFF for field in range(4))
+    share = opacity / (down * across)
+    mixed = target * (1 - share * covered)[..., None] + share * np.stack((red, green, blue), axis=-1)
     target[:] = np.rint(mixed).astype(np.uint8)
 
 

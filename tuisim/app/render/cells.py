@@ -45,12 +45,19 @@ def all_cells(rows: int, cols: int) -> CellIndex:
 def changed_cells(old: Pixels, new: Pixels, glyphs: GlyphSet) -> CellIndex:
     """Return the cells in which two pictures of the same shape differ."""
     cols = new.shape[1] // glyphs.cols
-    at = np.flatnonzero((new != old).ravel())
     row_bytes = new.shape[1] * 3
+    # Four bytes at a time; a word may belong to two cells.
+    word = np.uint32 if new.nbytes % 4 == 0 else np.uint16
+    first = np.flatnonzero(_words(new, word) != _words(old, word)) * word().itemsize
     changed = np.zeros((len(new) // glyphs.rows, cols), bool)
-    changed[at // (row_bytes * glyphs.rows), at % row_bytes // (3 * glyphs.cols)] = True
+    for at in (first, first + word().itemsize - 1):
+        changed[at // (row_bytes * glyphs.rows), at % row_bytes // (3 * glyphs.cols)] = True
     at_rows, at_cols = np.nonzero(changed)
     return at_rows, at_cols
+
+
+def _words(picture: Pixels, word: type[np.unsignedinteger]) -> npt.NDArray[np.unsignedinteger]:
+    return np.ascontiguousarray(picture).ravel().view(word)
 
 
 def fit_cells(picture: Pixels, glyphs: GlyphSet, at: CellIndex, before: Cells | None = None) -> Cells:
@@ -66,31 +73,28 @@ def fit_cells(picture: Pixels, glyphs: GlyphSet, at: CellIndex, before: Cells | 
         Shape (n,).
     """
     rows, cols = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
-    points = picture.reshape(rows, glyphs.rows, cols, glyphs.cols, 3)
+    points = picture.reshape(rows, glyphs.rows, cols, glyphs.cols, 3).transpose(4, 1, 3, 0, 2)
     cells: Cells = np.empty(len(at[0]), np.int64)
     for first in range(0, len(cells), _AT_ONCE):
         some = slice(first, first + _AT_ONCE)
-        chosen = points[at[0][some], :, at[1][some]].reshape(-1, glyphs.rows * glyphs.cols, 3)
+        chosen = points[..., at[0][some], at[1][some]].reshape(3, glyphs.rows * glyphs.cols, -1)
         cells[some] = _fitted(chosen, glyphs, None if before is None else before[some] >> 48)
     return cells
 
 
 def _fitted(points: npt.NDArray[np.uint8], glyphs: GlyphSet, before: npt.NDArray[np.int64] | None) -> Cells:
-    """Return the cells for points of shape (n, points of a cell, 3); `before` are the numbers of their glyphs."""
+    """Return the cells for points of shape (3, points of a cell, n); `before` are the numbers of their glyphs."""
     packed = _packed(points.astype(np.int64))
-    if points.shape[1] == 2:
+    if len(packed) == 2:
         # The two points are the two colours.
-        halves: Cells = packed[:, 0] << 24 | packed[:, 1]
+        halves: Cells = packed[0] << 24 | packed[1]
         return halves
-    first = packed[:, 0]
-    cells: Cells = first << 24 | first
-    uneven = np.flatnonzero((points.max(axis=1) - points.min(axis=1) > _FLAT).any(axis=1))
-    lab = _lab(points[uneven])
+    cells: Cells = packed[0] << 24 | packed[0]
+    uneven = np.flatnonzero((points.max(axis=1) - points.min(axis=1)).max(axis=0) > _FLAT)
+    lab = _lab(points[..., uneven])
     chosen = _best_glyphs(lab, glyphs, None if before is None else before[uneven])
-    fore, back = _typical(lab, glyphs.covered[chosen])
-    colors = packed[uneven]
-    at = np.arange(len(uneven))
-    cells[uneven] = glyphs.numbers[chosen] << 48 | colors[at, fore] << 24 | colors[at, back]
+    fore, back = _typical(lab, glyphs.covered[chosen].T)
+    cells[uneven] = glyphs.numbers[chosen] << 48 | packed[fore, uneven] << 24 | packed[back, uneven]
     return cells
 
 
@@ -101,8 +105,8 @@ def _typical(lab: npt.NDArray[np.float32], covered: npt.NDArray[np.float32]) -> 
     """
     found: list[npt.NDArray[np.intp]] = []
     for share in (covered, 1 - covered):
-        mean = np.matmul(share[:, None], lab) / share.sum(axis=1)[:, None, None]
-        found.append((np.square(lab - mean).sum(axis=2) + _OTHER * (share < 0.5)).argmin(axis=1))
+        mean = (lab * share).sum(axis=1, keepdims=True) / share.sum(axis=0)
+        found.append((np.square(lab - mean).sum(axis=0) + _OTHER * (share < 0.5)).argmin(axis=0))
     return found
 
 
@@ -114,22 +118,25 @@ def _best_glyphs(
     The search is exhaustive: with the points relative to their mean, the sum of those that a glyph covers gives the
     variance that the split explains.
     """
-    lab = lab - lab.mean(axis=1, keepdims=True)
-    sums = np.matmul(lab.transpose(0, 2, 1), glyphs.covered.T)
-    count = glyphs.covered.sum(axis=1)
-    explained = np.square(sums, out=sums).sum(axis=1) * (1 / count + 1 / (lab.shape[1] - count))
-    best: npt.NDArray[np.intp] = explained.argmax(axis=1)
+    size = lab.shape[1]
+    # One product for each channel: they are too small for the library to start threads.
+    sums = np.matmul(glyphs.covered, lab - lab.mean(axis=1, keepdims=True))
+    count = glyphs.covered.sum(axis=1)[:, None]
+    explained = np.square(sums, out=sums).sum(axis=0) * (1 / count + 1 / (size - count))
+    best: npt.NDArray[np.intp] = explained.argmax(axis=0)
     if before is None:
         return best
     at = np.arange(len(best))
     kept = np.searchsorted(glyphs.numbers, before).clip(max=len(glyphs.numbers) - 1)
     was_here = glyphs.numbers[kept] == before
-    as_good = explained[at, kept] >= explained[at, best] - _KEPT_LAB * lab.shape[1]
+    as_good = explained[kept, at] >= explained[best, at] - _KEPT_LAB * size
     return np.where(was_here & as_good, kept, best)
 
 
 def _packed(colors: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
-    return colors[..., 0] << 16 | colors[..., 1] << 8 | colors[..., 2]
+    """Return 0xRRGGBB of colours of shape (3, …)."""
+    packed: npt.NDArray[np.int64] = colors[0] << 16 | colors[1] << 8 | colors[2]
+    return packed
 
 
 @lru_cache(maxsize=1)
@@ -143,14 +150,15 @@ _XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.
     [[0.9505], [1.0], [1.089]], np.float32
 )
 """From linear sRGB to XYZ, relative to white (D65)."""
+_FROM_ROOTS = np.array([[0, 116, 0], [500, -500, 0], [0, 200, -200]], np.float32)
+"""From the cube roots of XYZ to L*a*b*, but for the 16 that is subtracted from every L*."""
 
 
 def _lab(points: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
-    """Return colours in CIE L*a*b*, where distances are about as large as they look."""
-    xyz = _linear()[points] @ _XYZ.T
+    """Return colours of shape (3, …) in CIE L*a*b*, where distances are about as large as they look."""
+    xyz = _XYZ @ _linear()[points].reshape(3, -1)
     root = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16 / 116)
-    x, y, z = root[..., 0], root[..., 1], root[..., 2]
-    lab: npt.NDArray[np.float32] = np.stack((116 * y - 16, 500 * (x - y), 200 * (y - z)), axis=-1)
+    lab: npt.NDArray[np.float32] = (_FROM_ROOTS @ root).reshape(points.shape)
     return lab
 
 
@@ -220,7 +228,7 @@ def reduce_cells(cells: Cells, mode: ColorMode) -> Cells:
         return cells
     colors = np.stack((cells >> 24, cells), axis=-1)[..., None] >> np.array([16, 8, 0]) & 255
     flat = colors.reshape(-1, 3).astype(np.uint8)
-    reduced = _packed(_nearest(_greyed(flat, mode), mode.depth).astype(np.int64)).reshape(*cells.shape, 2)
+    reduced = _packed(_nearest(_greyed(flat, mode), mode.depth).astype(np.int64).T).reshape(*cells.shape, 2)
     return cells >> 48 << 48 | reduced[..., 0] << 24 | reduced[..., 1]
 
 

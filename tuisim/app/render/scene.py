@@ -176,11 +176,12 @@ def draw_rays(picture: Pixels, view: Viewport, x_mm: float, y_mm: float, rays: S
     rows = np.floor(row - along_mm * down[:, None]).astype(np.intp)
     inside = (cols >= low_col) & (cols < high_col) & (rows >= low_row) & (rows < high_row)
     inside &= along_mm < lengths_mm[:, None]
-    covered = np.zeros(picture.shape[:2], bool)
-    covered[rows[inside], cols[inside]] = True
-    covered_at = np.nonzero(covered)
-    mixed = picture[covered_at] * (1 - _RAY_OPACITY) + np.array(RAY_RGB) * _RAY_OPACITY
-    picture[covered_at] = np.rint(mixed).astype(np.uint8)
+    covered = np.zeros(picture.shape[0] * picture.shape[1], bool)
+    covered[rows[inside] * picture.shape[1] + cols[inside]] = True
+    covered_at = np.flatnonzero(covered)
+    pixels = picture.reshape(-1, 3)
+    mixed = pixels[covered_at] * (1 - _RAY_OPACITY) + np.array(RAY_RGB) * _RAY_OPACITY
+    pixels[covered_at] = np.rint(mixed).astype(np.uint8)
 
 
 def draw_obstacles(picture: Pixels, view: Viewport, obstacles: Sequence[Obstacle], marked: int | None = None) -> None:
