@@ -220,11 +220,12 @@ async def test_the_app_does_not_take_the_servers_terminal_for_its_own(
 ) -> None:
     monkeypatch.setenv("TMUX", "/tmp/tmux,1,1")
     monkeypatch.setenv("TERM", "dumb")
+    monkeypatch.setenv("LC_ALL", "C")
     monkeypatch.setenv("MINE", "kept")
     seen = tmp_path / "environment"
-    socket = await (await visited(["sh", "-c", f"echo $TMUX $TERM $MINE > {seen}"])).socket()
+    socket = await (await visited(["sh", "-c", f"echo $TMUX $TERM $LC_ALL $LC_CTYPE $MINE > {seen}"])).socket()
     await heard(socket)
-    assert seen.read_text() == "xterm-256color kept\n"
+    assert seen.read_text() == "xterm-256color C.UTF-8 kept\n"
 
 
 GONE = "tuisim: mine.py: there is no such program"

@@ -22,10 +22,11 @@ _HEAD = b"__GANGLION__\n"
 """The line before the first packet of an app."""
 _MOST_ERROR_BYTES = 4096
 _OF_A_TERMINAL = (
-    "TMUX", "STY", "LC_TERMINAL", "LC_TERMINAL_VERSION", "ITERM_SESSION_ID", "KITTY_WINDOW_ID", "WEZTERM_PANE",
+    "LC_ALL", "TMUX", "STY", "LC_TERMINAL", "LC_TERMINAL_VERSION", "ITERM_SESSION_ID", "KITTY_WINDOW_ID", "WEZTERM_PANE",
     "KONSOLE_VERSION", "VTE_VERSION", "WT_SESSION", "TERMINAL_EMULATOR",
 )  # fmt: skip
-"""Variables that tell which terminal the server was started in; the app is not in that one."""
+"""Variables that tell what the terminal shows that the server was started in; the app is not in that one."""
+_OF_A_BROWSER = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "LC_CTYPE": "C.UTF-8", "PYTHONUTF8": "1"}
 
 
 class Session(AppService):
@@ -52,7 +53,7 @@ class Session(AppService):
     def _build_environment(self, width: int = 80, height: int = 24) -> dict[str, str]:
         environment = super()._build_environment(width, height)
         kept = {name: value for name, value in environment.items() if name not in _OF_A_TERMINAL}
-        return kept | {"TERM": "xterm-256color", "COLORTERM": "truecolor", "PYTHONUTF8": "1"}
+        return kept | _OF_A_BROWSER
 
     async def _open_app_process(self, width: int = 80, height: int = 24) -> Process:
         process = await asyncio.create_subprocess_exec(
