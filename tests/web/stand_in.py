@@ -22,9 +22,13 @@ while True:
     said = json.loads(data) if kind == b"M" else {}
     if said.get("type") == "quit" and "stubborn" not in sys.argv:
         break
+    elif said.get("type") == "deliver_chunk_request" and "slow" in sys.argv:
+        pass
     elif said.get("type") == "deliver_chunk_request":
         chunk = chunks.pop(0)
         send(b"P", b"ts13:deliver_chunks3:key%d:%se" % (len(chunk), chunk))
+    elif data == b"nonsense":
+        os.write(1, b"X" * 5)
     elif data == b"offer":
         file = {"key": "key", "path": "/x/run.csv", "open_method": "download", "mime_type": "text/csv", "encoding": ""}
         send(b"M", json.dumps({"type": "deliver_file_start"} | file).encode())
@@ -39,5 +43,6 @@ while True:
 
 
 def stand_in(*words: str) -> list[str]:
-    """Return the command of the app; one that is `stubborn` does not end when it is asked to."""
+    """Return the command of the app; one that is `stubborn` does not end when it is asked to, a `slow` one
+    does not hand over its file."""
     return [sys.executable, "-I", "-S", "-c", _SOURCE, *words]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import base64
+import json
 import os
 import re
 import signal
@@ -39,11 +40,17 @@ class Tab:
         self._stream = pyte.ByteStream(self._screen)
         self._news = asyncio.Event()
         self.seen = b""
+        self.offered: list[str] = []
+        """The keys of the files that can be downloaded."""
         self.reason: str | None = None
 
     async def read(self) -> None:
         """Show what the app sends, and answer it, until it ends."""
-        while (message := await self._socket.receive()).type is WSMsgType.BINARY:
+        while (message := await self._socket.receive()).type in (WSMsgType.BINARY, WSMsgType.TEXT):
+            if message.type is WSMsgType.TEXT:
+                self.offered += [json.loads(message.data)[1]]
+                self._news.set()
+                continue
             self.seen += message.data
             self._stream.feed(message.data)
             for _ in range(message.data.count(QUERY)):
@@ -69,6 +76,11 @@ class Tab:
     async def resize(self, columns: int, rows: int) -> None:
         self._screen.resize(rows, columns)
         await self._socket.send_json(["resize", {"width": columns, "height": rows}])
+
+    async def download(self, address: str, key: str) -> bytes:
+        """Return the file that is offered under a key."""
+        async with ClientSession() as client, client.get(f"{address}download/{key}") as answer:
+            return await answer.read()
 
     async def until(self, condition: Callable[[], object]) -> None:
         """Wait until something has happened."""
@@ -193,6 +205,16 @@ async def test_what_is_copied_reaches_the_clipboard_of_the_browser(serve: Serve)
         await tab.press("\x01")
         await tab.press("\x03")
         await tab.until(lambda: b"\x1b]52;c;" + base64.b64encode(DRIVES.encode()) in tab.seen)
+
+
+async def test_a_screenshot_can_be_downloaded(serve: Serve, tmp_path: Path) -> None:
+    server = await serve(DRIVES)
+    async with server.tab() as tab:
+        await tab.until(lambda: "idle" in tab.text)
+        await tab.press("I")
+        await tab.until(lambda: len(tab.offered) == 2)
+        files = [await tab.download(server.address, key) for key in tab.offered]
+        assert files == [(tmp_path / name).read_bytes() for name in ("tuisim-1.svg", "tuisim-1.png")]
 
 
 async def test_ctrl_z_says_that_there_is_nothing_to_go_back_to(serve: Serve) -> None:

@@ -9,7 +9,15 @@ from contextlib import AsyncExitStack
 from pathlib import Path
 
 import pytest
-from aiohttp import ClientSession, ClientWebSocketResponse, WSCloseCode, WSMsgType, WSServerHandshakeError
+from aiohttp import (
+    ClientPayloadError,
+    ClientSession,
+    ClientWebSocketResponse,
+    WSCloseCode,
+    WSMsgType,
+    WSServerHandshakeError,
+)
+from textual_serve import download_manager
 from textual_serve.app_service import AppService
 
 from tests.running import PATIENCE_S
@@ -175,6 +183,24 @@ async def test_what_an_app_offers_can_be_downloaded_once(visited: Visited) -> No
         (200, "a file", "attachment; filename*=UTF-8''run.csv"),
         (404, "There is no such download.\n", None),
     ]
+
+
+async def test_a_download_that_breaks_off_is_no_file(visited: Visited, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(download_manager, "DOWNLOAD_TIMEOUT", 0.05)
+    visitor = await visited(stand_in("slow"))
+    socket, _ = await visitor.started()
+    await socket.send_json(["stdin", "offer"])
+    await heard(socket)
+    async with visitor.client.get(visitor.top + "download/key") as answer:
+        with pytest.raises(ClientPayloadError):
+            await answer.read()
+
+
+async def test_an_app_that_sends_nonsense_is_ended(visited: Visited) -> None:
+    socket, pid = await (await visited()).started()
+    await socket.send_json(["stdin", "nonsense"])
+    assert await heard(socket) == "The app has failed; the server's terminal tells more."
+    await gone(pid)
 
 
 MESSAGES: dict[str, tuple[str, str]] = {

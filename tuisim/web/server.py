@@ -138,8 +138,14 @@ class Server:
         response.content_type = download.mime_type or "application/octet-stream"
         response.headers["Content-Disposition"] = f"attachment; filename*=UTF-8''{quote(download.file_name)}"
         await response.prepare(request)
-        async for chunk in self._downloads.download(key):
-            await response.write(chunk)
+        try:
+            async for chunk in self._downloads.download(key):
+                await response.write(chunk)
+        except ValueError:
+            # An app has not answered in time: the browser must not take the part for the whole.
+            if request.transport is not None:
+                request.transport.abort()
+            return response
         await response.write_eof()
         return response
 

@@ -22,8 +22,8 @@ _HEAD = b"__GANGLION__\n"
 """The line before the first packet of an app."""
 _MOST_ERROR_BYTES = 4096
 _OF_A_TERMINAL = (
-    "LC_ALL", "TMUX", "STY", "LC_TERMINAL", "LC_TERMINAL_VERSION", "ITERM_SESSION_ID", "KITTY_WINDOW_ID", "WEZTERM_PANE",
-    "KONSOLE_VERSION", "VTE_VERSION", "WT_SESSION", "TERMINAL_EMULATOR",
+    "LC_ALL", "TMUX", "STY", "LC_TERMINAL", "LC_TERMINAL_VERSION", "ITERM_SESSION_ID", "KITTY_WINDOW_ID",
+    "WEZTERM_PANE", "KONSOLE_VERSION", "VTE_VERSION", "WT_SESSION", "TERMINAL_EMULATOR",
 )  # fmt: skip
 """Variables that tell what the terminal shows that the server was started in; the app is not in that one."""
 _OF_A_BROWSER = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "LC_CTYPE": "C.UTF-8", "PYTHONUTF8": "1"}
@@ -81,7 +81,10 @@ class Session(AppService):
         await output.readuntil(_HEAD)
         handlers = {b"D": self.on_data, b"M": self.on_meta, b"P": self.on_packed}
         while True:
-            kind = await output.readexactly(1)
+            if (kind := await output.readexactly(1)) not in handlers:
+                # What follows cannot be understood either.
+                self._kill()
+                return
             payload = await output.readexactly(int.from_bytes(await output.readexactly(4), "big"))
             await handlers[kind](payload)
 
@@ -112,10 +115,15 @@ class Session(AppService):
         try:
             await asyncio.wait_for(asyncio.shield(self._task), END_WITHIN_S)
         except TimeoutError:
-            with suppress(ProcessLookupError):
-                os.killpg(self._process.pid, signal.SIGKILL)
+            self._kill()
             await asyncio.wait({self._task}, timeout=END_WITHIN_S)
         self._task = None
+
+    def _kill(self) -> None:
+        """End the app and all processes of its group at once."""
+        assert self._process is not None
+        with suppress(ProcessLookupError):
+            os.killpg(self._process.pid, signal.SIGKILL)
 
 
 def _while_open(

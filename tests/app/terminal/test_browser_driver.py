@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from concurrent.futures import ThreadPoolExecutor
+from threading import Lock
 
 import pytest
 from textual.driver import Driver
@@ -32,7 +34,7 @@ def test_the_driver_suits_what_shows_the_app(
 def driver() -> BrowserDriver:
     """A driver that has not started."""
     made = BrowserDriver.__new__(BrowserDriver)
-    made.fileno, made._server_is_gone = -1, False
+    made.fileno, made._one_at_a_time, made._server_is_gone = -1, Lock(), False
     return made
 
 
@@ -50,3 +52,15 @@ def test_an_interrupted_write_is_continued(driver: BrowserDriver, monkeypatch: p
 
 def test_what_is_written_after_the_server_has_gone_is_dropped(driver: BrowserDriver) -> None:
     assert [driver._write_all(b"a packet"), driver._write_all(b"another")] == [8, 7]
+
+
+def test_packets_of_two_threads_are_not_mixed(driver: BrowserDriver) -> None:
+    read, driver.fileno = os.pipe()
+    # More than a pipe holds.
+    size = 200_000
+    with ThreadPoolExecutor(2) as threads, os.fdopen(read, "rb") as reader:
+        for letter in (b"a", b"b"):
+            threads.submit(driver._write_all, letter * size)
+        seen = reader.read(2 * size)
+    os.close(driver.fileno)
+    assert seen in (b"a" * size + b"b" * size, b"b" * size + b"a" * size)

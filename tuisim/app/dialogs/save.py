@@ -15,6 +15,7 @@ from textual.widgets import Input, Static
 from tuisim.app import background
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.dialogs.question import Form, form_list
+from tuisim.app.terminal.browser import offer
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.logs.export import LISTED, check_target, export_samples, export_telemetry
 from tuisim.runs.store import RunStore
@@ -214,6 +215,7 @@ class ExportDialog(FileDialog):
 
     def _written(self, target: Path) -> None:
         self.app.notify(f"Log saved to {target}", markup=False)
+        offer(self.app, target)
         self.dismiss(target)
 
 

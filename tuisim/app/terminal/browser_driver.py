@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from threading import Lock
 from typing import Any
 
 from textual import events, messages
@@ -18,16 +19,21 @@ class BrowserDriver(WebDriver):
     ) -> None:
         super().__init__(app, debug=debug, mouse=mouse, size=size)
         self._write = self._write_all  # type: ignore[assignment]  # a partial function in the base class
+        self._one_at_a_time = Lock()
         self._server_is_gone = False
 
     def _write_all(self, data: bytes) -> int:
-        """Write all of the data, which a signal may interrupt; drop it once the server is gone."""
-        left = data
-        while left and not self._server_is_gone:
-            try:
-                left = left[os.write(self.fileno, left) :]
-            except OSError:
-                self._server_is_gone = True
+        """Write all of the data, which a signal may interrupt; drop it once the server is gone.
+
+        Drawing and downloads write from different threads, and packets must not be mixed.
+        """
+        with self._one_at_a_time:
+            left = data
+            while left and not self._server_is_gone:
+                try:
+                    left = left[os.write(self.fileno, left) :]
+                except OSError:
+                    self._server_is_gone = True
         return len(data)
 
     def run_input_thread(self) -> None:

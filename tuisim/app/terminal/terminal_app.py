@@ -35,7 +35,7 @@ from tuisim.app import background
 from tuisim.app.action import ActionProvider, Palette
 from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
-from tuisim.app.terminal.browser import in_browser
+from tuisim.app.terminal.browser import in_browser, offer
 from tuisim.app.terminal.cell_view import PixelView
 from tuisim.app.terminal.drawing import Drawing
 from tuisim.app.terminal.frame_buffer import FrameBuffer
@@ -233,6 +233,7 @@ class TerminalApp(App[None]):
         def saved(files: tuple[Path, Path]) -> None:
             svg, png = files
             self.notify(f"Saved {svg.name} and {png.name} in {png.parent}", markup=False)
+            offer(self, svg, png)
 
         work = partial(save_screenshot, screen_cells(self), Path.cwd())
         background.run(self, work, saved, lambda error: self.notify(str(error), severity="error", markup=False))

@@ -3,9 +3,16 @@
 
 const here = location.origin + location.pathname;
 
-// Its downloads are at the top of the server.
+// It opens a tab for a download, at the top of the server.
 const open = window.open.bind(window);
-window.open = (url, ...more) => open(String(url).replace(`${location.origin}/download/`, `${here}download/`), ...more);
+window.open = (url, ...more) => {
+  const download = String(url).split(`${location.origin}/download/`)[1];
+  if (!download) return open(url, ...more);
+  const link = document.createElement("a");
+  link.href = `${here}download/${download}`;
+  link.download = "";
+  link.click();
+};
 
 const Socket = window.WebSocket;
 window.WebSocket = class extends Socket {

@@ -15,6 +15,7 @@ from tuisim.app import background
 from tuisim.app.analyser.panes import PANES, pane_frame
 from tuisim.app.analyser.screen import LogScreen
 from tuisim.app.dialogs.save import SaveDialog
+from tuisim.app.terminal.browser import offer
 from tuisim.errors import counted
 
 if TYPE_CHECKING:
@@ -73,11 +74,16 @@ def export(screen: LogScreen) -> None:
         model = screen.model
         frame = None if pane == "table" else pane_frame(pane, model)
         work = partial(_write_rows, model, frame, target)
-        notice = f"Rows saved to {target}"
-        background.run(screen, work, lambda _: screen.say(notice), screen.complain, group="export")
+        saved = partial(_saved, screen, f"Rows saved to {target}", target)
+        background.run(screen, work, saved, screen.complain, group="export")
 
     forms = tuple((suffix, exporter.contents) for suffix, exporter in EXPORTERS.items())
     screen.app.push_screen(SaveDialog(f"{what} as shown", f"{what}.csv", save, LISTED, check_target, forms, False))
+
+
+def _saved(screen: LogScreen, notice: str, target: Path, _: object) -> None:
+    screen.say(notice)
+    offer(screen.app, target)
 
 
 def _write_rows(model: Model, frame: pd.DataFrame | None, target: Path) -> None:
@@ -102,6 +108,7 @@ def chart(screen: LogScreen) -> None:
         size = (shown.width, shown.height) if shown else None
         view = View(options.facets, options.marks, options.hold, options.against)
         save_chart(partial(chart_of, screen.model, view), target, size)
+        offer(screen.app, target)
         screen.redraw_chart()
 
     screen.app.push_screen(SaveDialog("chart", "chart.svg", save, ", ".join(CHART_FORMATS), format_of, _CHARTS))
@@ -115,8 +122,9 @@ def report(screen: LogScreen) -> None:
     names = [trace.name for trace in screen.model.traces.ticked()]
 
     def save(target: Path) -> None:
-        work, notice = partial(_write_report, opened, target, names), f"Report saved to {target}"
-        background.run(screen, work, lambda _: screen.say(notice), screen.complain, group="report")
+        work = partial(_write_report, opened, target, names)
+        saved = partial(_saved, screen, f"Report saved to {target}", target)
+        background.run(screen, work, saved, screen.complain, group="report")
 
     screen.app.push_screen(SaveDialog("report", default_name(opened), save, ".html", check_report, _REPORT, False))
 
