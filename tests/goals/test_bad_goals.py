@@ -150,7 +150,7 @@ BAD = {
         "line 8: goal[2].points: must be a number from 0 to 1000",
     ),
     "title is no text": (f"title = 5\n{GOOD}", "line 1: title: must be text, got 5"),
-    "world missing": (f"world = 'none.toml'\n{GOOD}", "{folder}/none.toml: there is no such file"),
+    "world missing": (f"\nworld = 'none.toml'\n{GOOD}", "line 2: world: there is no such file: {folder}/none.toml"),
     "world is itself": (f"world = 'it.toml'\n{GOOD}", "line 1: world: {folder}/it.toml is based on itself"),
     "syntax": ("[[goal]]\nname = \n", "is not TOML: Invalid value (at line 2"),
 }

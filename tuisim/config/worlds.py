@@ -204,6 +204,9 @@ def _base(word: str, at: Location, resolve: Resolver, mats: str | None, above: t
     path = Path(resolve(word))
     if any(os.path.normpath(path) == os.path.normpath(other) for other in above):
         raise at.wrong(f"{path} is based on itself")
+    if not path.exists():
+        # Names the file and the key: the user may not know that this file names another.
+        raise at.wrong(f"there is no such file: {path}")
     return _load_world(path, mats, above)
 
 
