@@ -27,6 +27,7 @@ from tuisim.app.debugger import AppDebugger
 from tuisim.app.editor.document import Document
 from tuisim.app.feed import Feed, PastView, Series, sample_series
 from tuisim.app.goals import AppGoals
+from tuisim.app.lesson import AppLesson
 from tuisim.app.loader import PERIOD_S, Loader
 from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
     from tuisim.app.render.mat import Pixels
     from tuisim.core.field import Field
     from tuisim.goals.files import GoalsFile
+    from tuisim.lessons.spec import Lesson
 
 AFTER_FIRST_PAINT_S = 0.05
 """Large data is sent this much later: the screen is painted more than once at startup."""
@@ -80,6 +82,10 @@ class AppSettings:
     """None opens the app without a program."""
     goals: GoalsFile | None = None
     """The goals that runs are judged by."""
+    lesson: Lesson | None = None
+    """The lesson to open; program, settings and goals are its own."""
+    lessons_folder: str | None = None
+    """The folder of own lessons, if one was named."""
     replay: StoredRun | None = None
     """A stored run to show; spec and program are its own."""
     panels_on: frozenset[str] = field(default_factory=frozenset)
@@ -148,8 +154,18 @@ class LabApp(PanelMessages):
         )
         self.document = Document(self, self.run_controller, self.panel_area, self.loader)
         self.debugger = AppDebugger(self, self.run_controller, self.panel_area, self.document.lines, self._to_now)
+        self.lesson = AppLesson(
+            self,
+            self.run_controller,
+            self.panel_area,
+            self.goals,
+            self.loader,
+            self.debugger,
+            settings.lesson,
+            settings.lessons_folder,
+        )
         self.workspace = Workspace(
-            self, self.run_controller, self.panel_area, self.document, self.loader, self.debugger
+            self, self.run_controller, self.panel_area, self.document, self.loader, self.debugger, self.lesson
         )
         self.run_controller.propose = partial(time_travel.propose_branch, self.workspace)
         self.brick_hint = BrickHint(self._hint_at_brick)
@@ -185,6 +201,7 @@ class LabApp(PanelMessages):
         self.document.begin()
         # Breakpoints apply, and are saved, whether or not a panel shows the program.
         self.debugger.program_changed(self.run_controller.program)
+        self.lesson.begin()
         self._set_frame_gap(1 / self.settings.fps)
         self.set_interval(_REST_GAP_S, self._seldom)
         self.set_interval(PERIOD_S, self.check_files)
@@ -274,6 +291,7 @@ class LabApp(PanelMessages):
             time_travel.advance_playback(self.workspace)
             self.debugger.poll()
             self.goals.update()
+            self.lesson.update()
             # A frame that has to wait counts as drawn.
             drew = self._awaits_first_tick() or not self.pacer.ready() or self.draw()
             if drew or news or self.debugger.busy:
@@ -484,6 +502,8 @@ class LabApp(PanelMessages):
             self.debugger.show()
         if message.panel == "goals":
             self.goals.show()
+        if message.panel == "lesson":
+            self.lesson.show()
         self.panel_area.show_next_run(self.run_controller.next_run)
         self.call_after_refresh(self.draw, force=True)
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.app import background
 from tuisim.app.snapshot import RunPhase
+from tuisim.config.worlds import means_world
 from tuisim.protocol import Unended
 from tuisim.runs.store import load_run
 
@@ -56,17 +57,30 @@ class AppGoals:
         """How far the recording had been written when it was last judged, or is being judged."""
         self._is_judging = False
         self._next_s = 0.0
+        self.judges_always = False
+        """Whether runs are judged while the panel is closed."""
 
     @property
     def path(self) -> Path | None:
-        """The goals file that is open; None if there is none."""
-        return self._file.path if self._file else None
+        """The goals file that is open; None if there is none, or the goals are those of a lesson."""
+        return self._file.path if self._file and means_world(self._file.path.name) else None
 
-    def open(self, file: GoalsFile | None) -> None:
-        """Open the goals of another task, or of none; its world must have been loaded already."""
+    @property
+    def judged(self) -> tuple[Recording | None, tuple[Judgement, ...]]:
+        """The run that was judged last, and the judgements; empty while there are none."""
+        return (self._recording, self._judgements) if self._judgements else (None, ())
+
+    def open(self, file: GoalsFile | None, shows: bool = True) -> None:
+        """Open the goals of another task, or of none; its world must have been loaded already.
+
+        Args:
+            file: The goals.
+            shows: Whether to open their panel.
+        """
         recording = self._run_controller.timeline.recording
         self._earlier = None if recording is None or self._is_of_task(recording) else recording
-        if file is not None:
+        self.judges_always = False
+        if file is not None and shows:
             self._panel_area.request({"goals": True})
         self.change(file)
 
@@ -101,7 +115,7 @@ class AppGoals:
 
     def update(self) -> None:
         """Judge the run in view again, in the background, if it has gone on or has ended; never blocks."""
-        if self._file is None or not self._panel_area.shown("goals"):
+        if self._file is None or not (self.judges_always or self._panel_area.shown("goals")):
             return
         recording = self._run_controller.timeline.recording
         if recording is self._earlier:

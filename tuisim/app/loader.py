@@ -211,6 +211,21 @@ class Loader:
         self._follow()
         self._app.say(f"{Path(path).name} is open" + (": R runs its program" if named else ""))
 
+    def open_task(self, program_path: str, world: Mapping[str, Any], goals: GoalsFile) -> None:
+        """Open a program in a world, given as settings, that is in no world file, with goals. Not during a run.
+
+        Raises:
+            TuisimError: program or world are wrong; nothing has changed.
+        """
+        program, magic = _read_program(program_path)
+        fresh = plans.with_choices(plans.plan_of(Settings()), magic)
+        plan = plans.with_choices(fresh, world)
+        self.world_file, self._world_settings, self._world_refers = None, {}, ()
+        self._note_program(program, magic)
+        self._load(plan, program)
+        self._goals.open(goals, shows=False)
+        self._follow()
+
     def _read_world(self, path: Path) -> tuple[str | None, GoalsFile | None]:
         """Read a world file and remember its settings. Return the path of its program, and its goals, if any."""
         from tuisim.goals.files import load_task

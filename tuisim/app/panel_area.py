@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from tuisim.app.panels.controls import Controls
     from tuisim.app.panels.debug import Debug
     from tuisim.app.panels.goals import Goals
+    from tuisim.app.panels.lesson import LessonPanel
     from tuisim.app.panels.obstacles import Obstacles
     from tuisim.app.panels.output import Output
     from tuisim.app.panels.world import World
@@ -81,6 +82,7 @@ class PanelArea(Container):
     brick: _Mounted[Brick] = _Mounted("brick")
     obstacles: _Mounted[Obstacles] = _Mounted("obstacles")
     goals: _Mounted[Goals] = _Mounted("goals")
+    lesson: _Mounted[LessonPanel] = _Mounted("lesson")
 
     def shown(self, panel: str) -> bool:
         """Return whether a panel is on the screen."""
@@ -263,8 +265,19 @@ def size_class(width: int, height: int) -> TerminalSize:
     return TerminalSize.SMALL
 
 
-def side_width(width: int) -> int:
-    """Return the width of the side column: two sensor discs fit side by side from 112 columns on."""
+_LEAST_TEXT, _MOST_TEXT = 40, 58
+"""Columns for text to read, if that is at most half of the screen."""
+
+
+def side_width(width: int, panels: Sequence[str] = ()) -> int:
+    """Return the width of the side column: two sensor discs fit side by side from 112 columns on.
+
+    Args:
+        width: Columns of the screen.
+        panels: The panels in the column; a lesson gets up to half of the screen.
+    """
+    if "lesson" in panels:
+        return min(width // 2, max(_LEAST_TEXT, min(_MOST_TEXT, width * 3 // 8)))
     if width < 112:
         return max(26, min(34, width * 28 // 80))
     return 42 if width < 170 else 46
@@ -307,7 +320,7 @@ def _fits(panels: Sequence[str], width: int, height: int) -> bool:
     side, strip, main = (_in_place(panels, place) for place in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN))
     if sum(PANELS[panel].min_rows for panel in side) > height:
         return False
-    left = width - (side_width(width) if side and (strip or main) else 0)
+    left = width - (side_width(width, side) if side and (strip or main) else 0)
     need = _strip_least(_strip_rows(strip, left)) + sum(PANELS[panel].min_rows for panel in main)
     return need <= height
 
@@ -357,7 +370,7 @@ def arrange(panels: Sequence[str], width: int, height: int) -> PanelLayout:
     boxes: dict[str, PanelBox] = {}
     left = width
     if side:
-        left = width - side_width(width) if strip or main else 0
+        left = width - side_width(width, side) if strip or main else 0
         y = 0
         for panel, rows_high in zip(side, _share(side, kept, height), strict=True):
             boxes[panel] = PanelBox(left, y, width - left, rows_high)

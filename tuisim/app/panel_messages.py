@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 ROOMY_COLUMNS, ROOMY_ROWS = 86, 15
 """A code panel smaller than this grows while the user types, so that lines of 79 characters are visible."""
+_LESSON_COLUMNS = 74
+"""Columns that are enough while the text of a lesson is beside the code."""
 
 
 class PanelMessages(ActionHost, TerminalApp):
@@ -39,7 +41,9 @@ class PanelMessages(ActionHost, TerminalApp):
         if not message.typing:
             self.workspace.panel_area.maximize("")
         else:
-            self.workspace.panel_area.make_room("code", ROOMY_COLUMNS, ROOMY_ROWS)
+            beside_lesson = self.workspace.panel_area.shown("lesson")
+            columns = _LESSON_COLUMNS if beside_lesson else ROOMY_COLUMNS
+            self.workspace.panel_area.make_room("code", columns, ROOMY_ROWS)
 
     def on_code_edited(self, message: Code.Edited) -> None:
         self.workspace.document.edited(message.text)
@@ -57,6 +61,9 @@ class PanelMessages(ActionHost, TerminalApp):
                 area = self.workspace.panel_area
                 if area.alone and not (area.code and area.code.error_line):
                     area.maximize("")
+                # In a lesson, the next keys are for the lesson.
+                if self.workspace.lesson.step and area.code and not area.code.error_line:
+                    area.code.stop_typing()
             case ProgramCommand.NEW | ProgramCommand.OPEN:
                 self.action_act(message.command.value)
             case ProgramCommand.NONE:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from tuisim.app.debugger import AppDebugger
     from tuisim.app.editor.document import Document
+    from tuisim.app.lesson import AppLesson
     from tuisim.app.loader import Loader
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.run_controller import RunController
@@ -24,3 +25,4 @@ class Workspace:
     document: Document
     loader: Loader
     debugger: AppDebugger
+    lesson: AppLesson

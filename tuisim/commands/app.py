@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tuisim.commands.resolve import Prepared
     from tuisim.config.worlds import WorldFile
     from tuisim.goals.files import GoalsFile
+    from tuisim.lessons.spec import Lesson
     from tuisim.runs.run_folder import StoredRun
 
 VERSION = "%(prog)s %(version)s"
@@ -95,7 +96,7 @@ def open_app(**given: Any) -> int:
     opened = read_opened(Arguments(**given))
     if opened is None:
         return 0
-    if not _has_terminal():
+    if not has_terminal():
         raise ConfigError("the app needs a terminal", "without one, use `tuisim run PROGRAM`")
     from tuisim.app.app import AppSettings, run_app
 
@@ -121,7 +122,42 @@ def open_app(**given: Any) -> int:
         return run_app(app_settings)
 
 
-def _has_terminal() -> bool:
+def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
+    """Start the app with a lesson.
+
+    Args:
+        lesson: The lesson.
+        folder: The folder of own lessons, if one was named.
+
+    Raises:
+        ConfigError: the student's program of the lesson cannot be read or written.
+    """
+    from tuisim.app.app import AppSettings, run_app
+    from tuisim.app.lesson import goals_of
+    from tuisim.config.build import build_run_spec
+    from tuisim.config.options import settings_of
+    from tuisim.config.program_file import read_program
+    from tuisim.lessons.progress import prepare_program
+
+    source = read_program(prepare_program(lesson))
+    settings = settings_of(source.options, lesson.settings)
+    app_settings = AppSettings(
+        spec=build_run_spec(settings),
+        settings=settings,
+        program=source.program,
+        goals=goals_of(lesson),
+        lesson=lesson,
+        lessons_folder=folder,
+        panels_on=frozenset(settings.panels_on) | {"lesson", "code"},
+        panels_off=frozenset(settings.panels_off),
+        rays=settings.rays,
+    )
+    with _drawing_on_stdout():
+        return run_app(app_settings)
+
+
+def has_terminal() -> bool:
+    """Return whether there is a terminal for the app, in a browser or not."""
     return _in_browser() or (sys.stdin.isatty() and sys.stdout.isatty())
 
 

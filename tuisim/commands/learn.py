@@ -14,7 +14,7 @@ from tuisim.errors import ConfigError, counted
 from tuisim.lessons.catalogue import find_lesson, lesson_paths, load_all
 from tuisim.lessons.files import load_lesson
 from tuisim.lessons.markdown import plain_text
-from tuisim.lessons.progress import LessonProgress, StepState, load_progress
+from tuisim.lessons.progress import LessonProgress, StepState, last_opened, load_progress
 from tuisim.lessons.spec import Lesson, Question, Step
 
 _COLUMNS = 80
@@ -32,19 +32,38 @@ def _names() -> Sequence[str]:
 @command(
     argument("word", "[LESSON]", _names, required=False),
     FOLDER,
+    option("--text", "as_text", is_flag=True, help="Print the lesson, even on a terminal."),
     name="open",
-    help="""Print a lesson.
+    help="""Open a lesson in the app; without a terminal, print it.
 
-    A LESSON is given by name, see `tuisim learn list`, or as a file. Without one, the lessons are listed.
+    A LESSON is given by name, see `tuisim learn list`, or as a file. Without one, the app goes on with the lesson that
+    was opened last; without a terminal, the lessons are listed.
     """,
 )
-def open_lesson(word: str | None, folder: str | None) -> int:
+def open_lesson(word: str | None, folder: str | None, as_text: bool) -> int:
     """Open or print a lesson."""
-    if word is None:
+    from tuisim.commands.app import has_terminal, open_lesson_in_app
+
+    in_app = not as_text and has_terminal()
+    if word is None and not in_app:
         return _list(folder, as_json=False)
-    lesson = load_lesson(find_lesson(word, folder, _SUBCOMMANDS))
-    echo_lines(text_of(lesson, load_progress().get(lesson.name, LessonProgress())))
-    return 0
+    progress = load_progress()
+    lesson = load_lesson(find_lesson(word, folder, _SUBCOMMANDS)) if word else _next_lesson(load_all(folder), progress)
+    if not in_app:
+        echo_lines(text_of(lesson, progress.get(lesson.name, LessonProgress())))
+        return 0
+    return open_lesson_in_app(lesson, folder)
+
+
+def _next_lesson(lessons: Sequence[Lesson], progress: dict[str, LessonProgress]) -> Lesson:
+    """Return the lesson to go on with: the one opened last if it is not over, else the first that is not."""
+
+    def is_open(lesson: Lesson) -> bool:
+        return progress.get(lesson.name, LessonProgress()).current(lesson) is not None
+
+    last = last_opened(progress)
+    again = [lesson for lesson in lessons if lesson.name == last and is_open(lesson)]
+    return next(iter([*again, *filter(is_open, lessons)]), lessons[0])
 
 
 def text_of(lesson: Lesson, progress: LessonProgress) -> str:
@@ -196,6 +215,6 @@ learn = _Learn(
     default="open",
     help="""Learn to program the robot, step by step.
 
-    Without a command, `tuisim learn [LESSON]` prints a lesson.
+    Without a command, `tuisim learn [LESSON]` opens a lesson in the app.
     """,
 )

@@ -356,7 +356,7 @@ def test_goals_on_the_command_line(name: str, task: Path, here: Command, monkeyp
         return 0
 
     monkeypatch.setattr("tuisim.app.app.run_app", run_app)
-    monkeypatch.setattr("tuisim.commands.app._has_terminal", lambda: True)
+    monkeypatch.setattr("tuisim.commands.app.has_terminal", lambda: True)
     done = here("open", *words)
     assert (done.returncode, done.stderr) == (0, "")
     (made,) = opened

@@ -86,10 +86,14 @@ def export(workspace: Workspace) -> None:
     """Ask for a file and write the log to it."""
     from tuisim.app.dialogs.save import ExportDialog
 
+    def exported(target: Path | None) -> None:
+        if target:
+            workspace.lesson.exported(target)
+
     run_id = workspace.run_controller.run_id
     program = workspace.run_controller.program
     if run_id and program:
-        workspace.app.push_screen(ExportDialog(run_id, program.name))
+        workspace.app.push_screen(ExportDialog(run_id, program.name), exported)
 
 
 def edit(workspace: Workspace) -> None:

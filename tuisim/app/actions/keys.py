@@ -11,7 +11,7 @@ from functools import lru_cache, partial
 from typing import TypeAlias
 
 from tuisim.app.action import Action
-from tuisim.app.actions import app, files, program, robot, time_travel
+from tuisim.app.actions import app, files, lesson, program, robot, time_travel
 from tuisim.app.actions.files import analyse
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import IN_RUN, RunPhase, Situation
@@ -19,7 +19,7 @@ from tuisim.app.workspace import Workspace
 from tuisim.protocol import LineStep
 
 PROGRAM, DEBUG, TIME, ROBOT, PANEL = "Program", "Debugging", "Time", "Robot", "Panels"
-FILES, APP = "Files", "App"
+FILES, LESSON, APP = "Files", "Lesson", "App"
 
 
 LabAction: TypeAlias = Action[Workspace, Situation]
@@ -178,6 +178,9 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("clear", "C", "Clear the pen trace", ROBOT, robot.clear_trace, footer="clear"),
         Action("clear-log", "x", "Clear output and chart; the run keeps its log", FILES, files.clear_log),
         *_toggles(),
+        Action("lesson-menu", "M", "Lessons: open, skip a step, start over", LESSON, lesson.menu, _can_change_world),
+        Action("answer", "Q", "Answer the question of the lesson", LESSON, lesson.answer),
+        Action("hint", "Y", "Next hint of the lesson", LESSON, lesson.hint),
         Action("enlarge", "plus", "Enlarge the focused panel, or restore it", PANEL, app.enlarge),
         *_nudges(),
         Action("help", "question_mark", "Help: all keys", APP, app.show_help, footer="help"),

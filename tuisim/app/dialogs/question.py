@@ -216,5 +216,7 @@ class LinePrompt(Dialog[bool]):
             self._do(event.value.strip())
         except TuisimError as error:
             self.say(str(error), wrong=True)
+            # The next key replaces the line, an arrow key corrects it.
+            event.input.action_select_all()
             return
         self.dismiss(True)

@@ -88,6 +88,7 @@ PANELS: Mapping[str, PanelInfo] = {
     panel.id: panel
     for panel in (
         PanelInfo("world", "World", "W", "world:World", _MAIN, _ALL, 8, 14),
+        PanelInfo("lesson", "Lesson", "E", "lesson:LessonPanel", _SIDE, (), 11, 40),
         PanelInfo("instrumentation", "Instrumentation", "i", "instrumentation:Instrumentation", _SIDE, _ALL, 8, 15),
         PanelInfo("output", "Output", "O", "output:Output", _BOTTOM, _ALL, 5, 9, weight=3),
         PanelInfo("arrays", "Sensor arrays", "A", "arrays:Arrays", _SIDE, _MEDIUM_UP, 8, 13),

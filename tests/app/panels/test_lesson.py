@@ -1,0 +1,338 @@
+"""The lesson panel: each step is checked by what the student does, and the progress is kept."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Awaitable, Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Input
+
+from tests.app.app_help import notices, ready, settings, until
+from tuisim.analysis.source import NOTES_FILE, Note, write_notes
+from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.lesson import goals_of
+from tuisim.app.panels import PANELS
+from tuisim.app.render.lesson import LessonView, draw_lesson
+from tuisim.app.snapshot import RunPhase
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import settings_of
+from tuisim.config.program_file import read_program
+from tuisim.goals.judgement import Change, GoalState, Judgement
+from tuisim.lessons.files import load_lesson
+from tuisim.lessons.progress import StepState, load_progress, prepare_program, program_path
+from tuisim.lessons.spec import SHOWABLE
+
+PROGRAM = "x = 1\nprint('Level: 50')\ntank_drive.on_for_seconds(SpeedPercent(30), SpeedPercent(30), 2)\n"
+LESSON = f"""\
++++
+title = "Try it"
+why = "It matters."
+background = "Empty_Map"
+start = {{ x_mm = 500, y_mm = 500, heading_deg = 0 }}
+
+[[goal]]
+name = "far"
+say = "Drive."
+hint = "Faster."
+reach = {{ x_mm = 780, at_end = true }}
+
+[[step]]
+name = "number"
+hints = ["Half of 84.", "Six times seven."]
+question = {{ ask = "What is it?", answer = 42 }}
+wrong = ["41"]
+
+[[step]]
+name = "drive"
+run = "far"
+
+[[step]]
+name = "do"
+%s
++++
+Hello
+
+```python program
+{PROGRAM}```
+## Think
+Read **this**.
+## Drive
+Go on.
+```python answer
+{PROGRAM}```
+## Do it
+Now.
+"""
+SMALL, LARGE = (80, 24), (120, 40)
+
+
+def opened(tmp_path: Path, check: str = "show = 'chart'") -> AppSettings:
+    """What `tuisim learn` makes of a lesson whose last step has a check."""
+    folder = tmp_path / "lessons"
+    folder.mkdir(exist_ok=True)
+    path = folder / "try.md"
+    path.write_text(LESSON % check)
+    lesson = load_lesson(path)
+    made = settings(lesson=lesson, goals=goals_of(lesson), lessons_folder=str(folder), speed=0.0)
+    spec = build_run_spec(settings_of(lesson.settings))
+    return replace(made, spec=spec, program=read_program(prepare_program(lesson)).program)
+
+
+def shown(app: LabApp) -> str:
+    """The text of the panel."""
+    panel = app.panel_area.lesson
+    lines = [] if panel is None else panel._picture.lines
+    return "\n".join("".join(text for text, _ in line).rstrip() for line in lines)
+
+
+async def type_answer(pilot: Pilot[Any], app: LabApp, text: str) -> None:
+    await pilot.press("Q")
+    await until(pilot, lambda: isinstance(app.focused, Input))
+    await pilot.press(*text, "enter")
+
+
+async def run_over(pilot: Pilot[Any], app: LabApp) -> None:
+    """Run the program to its end."""
+    await pilot.press("R")
+    await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED and not app._last_words)
+
+
+def states(name: str = "try") -> dict[str, str]:
+    """The stored progress."""
+    return {step: each.state.value for step, each in load_progress()[name].steps.items()}
+
+
+@pytest.mark.usefixtures("home")
+async def test_a_lesson_from_its_first_step_to_its_model_answer(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: "1. Think" in shown(app))
+        assert "On a real robot: It matters." in shown(app)
+        await type_answer(pilot, app, "41")
+        await until(pilot, lambda: load_progress()["try"].of("number").tries == 1)
+        # The wrong answer is replaced by what is typed next.
+        await pilot.press("4", "2", "enter")
+        await until(pilot, lambda: "✓ Think" in shown(app) and "2. Drive" in shown(app))
+        await run_over(pilot, app)
+        await until(pilot, lambda: "✓ Drive" in shown(app))
+        await pilot.press("c")
+        await until(pilot, lambda: "✓ The lesson is done." in shown(app))
+        assert "A model answer:\nx = 1\n" in shown(app)
+        assert states() == dict.fromkeys(("number", "drive", "do"), "done")
+
+
+@pytest.mark.usefixtures("home")
+async def test_leaving_and_coming_back_to_the_step(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
+        app = await ready(pilot)
+        await type_answer(pilot, app, "42")
+        await until(pilot, lambda: "2. Drive" in shown(app))
+    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
+        again = await ready(pilot)
+        await until(pilot, lambda: "2. Drive" in shown(again))
+
+
+@pytest.mark.usefixtures("home")
+async def test_hints_come_one_by_one_and_are_counted(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: "Y hint (2 left)" in shown(app))
+        await pilot.press("Y")
+        await until(pilot, lambda: "Hint 1: Half of 84." in shown(app))
+        assert "Six times seven." not in shown(app)
+        await pilot.press("Y", "Y")
+        await until(pilot, lambda: "Hint 2: Six times seven." in shown(app))
+        assert load_progress()["try"].of("number").hints == 2
+        assert "There are no more hints. M skips the step" in notices(app)
+
+
+@pytest.mark.usefixtures("home")
+async def test_skip_and_start_over(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: "1. Think" in shown(app))
+        app.lesson.skip_step()
+        assert states() == {"number": "skipped"}
+        program_path(app.lesson.lesson).write_text("pass\n")  # type: ignore[arg-type]
+        app.lesson.start_over()
+        await until(pilot, lambda: "1. Think" in shown(app))
+        assert states() == {}
+        assert app.run_controller.program is not None
+        assert app.run_controller.program.text == PROGRAM
+        assert program_path(app.lesson.lesson).with_suffix(".old.py").read_text() == "pass\n"  # type: ignore[arg-type]
+
+
+@pytest.mark.usefixtures("home")
+async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: "1. Think" in shown(app))
+        app.lesson.open("first-run")
+        await until(pilot, lambda: "The first run" in shown(app))
+        assert app.run_controller.next_run.spec.world.background == "Grey_bands"
+        assert app.run_controller.program is not None
+        assert app.run_controller.program.name == "first-run.py"
+
+
+@pytest.mark.usefixtures("home")
+async def test_run_that_misses_a_goal_says_why_and_counts_as_a_try(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        program_path(app.lesson.lesson).write_text("pass\n")  # type: ignore[arg-type]
+        app.check_files()
+        await run_over(pilot, app)
+        await until(pilot, lambda: "✗ Drive." in shown(app))
+        assert "At the end the robot was 280 mm away." in shown(app)
+        assert "Faster." in shown(app)
+        assert load_progress()["try"].of("drive").tries == 1
+
+
+@pytest.mark.usefixtures("home")
+async def test_run_from_elsewhere_does_not_count(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        await pilot.press("shift+right")
+        await run_over(pilot, app)
+        await until(pilot, lambda: "This run began elsewhere" in shown(app))
+        assert states() == {"number": "skipped"}
+        await pilot.press("m")
+        await run_over(pilot, app)
+        await until(pilot, lambda: "✓ Drive" in shown(app))
+
+
+@pytest.mark.usefixtures("home")
+async def test_run_before_the_step_does_not_count(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
+        app = await ready(pilot)
+        await run_over(pilot, app)
+        await until(pilot, lambda: bool(app.goals.judged[1]))
+        app.lesson.skip_step()
+        app.lesson.update()
+        assert app.lesson.step is not None
+        assert app.lesson.step.name == "drive"
+
+
+async def _watch(pilot: Pilot[Any], app: LabApp) -> None:
+    app.debugger.set_watches(("x + 1",))
+    await pilot.press("n")
+    await until(pilot, lambda: app.debugger.view is not None)
+    await pilot.press("n")
+
+
+async def _stop_at_breakpoint(pilot: Pilot[Any], app: LabApp) -> None:
+    app.debugger.toggle_line(2)
+    await pilot.press("R")
+
+
+async def _go_back(pilot: Pilot[Any], app: LabApp) -> None:
+    await run_over(pilot, app)
+    await pilot.press("home", "greater_than_sign")
+
+
+async def _open_panel(pilot: Pilot[Any], app: LabApp) -> None:
+    await pilot.press("i")
+
+
+async def _export(pilot: Pilot[Any], app: LabApp) -> None:
+    await run_over(pilot, app)
+    await pilot.press("e")
+    await until(pilot, lambda: isinstance(app.focused, Input))
+    await pilot.press("enter")
+
+
+async def _note(pilot: Pilot[Any], app: LabApp) -> None:
+    await run_over(pilot, app)
+    recording = app.run_controller.timeline.recording
+    assert recording is not None
+    write_notes(recording.folder / NOTES_FILE, [Note("dark", 0.0, 0.1, "Level")])
+
+
+DONE: dict[str, tuple[str, Callable[[Pilot[Any], LabApp], Awaitable[None]]]] = {
+    "watch": ("watch = 'x + 1'", _watch),
+    "breakpoint": ("breakpoint = '^2$'\nmodel = '2'", _stop_at_breakpoint),
+    "visit": ("visit = { from_s = 0.9, to_s = 1.05 }", _go_back),
+    "show": ("show = 'instrumentation'", _open_panel),
+    "export": ("export = '.csv'", _export),
+    "note": ("note = { matches = 'dark', level = 50 }\nmodel = 'dark'", _note),
+}
+
+
+@pytest.mark.usefixtures("home")
+@pytest.mark.parametrize("name", DONE)
+async def test_step_is_done_by_doing_it(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    check, do = DONE[name]
+    async with LabApp(opened(tmp_path, check)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        app.lesson.skip_step()
+        await until(pilot, lambda: "3. Do it" in shown(app))
+        await do(pilot, app)
+        await until(pilot, lambda: states().get("do") == "done")
+
+
+@pytest.mark.usefixtures("home")
+async def test_typing_ends_when_the_program_is_run_from_the_editor(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await pilot.press("d")
+        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
+        await pilot.press("ctrl+r")
+        await until(pilot, lambda: app.panel_area.code is not None and not app.panel_area.code.typing)
+        assert app.panel_area.shown("lesson")
+
+
+@pytest.mark.usefixtures("home")
+@pytest.mark.parametrize(("size", "columns"), [(SMALL, 40), (LARGE, 45), ((200, 60), 58)], ids=["80", "120", "200"])
+async def test_lesson_stands_beside_world_and_code(size: tuple[int, int], columns: int, tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: all(map(app.panel_area.shown, ("lesson", "world", "code", "output"))))
+        assert app.panel_area.lesson is not None
+        assert app.panel_area.lesson.styles.width is not None
+        assert app.panel_area.lesson.styles.width.value == columns
+
+
+@pytest.mark.usefixtures("home")
+async def test_damaged_progress_is_reported_and_kept(home: Path, tmp_path: Path) -> None:
+    (home / "lessons").mkdir(parents=True)
+    (home / "lessons" / "progress.json").write_text("[1]")
+    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: any("progress.json: is damaged" in text for text in notices(app)))
+    assert json.loads((home / "lessons" / "progress.json").read_text()) == [1]
+
+
+def _lesson_view(tmp_path: Path, **changes: Any) -> LessonView:
+    opened_lesson = opened(tmp_path).lesson
+    assert opened_lesson is not None
+    open_steps = (StepState.OPEN,) * 3
+    return replace(LessonView(opened_lesson, open_steps, 0), **changes)
+
+
+@pytest.mark.usefixtures("home")
+def test_pages_of_a_lesson(tmp_path: Path) -> None:
+    view = _lesson_view(tmp_path, states=(StepState.DONE, StepState.SKIPPED, StepState.OPEN), at=2, done="Drive")
+    missed = Judgement(view.lesson.goals[0], (Change(1, 0.1, GoalState.MISSED, 1, 2),), "Too short.")  # type: ignore[union-attr]
+
+    def page(number: int, **changes: Any) -> Sequence[str]:
+        lines = draw_lesson(replace(view, **changes), number, 0, 40, 30).lines
+        return ["".join(text for text, _ in line).rstrip() for line in lines]
+
+    assert page(2)[:4] == ["Try it                               ✓–●", "✓ Drive", "", "3. Do it"]
+    assert "skipped" in page(1)
+    assert "✗ Drive." in page(1, at=1, judgements=(missed,))
+    assert page(3)[1].startswith("The end of the lesson: a model answer")
+    assert "A model answer:" not in page(3, states=(StepState.SKIPPED,) * 3, at=None)
+    assert draw_lesson(LessonView(), 0, 0, 40, 5).lines[0][0][0] == "No lesson is open: M opens one"
+
+
+def test_steps_can_ask_for_every_panel() -> None:
+    assert set(SHOWABLE) == set(PANELS) - {"lesson"}

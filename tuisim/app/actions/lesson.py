@@ -1,0 +1,87 @@
+"""Keys of the group Lesson: answer, hint, and the menu with all lessons."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from tuisim.lessons.progress import LessonProgress, load_progress
+from tuisim.lessons.spec import Question as LessonQuestion
+
+if TYPE_CHECKING:
+    from tuisim.app.workspace import Workspace
+
+_SKIP, _OVER, _OPEN = "skip", "over", "open "
+
+
+def answer(workspace: Workspace) -> None:
+    """Ask for the answer to the question of the step."""
+    from tuisim.app.dialogs.question import LinePrompt
+
+    lesson = workspace.lesson
+    step = lesson.step
+    if step is None or not isinstance(step.check, LessonQuestion):
+        words = "The lesson is done: M opens another" if lesson.lesson else "No lesson is open: M opens one"
+        workspace.app.say("This step has no question: the lesson panel says what it waits for" if step else words)
+        return
+    forms = [(f"{number}", choice) for number, choice in enumerate(step.check.choices, start=1)]
+    place = "The number of your choice" if forms else "Your answer"
+    workspace.app.push_screen(LinePrompt(step.check.ask, lesson.answer, forms=forms, placeholder=place))
+
+
+def hint(workspace: Workspace) -> None:
+    """Show the next hint of the step."""
+    workspace.lesson.hint()
+
+
+def menu(workspace: Workspace) -> None:
+    """Offer to skip the step, to start over, and all lessons."""
+    from tuisim.app.dialogs.chooser import Chooser, Group
+
+    lesson = workspace.lesson
+    here = []
+    if step := lesson.step:
+        here.append((_SKIP, "Skip", f"Leave this step undone: {step.title}"))
+    if lesson.lesson:
+        here.append((_OVER, "Start over", f"All steps again: {lesson.lesson.title}"))
+    progress = load_progress()
+    lessons = [
+        (f"{_OPEN}{one.name}", one.title, progress.get(one.name, LessonProgress()).words(one))
+        for one in lesson.lessons()
+    ]
+    current = f"{_OPEN}{_wanted(workspace)}"
+    groups = [Group("Lessons", lessons), Group("This lesson", here)]
+    workspace.app.push_screen(Chooser("Lessons", groups, current), partial(_chosen, workspace))
+
+
+def _wanted(workspace: Workspace) -> str:
+    """Return the name of the lesson that is selected first: the next one after the end of this one."""
+    lesson = workspace.lesson
+    if lesson.lesson is None:
+        return ""
+    return lesson.lesson.name if lesson.step else lesson.next_name or lesson.lesson.name
+
+
+def _chosen(workspace: Workspace, choice: str | None) -> None:
+    if choice is None:
+        return
+    if choice == _SKIP:
+        workspace.lesson.skip_step()
+    elif choice == _OVER:
+        _ask_to_start_over(workspace)
+    else:
+        name = choice.removeprefix(_OPEN)
+        workspace.document.when_safe(partial(workspace.lesson.open, name))
+
+
+def _ask_to_start_over(workspace: Workspace) -> None:
+    from tuisim.app.dialogs.question import Question
+
+    text = "All steps of this lesson are open again, and its program is as at first. A copy of yours is kept."
+    answers = (("s", "Start over"),)
+
+    def answered(key: str | None) -> None:
+        if key:
+            workspace.document.when_safe(workspace.lesson.start_over)
+
+    workspace.app.push_screen(Question("Start over?", text, answers, "goes on as it is"), answered)

@@ -1,0 +1,384 @@
+"""The app's side of lessons: opens one, sees what the student does, checks the step, and keeps the progress."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, assert_never
+
+from tuisim.app.panels import PANELS, PanelPlace
+from tuisim.app.snapshot import RunPhase
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import settings_of
+from tuisim.errors import ConfigError, TuisimError
+from tuisim.goals.files import GoalsFile
+from tuisim.goals.judgement import GoalState, Judgement
+from tuisim.lessons import progress as stored
+from tuisim.lessons.catalogue import find_lesson, lesson_paths
+from tuisim.lessons.events import (
+    BreakMet,
+    Event,
+    Exported,
+    JudgedRun,
+    Noted,
+    Shown,
+    Typed,
+    Visited,
+    Watched,
+    good_runs,
+    is_met,
+)
+from tuisim.lessons.files import load_lesson
+from tuisim.lessons.progress import LessonProgress, StepState
+from tuisim.lessons.spec import Break, Export, Lesson, Note, Question, Run, Show, Step, Visit, Watch
+from tuisim.protocol import PauseReason
+
+if TYPE_CHECKING:
+    from tuisim.app.debugger import AppDebugger
+    from tuisim.app.goals import AppGoals
+    from tuisim.app.loader import Loader
+    from tuisim.app.panel_area import PanelArea
+    from tuisim.app.render.lesson import LessonView
+    from tuisim.app.run_controller import RunController
+    from tuisim.app.services import AppServices
+    from tuisim.runs.recorded_run import Recording
+
+NOTES_PERIOD_S = 0.5
+"""Least time between two looks at the notes of a run."""
+_ROOMY_ROWS = 33
+"""In a lower terminal the text of a lesson needs the space of the instrumentation panel."""
+
+
+def goals_of(lesson: Lesson) -> GoalsFile:
+    """Return the goals of a lesson for the goals panel."""
+    return GoalsFile(lesson.path, lesson.title, lesson.goals, lesson.settings)
+
+
+class AppLesson:
+    """The lesson that is open in the app, if any.
+
+    Args:
+        app: Shows notices.
+        run_controller: Has the run in view.
+        panel_area: Has the lesson panel.
+        goals: Judges the runs by the goals of the lesson.
+        loader: Loads the lesson's world and the student's program.
+        debugger: Knows where the program is paused, and what is watched.
+        lesson: The lesson that was opened at the start, if any; its world and program are loaded already.
+        folder: The folder of own lessons, if one was named.
+    """
+
+    def __init__(
+        self,
+        app: AppServices,
+        run_controller: RunController,
+        panel_area: PanelArea,
+        goals: AppGoals,
+        loader: Loader,
+        debugger: AppDebugger,
+        lesson: Lesson | None,
+        folder: str | None,
+    ) -> None:
+        self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
+        self._goals, self._loader, self._debugger = goals, loader, debugger
+        self.lesson = lesson
+        self.folder = folder
+        self.progress = LessonProgress()
+        self._at: int | None = None
+        """Index of the step to do; None when none is open."""
+        self._events: list[Event] = []
+        """What the student has done since the step began."""
+        self._before = ""
+        """Id of the run that was in view when the step began, which does not count."""
+        self._judgements: tuple[Judgement, ...] = ()
+        self._done = ""
+        """Title of the step that has just been done."""
+        self._is_elsewhere = False
+        """Whether the run in view did not begin at the lesson's start."""
+        self._counted = ""
+        """Id of the last run that was counted as a try."""
+        self._next_look_s = 0.0
+
+    # Opening
+
+    def begin(self) -> None:
+        """Begin with the lesson that was opened at the start."""
+        if self.lesson is not None:
+            self._enter(self.lesson)
+
+    def open(self, name: str) -> None:
+        """Open another lesson, given by name; errors are shown."""
+        try:
+            lesson = load_lesson(find_lesson(name, self.folder))
+            self._load(lesson)
+        except TuisimError as error:
+            self._app.complain(error)
+            return
+        self._enter(lesson)
+
+    def _load(self, lesson: Lesson, anew: bool = False) -> None:
+        path = stored.prepare_program(lesson, anew)
+        self._loader.open_task(str(path), lesson.settings, goals_of(lesson))
+
+    def _enter(self, lesson: Lesson) -> None:
+        self.lesson = lesson
+        try:
+            self.progress = stored.load_progress().get(lesson.name, LessonProgress())
+        except ConfigError as error:
+            self.progress = LessonProgress()
+            self._app.complain(error)
+        self._goals.judges_always = True
+        self._keep(replace(self.progress, opened_at=stored.now()))
+        self._panel_area.request(self._panels_for(lesson))
+        self._done = ""
+        self._begin_step()
+
+    def _panels_for(self, lesson: Lesson) -> dict[str, bool | None]:
+        """Return which panels to show and hide: the text gets the side column, but for readings where there is room."""
+        beside = [info.id for info in PANELS.values() if info.place is PanelPlace.SIDE]
+        if self._panel_area.size.height >= _ROOMY_ROWS:
+            beside.remove("instrumentation")
+        asked = dict.fromkeys((*lesson.settings.get("panels_on", ()), "code", "lesson"), True)
+        return {**dict.fromkeys(beside, False), **asked}
+
+    def _begin_step(self) -> None:
+        assert self.lesson is not None
+        self._at = self.progress.current(self.lesson)
+        self._events, self._judgements, self._is_elsewhere = [], (), False
+        recording = self._run_controller.timeline.recording
+        self._before = recording.run_id if recording else ""
+        self.show()
+        self._app.situation_changed()
+
+    @property
+    def step(self) -> Step | None:
+        """The step to do; None if no lesson is open, or all of its steps are done or skipped."""
+        return self.lesson.steps[self._at] if self.lesson is not None and self._at is not None else None
+
+    def lessons(self) -> list[Lesson]:
+        """Return all lessons that can be read, in their order."""
+        found = []
+        for path in lesson_paths(self.folder).values():
+            try:
+                found.append(load_lesson(path))
+            except ConfigError as error:
+                self._app.complain(error)
+        return found
+
+    @property
+    def next_name(self) -> str:
+        """The name of the lesson after this one; empty if there is none."""
+        names = list(lesson_paths(self.folder))
+        if self.lesson is None or self.lesson.name not in names:
+            return ""
+        return next(iter(names[names.index(self.lesson.name) + 1 :]), "")
+
+    # What the student asks for
+
+    def answer(self, text: str) -> None:
+        """Check a typed answer.
+
+        Raises:
+            TuisimError: it is wrong.
+        """
+        step = self.step
+        if step is None or not isinstance(step.check, Question):
+            return
+        if not text:
+            raise TuisimError("Type an answer")
+        if not self._take(Typed(text)):
+            self._keep(self.progress.with_step(step.name, tries=self.progress.of(step.name).tries + 1))
+            self.show()
+            raise TuisimError(f"{text}: that is not right. Measure again; Y shows a hint")
+
+    def hint(self) -> None:
+        """Show the next hint of the step."""
+        step = self.step
+        if step is None:
+            return
+        shown = self.progress.of(step.name).hints
+        if shown >= len(step.hints):
+            self._app.say("There are no more hints. M skips the step" if shown else "This step has no hints")
+            return
+        self._keep(self.progress.with_step(step.name, hints=shown + 1))
+        self.show()
+
+    def skip_step(self) -> None:
+        """Leave the step undone and go on to the next."""
+        if step := self.step:
+            self._leave_step(step, StepState.SKIPPED)
+            self._app.say(f"Skipped: {step.title}. Start over to do it again")
+
+    def start_over(self) -> None:
+        """Forget the progress on the lesson, and begin with its program again; the student's program is kept aside."""
+        if self.lesson is None:
+            return
+        try:
+            self._load(self.lesson, anew=True)
+        except TuisimError as error:
+            self._app.complain(error)
+            return
+        self._keep(LessonProgress(opened_at=stored.now()))
+        self._done = ""
+        self._begin_step()
+
+    def exported(self, path: Path) -> None:
+        """Note that the log was exported to a file."""
+        self._take(Exported(path.name))
+
+    # What the student does
+
+    def update(self) -> None:
+        """Check the step by what has happened; never blocks."""
+        if self.step is not None:
+            try:
+                for event in self._observed(self.step):
+                    if self._take(event):
+                        break
+            except TuisimError as error:
+                self._next_look_s = time.monotonic() + 10
+                self._app.complain(error)
+
+    def _observed(self, step: Step) -> Iterator[Event]:
+        match step.check:
+            case Run():
+                yield from self._judged_run(step)
+            case Watch():
+                if self._debugger.view is not None:
+                    watches = self._debugger.view.inspected.watches
+                    yield from (Watched(watch.text) for watch in watches if not watch.error)
+            case Break():
+                view = self._debugger.view
+                if view is not None and not view.past and view.paused.reason is PauseReason.BREAK:
+                    yield BreakMet(view.paused.detail)
+            case Visit():
+                timeline = self._run_controller.timeline
+                if timeline.at is not None and timeline.recording is not None:
+                    yield Visited(timeline.at / timeline.recording.spec.profile.tick_hz)
+            case Show(panel=panel):
+                if self._panel_area.shown(panel):
+                    yield Shown(panel)
+            case Note():
+                yield from self._notes()
+            case Question() | Export():
+                # The student's keys tell.
+                pass
+            case _:
+                assert_never(step.check)
+
+    def _judged_run(self, step: Step) -> Iterator[Event]:
+        recording, judgements = self._goals.judged
+        if recording is None or recording.run_id == self._before or judgements is self._judgements:
+            return
+        self._judgements = judgements
+        met = frozenset(each.goal.name for each in judgements if each.state is GoalState.MET)
+        self._is_elsewhere = not self._is_from_start(recording)
+        yield JudgedRun(recording.run_id, recording.spec.seed, met, not self._is_elsewhere)
+        if self.step is step:
+            self._count_try(step, recording, judgements)
+            self.show()
+
+    def _count_try(self, step: Step, recording: Recording, judgements: tuple[Judgement, ...]) -> None:
+        """Count a run that has ended without passing as a try."""
+        assert isinstance(step.check, Run)
+        states = [each.state for each in judgements if each.goal.name in step.check.goals]
+        is_over = self._run_controller.state is RunPhase.ENDED and GoalState.OPEN not in states
+        if is_over and GoalState.MISSED in states and self._counted != recording.run_id:
+            self._counted = recording.run_id
+            self._keep(self.progress.with_step(step.name, tries=self.progress.of(step.name).tries + 1))
+
+    def _is_from_start(self, recording: Recording) -> bool:
+        assert self.lesson is not None
+        wanted, was = build_run_spec(settings_of(self.lesson.settings)).world, recording.spec.world
+        return (was.background, was.start, was.obstacles) == (wanted.background, wanted.start, wanted.obstacles)
+
+    def _notes(self) -> Iterator[Event]:
+        recording = self._run_controller.timeline.recording
+        if recording is None or time.monotonic() < self._next_look_s:
+            return
+        self._next_look_s = time.monotonic() + NOTES_PERIOD_S
+        yield from noted(recording.folder)
+
+    def _take(self, event: Event) -> bool:
+        """Add what has happened. Return whether the step is done now."""
+        step = self.step
+        if step is None or event in self._events:
+            return False
+        if isinstance(event, JudgedRun):
+            self._events = [one for one in self._events if not _is_of(one, event.run_id)]
+        self._events.append(event)
+        if not is_met(step.check, self._events):
+            return False
+        self._leave_step(step, StepState.DONE)
+        over = self.step is None
+        self._app.say(f"✓ {step.title}" + (". The lesson is done" if over else ""))
+        return True
+
+    def _leave_step(self, step: Step, state: StepState) -> None:
+        self._keep(self.progress.with_step(step.name, state=state, at=stored.now()))
+        self._done = step.title if state is StepState.DONE else ""
+        self._begin_step()
+
+    def _keep(self, progress: LessonProgress) -> None:
+        self.progress = progress
+        if self.lesson is not None:
+            try:
+                stored.save_progress(self.lesson.name, progress)
+            except ConfigError as error:
+                self._app.complain(error)
+
+    # The panel
+
+    def show(self) -> None:
+        """Update the panel, which may have just been mounted."""
+        if panel := self._panel_area.lesson:
+            panel.show_lesson(self.view())
+
+    def view(self) -> LessonView:
+        """Return the content of the panel."""
+        from tuisim.app.render.lesson import LessonView
+
+        if self.lesson is None:
+            return LessonView()
+        step = self.step
+        good = good_runs(step.check, self._events) if step and isinstance(step.check, Run) else 0
+        return LessonView(
+            lesson=self.lesson,
+            states=tuple(self.progress.of(each.name).state for each in self.lesson.steps),
+            at=self._at,
+            hints=self.progress.of(step.name).hints if step else 0,
+            judgements=self._judgements,
+            good_runs=good,
+            is_elsewhere=self._is_elsewhere,
+            done=self._done,
+            next_name=self.next_name,
+        )
+
+
+def _is_of(event: Event, run_id: str) -> bool:
+    return isinstance(event, JudgedRun) and event.run_id == run_id
+
+
+def noted(folder: Path) -> Iterator[Noted]:
+    """Yield the notes on a run, each with the mean of the samples that it is about.
+
+    Raises:
+        LogError: the notes or the recording are damaged.
+    """
+    from tuisim.analysis.source import NOTES_FILE, read_notes
+    from tuisim.runs.samples import samples_of
+    from tuisim.runs.store import load_run
+
+    notes = read_notes(folder / NOTES_FILE)
+    if not notes:
+        return
+    samples = list(samples_of(load_run(folder).output.all_rows()))
+    for note in notes:
+        values = [
+            one.value
+            for one in samples
+            if note.start_s <= one.time_s <= note.stop_s and one.name == (note.variable or one.name)
+        ]
+        yield Noted(note.text, sum(values) / len(values) if values else None)

@@ -1,0 +1,92 @@
+"""The lesson panel: the step to do, its result, and hints."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from textual.binding import Binding, BindingType
+
+from tuisim.app.panels import PANELS
+from tuisim.app.render.lesson import LessonPicture, LessonView, draw_lesson
+from tuisim.app.snapshot import Snapshot
+from tuisim.app.terminal.cell_view import LinesPanel
+
+_TITLE = PANELS["lesson"].title
+
+
+class LessonPanel(LinesPanel, can_focus=True):
+    """The lesson panel."""
+
+    ALLOW_SELECT = False
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("up", "scroll_text(-1)", "Up", show=False),
+        Binding("down", "scroll_text(1)", "Down", show=False),
+        Binding("pageup", "scroll_text(-8)", "Page up", show=False),
+        Binding("pagedown", "scroll_text(8)", "Page down", show=False),
+        Binding("left", "turn(-1)", "The step before", show=False),
+        Binding("right", "turn(1)", "The next step", show=False),
+    ]
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._content = LessonView()
+        self._page: int | None = None
+        """The page that the user has turned to; None for that of the step to do."""
+        self._first = 0
+        """First row of the text that is shown."""
+        self._picture = LessonPicture([])
+
+    def watch_has_focus(self, _has_focus: bool) -> None:
+        """Show or hide what the keys do."""
+        super().watch_has_focus(_has_focus)
+        self._show_subtitle()
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Nothing here depends on the instant; the lesson comes with `show_lesson`."""
+
+    def show_lesson(self, view: LessonView) -> None:
+        """Show a lesson; a new result or step begins at its first row."""
+        if view == self._content:
+            return
+        before, self._content = self._content, view
+        if (view.lesson, view.at, view.judgements) != (before.lesson, before.at, before.judgements):
+            self._page, self._first = None, 0
+        self._redraw()
+        if view.hints > before.hints and view.at == before.at:
+            # A new hint is at the end.
+            self._first += self._picture.below
+            self._redraw()
+
+    def _redraw(self) -> None:
+        size = self._text.size
+        if not size:
+            return
+        page = self._content.page if self._page is None else self._page
+        self._picture = draw_lesson(self._content, page, self._first, size.width, size.height)
+        self._first = self._picture.first
+        self._text.set_lines(self._picture.lines)
+        self._show_subtitle()
+
+    def _show_subtitle(self) -> None:
+        below = self._picture.below
+        title = f"{_TITLE} ↓{below}" if below else _TITLE
+        if title != self.border_title:
+            self.border_title = title
+        words = "↑↓ text · ←→ steps · M menu" if self.has_focus else "E ↑↓ reads on" if below else ""
+        if words != self.border_subtitle:
+            self.border_subtitle = words
+
+    def action_scroll_text(self, by: int) -> None:
+        self._first = max(0, self._picture.first + by)
+        self._redraw()
+
+    def action_turn(self, by: int) -> None:
+        page = self._content.page if self._page is None else self._page
+        self._page, self._first = max(0, min(page + by, self._content.last_page)), 0
+        self._redraw()
+
+    def on_mouse_scroll_down(self) -> None:
+        self.action_scroll_text(1)
+
+    def on_mouse_scroll_up(self) -> None:
+        self.action_scroll_text(-1)

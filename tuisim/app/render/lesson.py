@@ -1,0 +1,224 @@
+"""A lesson as lines of text: its progress, the step to do with its result and hints, and at the end a model answer."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rich.style import Style
+
+from tuisim.charts.text_runs import Line, cut
+from tuisim.goals.judgement import GoalState, Judgement
+from tuisim.lessons.markdown import markdown_lines
+from tuisim.lessons.progress import StepState
+from tuisim.lessons.spec import Break, Export, Lesson, Note, Question, Run, Show, Step, Visit, Watch
+from tuisim.source import source_lines
+
+_NAME = Style(color="#ffffff", bold=True)
+_PLAIN = Style(color="#d8dee6")
+_PALE = Style(color="#9fb0c3")
+_GOOD = Style(color="#87d7af", bold=True)
+_BAD = Style(color="#ff6e6e")
+_HINT = Style(color="#ffd75f")
+_CODE = Style(color="#ffd75f")
+_MARKS = {StepState.OPEN: ("·", _PALE), StepState.DONE: ("✓", _GOOD), StepState.SKIPPED: ("–", _PALE)}
+_GOAL_MARKS = {GoalState.OPEN: ("· ", _PALE), GoalState.MET: ("✓ ", _GOOD), GoalState.MISSED: ("✗ ", _BAD)}
+
+NO_LESSON = "No lesson is open: M opens one"
+
+
+@dataclass(frozen=True, slots=True)
+class LessonView:
+    """The content of the lesson panel."""
+
+    lesson: Lesson | None = None
+    """None: no lesson is open."""
+    states: tuple[StepState, ...] = ()
+    """Of each step."""
+    at: int | None = None
+    """Index of the step to do; None when none is open."""
+    hints: int = 0
+    """How many hints of that step are shown."""
+    judgements: tuple[Judgement, ...] = ()
+    """Of the last run since the step began; empty while there is none."""
+    good_runs: int = 0
+    """How many runs have passed the step so far, if it needs several."""
+    is_elsewhere: bool = False
+    """Whether the last run did not begin at the lesson's start."""
+    done: str = ""
+    """Title of the step that has just been done; empty for none."""
+    next_name: str = ""
+    """The next lesson; empty if this is the last."""
+
+    @property
+    def last_page(self) -> int:
+        """The number of the last page: the steps have one each, and the end of the lesson another."""
+        return 0 if self.lesson is None else len(self.lesson.steps)
+
+    @property
+    def page(self) -> int:
+        """The page to show unless the user turns to another."""
+        return self.last_page if self.at is None else self.at
+
+
+@dataclass(frozen=True, slots=True)
+class LessonPicture:
+    """The text of the panel."""
+
+    lines: list[Line]
+    first: int = 0
+    """The first row of the text that is shown."""
+    below: int = 0
+    """Number of rows of the text that do not fit."""
+
+
+def draw_lesson(view: LessonView, page: int, first: int, width: int, height: int) -> LessonPicture:
+    """Return the text for a panel of that inner size.
+
+    Args:
+        view: The lesson.
+        page: The page to show, see `LessonView.page`.
+        first: The first row of the text to show, if it has so many.
+        width: Columns.
+        height: Rows.
+    """
+    if view.lesson is None:
+        return LessonPicture(list(_wrapped(NO_LESSON, width, _PALE)))
+    text = list(_end(view, width) if page >= view.last_page else _page(view, page, width))
+    head = [_head(view, page, width)]
+    room = max(0, height - len(head))
+    first = max(0, min(first, len(text) - room))
+    return LessonPicture([*head, *text[first : first + room]], first, max(0, len(text) - first - room))
+
+
+def _head(view: LessonView, page: int, width: int) -> Line:
+    """Return the title with a mark for each step; the step on the page is underlined."""
+    assert view.lesson is not None
+    marks: Line = []
+    for at, state in enumerate(view.states):
+        mark, style = ("●", _HINT) if at == view.at else _MARKS[state]
+        marks.append((mark, style + Style(underline=at == page)))
+    title = cut(view.lesson.title, max(1, width - len(marks) - 1))
+    return [(title, _NAME), (" " * (width - len(title) - len(marks)), _PLAIN), *marks]
+
+
+def _page(view: LessonView, page: int, width: int) -> Iterator[Line]:
+    """Yield a step: first what the last run has shown, then the text, the question, and the hints."""
+    assert view.lesson is not None
+    lesson, step = view.lesson, view.lesson.steps[page]
+    is_current = page == view.at
+    if is_current and view.done:
+        yield from _wrapped(f"✓ {view.done}", width, _GOOD)
+        yield []
+    if page == 0 and not (is_current and view.judgements):
+        yield from markdown_lines(lesson.intro, width)
+        yield []
+        yield from _wrapped(f"On a real robot: {lesson.why}", width, _PALE)
+        yield []
+    yield from _wrapped(f"{page + 1}. {step.title}", width, _NAME)
+    if is_current:
+        yield from _result(view, step, width)
+    yield from markdown_lines(step.text, width)
+    if isinstance(step.check, Question):
+        yield []
+        yield from _question(step.check, width)
+    if not is_current:
+        state = view.states[page]
+        yield []
+        yield from _wrapped(
+            "Not yet: a step before it is open" if state is StepState.OPEN else f"{state}", width, _PALE
+        )
+        return
+    yield []
+    for number, hint in enumerate(step.hints[: view.hints], start=1):
+        yield from _wrapped(f"Hint {number}: {hint}", width, _HINT)
+    yield from _wrapped(_to_do(view, step), width, _PALE)
+
+
+def _question(question: Question, width: int) -> Iterator[Line]:
+    yield from _wrapped(question.ask, width, _NAME)
+    for number, choice in enumerate(question.choices, start=1):
+        yield from _wrapped(f"{number}  {choice}", width, _PLAIN, "   ")
+
+
+def _result(view: LessonView, step: Step, width: int) -> Iterator[Line]:
+    """Yield how the last run did on the goals of a step."""
+    if not isinstance(step.check, Run) or not view.judgements:
+        return
+    if view.is_elsewhere and not step.check.anywhere:
+        yield from _wrapped("This run began elsewhere: m moves the robot to its start, then R.", width, _BAD)
+    by_name = {each.goal.name: each for each in view.judgements}
+    for name in step.check.goals:
+        judgement = by_name[name]
+        mark, style = _GOAL_MARKS[judgement.state]
+        for at, row in enumerate(textwrap.wrap(judgement.goal.say or name, max(1, width - 2))):
+            yield [(mark if not at else "  ", style), (row, _PLAIN)]
+        if judgement.state is GoalState.MISSED:
+            yield from _wrapped(judgement.reason, width, _BAD, "  ", "  ")
+            if judgement.goal.hint:
+                yield from _wrapped(judgement.goal.hint, width, _HINT, "  ", "  ")
+    yield []
+
+
+def _to_do(view: LessonView, step: Step) -> str:
+    """Return what the step waits for, and the keys."""
+    left = len(step.hints) - view.hints
+    hint = f" · Y hint ({left} left)" if left > 0 else ""
+    match step.check:
+        case Run(times=times, seeds=seeds):
+            count = f" {view.good_runs} of {times} runs{' with other seeds' if seeds else ''}." if times > 1 else ""
+            words = f"R runs the program.{count}"
+        case Question(choices=choices):
+            words = "Q types the number of your choice." if choices else "Q types your answer."
+        case Watch(expression=expression):
+            words = f"Waits until you watch {expression}."
+        case Break():
+            words = "Waits until a run stops at the breakpoint."
+        case Export(suffix=suffix):
+            words = f"Waits until you export to a {suffix} file."
+        case Note():
+            words = "Waits for your note."
+        case Visit(from_s=from_s, to_s=to_s):
+            words = f"Waits until you see the run between {from_s:g} and {to_s:g} s."
+        case Show(panel=panel):
+            words = f"Waits until the panel is open: {panel}."
+    return f"{words}{hint}"
+
+
+def _end(view: LessonView, width: int) -> Iterator[Line]:
+    """Yield the end of a lesson: what it is good for, and the model answer if every step was done."""
+    assert view.lesson is not None
+    skipped = sum(state is StepState.SKIPPED for state in view.states)
+    still_open = sum(state is StepState.OPEN for state in view.states)
+    if still_open:
+        yield from _wrapped("The end of the lesson: a model answer appears here when every step is done.", width, _PALE)
+        return
+    yield from _wrapped("✓ The lesson is done." if not skipped else "The end of the lesson.", width, _GOOD)
+    yield []
+    yield from _wrapped(f"On a real robot: {view.lesson.why}", width, _PLAIN)
+    yield []
+    following = f"M opens the next lesson: {view.next_name}." if view.next_name else "This was the last lesson."
+    yield from _wrapped(following, width, _HINT)
+    yield []
+    if skipped:
+        yield from _wrapped("Steps were skipped: the model answer appears when every step is done.", width, _PALE)
+    elif view.lesson.model_answer:
+        yield from _wrapped("A model answer:", width, _NAME)
+        for text in source_lines(view.lesson.model_answer):
+            yield from _code(text, width)
+
+
+def _code(text: str, width: int) -> Iterator[Line]:
+    """Yield a line of a program, cut into rows; the further ones are indented."""
+    rest = text
+    while True:
+        yield [(rest[:width], _CODE)]
+        if len(rest) <= width:
+            return
+        rest = " " * 6 + rest[width:]
+
+
+def _wrapped(text: str, width: int, style: Style, indent: str = "", first: str = "") -> Iterator[Line]:
+    for row in textwrap.wrap(text, max(10, width), initial_indent=first, subsequent_indent=indent):
+        yield [(row, style)]
