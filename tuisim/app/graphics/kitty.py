@@ -1,0 +1,59 @@
+"""The graphics protocol of kitty, with placeholders: images that appear wherever certain characters are.
+
+Dialogs, panels and terminal multiplexers handle such a character like any other one.
+
+Reference: https://sw.kovidgoyal.net/kitty/graphics-protocol/#unicode-placeholders
+"""
+
+from __future__ import annotations
+
+import zlib
+from base64 import b64encode
+
+from tuisim.app.render.mat import Pixels
+
+PLACEHOLDER = "\U0010eeee"
+DIACRITICS = "\u0305\u030d\u030e\u0310\u0312\u033d\u033e\u033f"
+"""They follow a placeholder, and say which row and column of the image it shows; the first ones of the protocol."""
+MOST_CELLS = len(DIACRITICS)
+"""Most rows and columns of an image."""
+QUERY_IMAGE = 31
+QUERY = f"\x1b_Gi={QUERY_IMAGE},s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\"
+"""Asks whether a terminal knows the protocol; the answer ends in `OK` then."""
+_CHUNK = 4096
+"""Most characters of data in one command."""
+_COMPRESSION = 1
+
+
+def encode(picture: Pixels, image: int, cols: int, rows: int) -> str:
+    """Return the codes that make a picture known; it is seen at its placeholders.
+
+    Args:
+        picture: Shape (height, width, 3).
+        image: Its number, from 1 to 0xFFFFFF; an image that had this number is gone.
+        cols: Number of cells across, at most `MOST_CELLS`.
+        rows: Number of cells from top to bottom, at most `MOST_CELLS`.
+    """
+    data = b64encode(zlib.compress(picture.tobytes(), _COMPRESSION)).decode()
+    chunks = [data[at : at + _CHUNK] for at in range(0, len(data), _CHUNK)]
+    keys = f"a=T,U=1,q=2,f=24,o=z,i={image},s={picture.shape[1]},v={picture.shape[0]},c={cols},r={rows},"
+    parts = []
+    for at, chunk in enumerate(chunks, 1):
+        parts.append(f"\x1b_G{keys}m={int(at < len(chunks))};{chunk}\x1b\\")
+        keys = ""
+    return "".join(parts)
+
+
+def delete(image: int) -> str:
+    """Return the codes that delete an image and its data."""
+    return f"\x1b_Ga=d,d=I,q=2,i={image}\x1b\\"
+
+
+def placeholder(col: int, row: int) -> str:
+    """Return the text of a cell that shows a part of an image; its foreground colour is the number of the image."""
+    return PLACEHOLDER + DIACRITICS[row] + DIACRITICS[col]
+
+
+def through_tmux(codes: str) -> str:
+    """Return codes that tmux passes on to its terminal, if it is allowed to."""
+    return "\x1bPtmux;" + codes.replace("\x1b", "\x1b\x1b") + "\x1b\\"

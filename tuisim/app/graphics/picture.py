@@ -1,0 +1,266 @@
+"""A picture in the cells of a terminal, of which only cells that have changed are sent."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import groupby
+from typing import NamedTuple
+
+import numpy as np
+
+from tuisim.app.graphics import iterm, kitty, sixel
+from tuisim.app.render.mat import Pixels
+
+
+class Protocol(StrEnum):
+    """How a terminal is told to draw pixels."""
+
+    KITTY = "kitty"
+    ITERM = "iterm"
+    SIXEL = "sixel"
+
+
+@dataclass(frozen=True, slots=True)
+class Graphics:
+    """How to draw pixels in this terminal."""
+
+    protocol: Protocol
+    cell_px: tuple[int, int]
+    """Width and height of a cell."""
+    in_tmux: bool = False
+    """Whether tmux has to pass codes on."""
+
+    @property
+    def scale(self) -> int:
+        """How many pixels of the terminal, across and down, are one point of a picture: more would take too long."""
+        return max(1, -(-self.cell_px[0] // MOST_POINTS))
+
+    @property
+    def cell_points(self) -> tuple[int, int]:
+        """How many points of a picture a cell has across and from top to bottom."""
+        width_px, height_px = self.cell_px
+        if self.protocol is Protocol.SIXEL and (width_px % self.scale or height_px % self.scale):
+            # It cannot be scaled by the terminal.
+            return width_px, height_px
+        return max(width_px // self.scale, 1), max(height_px // self.scale, 1)
+
+
+MOST_POINTS = 12
+"""Most points of a picture across a cell."""
+
+
+class PictureCell(NamedTuple):
+    """A part of a picture, as large as a cell. Two are equal if they look the same."""
+
+    picture: TilePicture
+    row: int
+    col: int
+    version: int
+    """Number of its last change."""
+
+
+class Rectangle(NamedTuple):
+    """Some cells of a picture; `bottom` and `right` are behind the last ones."""
+
+    top: int
+    left: int
+    bottom: int
+    right: int
+
+    @property
+    def area(self) -> int:
+        """The number of cells."""
+        return (self.bottom - self.top) * (self.right - self.left)
+
+    def joined(self, other: Rectangle) -> Rectangle:
+        """Return the smallest rectangle around both."""
+        return Rectangle(
+            min(self.top, other.top), min(self.left, other.left),
+            max(self.bottom, other.bottom), max(self.right, other.right),
+        )  # fmt: skip
+
+
+class TilePicture:
+    """A picture that changes.
+
+    Args:
+        graphics: How it is drawn.
+        first_image: Number of its first image, for the protocols that number them.
+    """
+
+    def __init__(self, graphics: Graphics, first_image: int = 1) -> None:
+        self._graphics = graphics
+        self._points: Pixels = np.empty((0, 0, 3), np.uint8)
+        self._versions = np.empty((0, 0), np.int64)
+        self._changes = 0
+        self._first_image = first_image
+        self._tiles: dict[tuple[int, int], tuple[int, int]] = {}
+        """The version and the image of each tile that the terminal has, by row and column of its first cell."""
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Its rows and columns of cells."""
+        rows, cols = self._versions.shape
+        return rows, cols
+
+    def put(self, points: Pixels) -> list[tuple[int, int, int]]:
+        """Show other points, with `Graphics.cell_points` for each cell.
+
+        Returns:
+            Runs of changed cells: row, first column, number of cells. All rows if the size has changed.
+        """
+        width, height = self._graphics.cell_points
+        rows, cols = len(points) // height, points.shape[1] // width
+        self._changes += 1
+        if points.shape != self._points.shape:
+            self._versions = np.full((rows, cols), self._changes)
+            self._points = points
+            return [(row, 0, cols) for row in range(rows)]
+        differs = (points != self._points).reshape(rows, height, cols, width * 3).any(axis=(1, 3))
+        if self._graphics.protocol is Protocol.KITTY:
+            differs = _whole_tiles(differs)
+        self._versions[differs] = self._changes
+        self._points = points
+        return [(one.top, one.left, one.right - one.left) for one in _row_runs(differs)]
+
+    def forget(self) -> None:
+        """Assume that the terminal has nothing of it."""
+        self._tiles.clear()
+
+    def row(self, row: int) -> list[PictureCell]:
+        """Return the cells of a row."""
+        return [PictureCell(self, row, col, version) for col, version in enumerate(self._versions[row].tolist())]
+
+    def draw(self, places: Sequence[tuple[int, int, PictureCell]], is_shown: Callable[[int, int], bool]) -> str:
+        """Return the codes that draw some cells.
+
+        Args:
+            places: Row and column of the screen, and the cell.
+            is_shown: Whether a cell of the screen, by row and column, shows its part of this picture.
+        """
+        by_offset = groupby(
+            sorted(places, key=lambda at: (at[0] - at[2].row, at[1] - at[2].col)),
+            key=lambda at: (at[0] - at[2].row, at[1] - at[2].col),
+        )
+        return "".join(
+            self._draw_at(down, right, [cell for _, _, cell in some], is_shown) for (down, right), some in by_offset
+        )
+
+    def _draw_at(
+        self, down: int, right: int, cells: Sequence[PictureCell], is_shown: Callable[[int, int], bool]
+    ) -> str:
+        if self._graphics.protocol is Protocol.KITTY:
+            return self._placeholders(down, right, cells)
+        changed = np.zeros(self._versions.shape, bool)
+        for cell in cells:
+            if cell.row < len(changed) and cell.col < changed.shape[1]:
+                changed[cell.row, cell.col] = True
+
+        def may_draw(some: Rectangle) -> bool:
+            return all(
+                is_shown(row + down, col + right)
+                for row in range(some.top, some.bottom)
+                for col in range(some.left, some.right)
+            )
+
+        return "".join(
+            f"\x1b[{one.top + down + 1};{one.left + right + 1}H{self._encoded(one)}"
+            for one in rectangles(changed, may_draw)
+        )
+
+    def _part(self, some: Rectangle) -> Pixels:
+        width, height = self._graphics.cell_points
+        return self._points[some.top * height : some.bottom * height, some.left * width : some.right * width]
+
+    def _encoded(self, some: Rectangle) -> str:
+        points = self._part(some)
+        if self._graphics.protocol is Protocol.ITERM:
+            return iterm.encode(points, some.right - some.left, some.bottom - some.top)
+        scale = self._graphics.cell_px[0] // self._graphics.cell_points[0]
+        return sixel.encode(points.repeat(scale, axis=0).repeat(scale, axis=1) if scale > 1 else points)
+
+    # Kitty
+
+    def _placeholders(self, down: int, right: int, cells: Sequence[PictureCell]) -> str:
+        """Return the codes that send the tiles of some cells, and draw the placeholders of those that changed."""
+        tiles = {(cell.row // _TILE_ROWS * _TILE_ROWS, cell.col // _TILE_COLS * _TILE_COLS) for cell in cells}
+        parts, stale = [], []
+        for tile in sorted(tiles):
+            codes, old = self._send(tile)
+            parts.append(codes)
+            stale += old
+        for cell in cells:
+            top, left = cell.row // _TILE_ROWS * _TILE_ROWS, cell.col // _TILE_COLS * _TILE_COLS
+            _, image = self._tiles[top, left]
+            color = f"{image >> 16};{image >> 8 & 255};{image & 255}"
+            parts.append(f"\x1b[{cell.row + down + 1};{cell.col + right + 1}H\x1b[38;2;{color}m")
+            parts.append(kitty.placeholder(cell.col - left, cell.row - top))
+        parts.append("\x1b[0m")
+        parts += [self._passed_on(kitty.delete(image)) for image in stale]
+        return "".join(parts)
+
+    def _send(self, tile: tuple[int, int]) -> tuple[str, list[int]]:
+        """Return the codes that send a tile if the terminal does not have it, and images that are no longer needed."""
+        top, left = tile
+        some = Rectangle(top, left, min(top + _TILE_ROWS, self.size[0]), min(left + _TILE_COLS, self.size[1]))
+        version = int(self._versions[some.top : some.bottom, some.left : some.right].max())
+        had = self._tiles.get(tile)
+        if had is not None and had[0] == version:
+            return "", []
+        # Two images in turn: the old one is seen until its placeholders have been replaced.
+        number = self._first_image + 2 * (top // _TILE_ROWS * _MOST_TILES + left // _TILE_COLS)
+        image = number + 1 if had is not None and had[1] == number else number
+        self._tiles[tile] = version, image
+        codes = kitty.encode(self._part(some), image, some.right - some.left, some.bottom - some.top)
+        return self._passed_on(codes), [had[1]] if had is not None else []
+
+    def _passed_on(self, codes: str) -> str:
+        return kitty.through_tmux(codes) if self._graphics.in_tmux else codes
+
+
+Mask = np.ndarray[tuple[int, int], np.dtype[np.bool_]]
+"""Some cells of a picture, shape (rows, columns)."""
+
+_TILE_ROWS, _TILE_COLS = 4, 8
+_MOST_TILES = 256
+"""Most tiles in a row."""
+_JOIN_CELLS = 6
+"""Rectangles are joined if at most this many unchanged cells come with it: each costs some codes of its own."""
+
+
+def _whole_tiles(changed: Mask) -> Mask:
+    """Return all cells of the tiles in which a cell has changed: another image has another number."""
+    rows, cols = changed.shape
+    filled = np.pad(changed, ((0, -rows % _TILE_ROWS), (0, -cols % _TILE_COLS)))
+    tiles = filled.reshape(filled.shape[0] // _TILE_ROWS, _TILE_ROWS, -1, _TILE_COLS).any(axis=(1, 3))
+    whole: Mask = tiles.repeat(_TILE_ROWS, axis=0).repeat(_TILE_COLS, axis=1)[:rows, :cols]
+    return whole
+
+
+def rectangles(changed: Mask, may_draw: Callable[[Rectangle], bool]) -> list[Rectangle]:
+    """Return rectangles that together contain all changed cells, from top to bottom.
+
+    Args:
+        changed: Shape (rows, columns).
+        may_draw: Whether all cells of a rectangle may be drawn.
+    """
+    found: list[Rectangle] = []
+    for run in _row_runs(changed):
+        for at, other in enumerate(found):
+            both = run.joined(other)
+            if other.bottom >= run.top and both.area <= run.area + other.area + _JOIN_CELLS and may_draw(both):
+                found[at] = both
+                break
+        else:
+            found.append(run)
+    return found
+
+
+def _row_runs(changed: Mask) -> Iterator[Rectangle]:
+    """Yield the runs of changed cells in each row."""
+    edges = np.diff(np.pad(changed, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+    firsts, ends = np.nonzero(edges == 1), np.nonzero(edges == -1)
+    for row, first, end in zip(firsts[0].tolist(), firsts[1].tolist(), ends[1].tolist(), strict=True):
+        yield Rectangle(row, first, row + 1, end)
