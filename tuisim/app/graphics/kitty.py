@@ -9,9 +9,15 @@ from __future__ import annotations
 
 import zlib
 from base64 import b64encode
+from collections.abc import Mapping
 
 from tuisim.app.render.mat import Pixels
 
+TERMINALS: Mapping[str, str] = {
+    "kitty": "https://sw.kovidgoyal.net/kitty/graphics-protocol/#unicode-placeholders (since 0.28)",
+    "ghostty": "https://ghostty.org/docs/features (kitty graphics protocol with Unicode placeholders)",
+}
+"""Terminals that have placeholders, by name, and where that is written."""
 PLACEHOLDER = "\U0010eeee"
 DIACRITICS = "\u0305\u030d\u030e\u0310\u0312\u033d\u033e\u033f"
 """They follow a placeholder, and say which row and column of the image it shows; the first ones of the protocol."""

@@ -32,10 +32,13 @@ _ANSWER = re.compile(
 )
 _BEGUN = re.compile(r"\x1b(?:P>[^\x1b]*|_G[^\x1b]*|\[6;[\d;]*|\[\?[\d;]*)\x1b?\Z")
 """The beginning of an answer whose rest has not arrived."""
+_MAYBE_BEGUN = re.compile(r"\x1b(?:[P_\[]|\[6)?\Z")
+"""What may be one, but also a key."""
 _LONGEST = 500
 """An answer is at most this long; the beginning of a longer one is dropped."""
 _SIXEL = "4"
 """Number of sixel graphics among the attributes of a terminal."""
+_PROGRAM = re.compile(r"[A-Za-z0-9]+")
 _MOST_CELL_PX = 300
 
 
@@ -51,6 +54,17 @@ class TerminalFacts:
     """None if it has not been asked, or has not answered."""
     cell_px: tuple[int, int] | None = None
     """Width and height of a cell in pixels."""
+
+    @property
+    def program(self) -> str:
+        """Its name without its version; empty if it does not tell."""
+        found = _PROGRAM.match(self.name)
+        return found[0] if found else ""
+
+    @property
+    def asks_for_kitty(self) -> bool:
+        """Whether it may draw kitty's graphics, and has not answered yet."""
+        return self.has_kitty_graphics is None and self.program in kitty.TERMINALS
 
     @property
     def has_sixel(self) -> bool:
@@ -90,21 +104,31 @@ class AnswerParser(XTermParser):
     def feed(self, data: str) -> Iterable[Message]:
         """Yield a message for each answer, and then those for the rest of the data."""
         text, self._begun = self._begun + data, ""
-        if "\x1b" not in text:
-            yield from super().feed(text)
-            return
         is_end = not data
-        for match in _ANSWER.finditer(text):
-            self._facts = self._facts.with_answer(match)
-            if match["attributes"] is not None or match["kitty"] is not None:
-                yield TerminalAnswered(self._facts)
-        text = _ANSWER.sub("", text)
-        begun = _BEGUN.search(text)
-        if begun is not None and not is_end:
-            self._begun = begun[0] if len(begun[0]) <= _LONGEST else ""
-            text = text[: begun.start()]
+        if "\x1b" in text:
+            for match in _ANSWER.finditer(text):
+                self._facts = self._facts.with_answer(match)
+                if match["attributes"] is not None or match["kitty"] is not None:
+                    yield TerminalAnswered(self._facts)
+            text = _ANSWER.sub("", text)
+            if not is_end and (begun := self._begun_at_end(text)):
+                self._begun = begun if len(begun) <= _LONGEST else ""
+                text = text[: -len(begun)]
         if text or is_end:
             yield from super().feed(text)
+
+    def _begun_at_end(self, text: str) -> str:
+        found = _BEGUN.search(text)
+        if found is None and (not self._facts.attributes or self._facts.asks_for_kitty):
+            found = _MAYBE_BEGUN.search(text)
+        return found[0] if found else ""
+
+    def tick(self) -> Iterable[Message]:
+        """Yield what has been held back, unless it is an answer whose rest is still to come."""
+        if self._begun and not _BEGUN.match(self._begun):
+            text, self._begun = self._begun, ""
+            yield from super().feed(text)
+        yield from super().tick()
 
 
 def cell_size_px(fd: int) -> tuple[int, int] | None:

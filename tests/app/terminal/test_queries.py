@@ -1,0 +1,76 @@
+"""What the terminal answers is understood, and is no key press."""
+
+from __future__ import annotations
+
+import pytest
+from textual import events
+from textual.message import Message
+
+from tuisim.app.graphics.choice import graphics_of
+from tuisim.app.graphics.picture import Graphics, Protocol
+from tuisim.app.terminal.queries import AnswerParser, TerminalAnswered, TerminalFacts
+
+XTERM = "\x1bP>|XTerm(379)\x1b\\\x1b[6;14;7t\x1b[?63;1;2;4;6;9;15;22c"
+KITTY = "\x1bP>|kitty(0.36.4)\x1b\\\x1b[6;20;10t\x1b[?62;52;c"
+KITTY_YES = "\x1b_Gi=31;OK\x1b\\"
+GHOSTTY_NO = "\x1bP>|ghostty 1.0.0\x1b\\\x1b[6;40;20t\x1b[?62;22c\x1b_Gi=31;ENOTSUPPORTED\x1b\\"
+ITERM = "\x1bP>|iTerm2 3.5.4\x1b\\\x1b[6;17;8t\x1b[?64;1;2;4;6;17;18;21;22c"
+WEZTERM = "\x1bP>|WezTerm 20240203-110809-5046fc22\x1b\\\x1b[6;16;8t\x1b[?65;4;6;18;22c"
+TMUX = "\x1bP>|tmux 3.5a\x1b\\\x1b[?1;2;4c"
+PLAIN = "\x1b[?1;2c"
+
+
+def _messages(*parts: str) -> list[Message]:
+    parser = AnswerParser()
+    return [message for part in parts for message in parser.feed(part)]
+
+
+def _facts(answers: str) -> TerminalFacts:
+    found = [message.facts for message in _messages(answers) if isinstance(message, TerminalAnswered)]
+    return found[-1] if found else TerminalFacts()
+
+
+CHOICES = {
+    "xterm with sixel": (XTERM, Graphics(Protocol.SIXEL, (7, 14))),
+    "kitty": (KITTY + KITTY_YES, Graphics(Protocol.KITTY, (10, 20))),
+    "kitty before the second answer": (KITTY, None),
+    "no graphics": (GHOSTTY_NO, None),
+    "iTerm2": (ITERM, Graphics(Protocol.ITERM, (8, 17))),
+    "WezTerm": (WEZTERM, Graphics(Protocol.ITERM, (8, 16))),
+    "tmux with sixel": (TMUX, Graphics(Protocol.SIXEL, (9, 18), in_tmux=True)),
+    "no pictures": (PLAIN, None),
+    "no answer": ("", None),
+    "size that cannot be": ("\x1bP>|XTerm(379)\x1b\\\x1b[6;0;7t\x1b[?63;4c", None),
+}
+
+
+@pytest.mark.parametrize(("answers", "expected"), CHOICES.values(), ids=CHOICES)
+def test_the_answers_decide_how_pixels_are_drawn(answers: str, expected: Graphics | None) -> None:
+    assert graphics_of(_facts(answers), None, (9, 18)) == expected
+
+
+def test_the_user_may_know_better() -> None:
+    assert graphics_of(TerminalFacts(), Protocol.SIXEL, None) == Graphics(Protocol.SIXEL, (8, 16))
+
+
+@pytest.mark.parametrize("answers", [XTERM, KITTY + KITTY_YES, TMUX], ids=["xterm", "kitty", "tmux"])
+@pytest.mark.parametrize("size", [1, 2, 7, 1000])
+def test_answers_are_no_keys_however_they_arrive(answers: str, size: int) -> None:
+    text = f"a{answers}b"
+    found = _messages(*(text[at : at + size] for at in range(0, len(text), size)))
+    assert [message.key for message in found if isinstance(message, events.Key)] == ["a", "b"]
+    assert any(isinstance(message, TerminalAnswered) for message in found)
+
+
+KEYS = {
+    "escape": ("\x1b", "escape"),
+    "page down": ("\x1b[6~", "pagedown"),
+    "ctrl+page down": ("\x1b[6;5~", "ctrl+pagedown"),
+}
+
+
+@pytest.mark.parametrize(("text", "key"), KEYS.values(), ids=KEYS)
+def test_keys_that_begin_like_an_answer_are_keys(text: str, key: str) -> None:
+    parser = AnswerParser()
+    found = [*parser.feed(text), *parser.tick(), *parser.feed("")]
+    assert [message.key for message in found if isinstance(message, events.Key)] == [key]
