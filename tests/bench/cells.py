@@ -16,7 +16,7 @@ from tuisim.app.render.mat import Pixels, shrink, whole_field
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
 from tuisim.app.setup.mat import prepare_mat
 from tuisim.charts.glyphs import glyph_set
-from tuisim.charts.world_image import COLORED, Viewport, draw_robot
+from tuisim.charts.world_image import COLORED, CellPoints, Viewport, draw_robot
 from tuisim.config.build import build_run_spec
 from tuisim.config.mats import mats
 from tuisim.config.options import CellSet, Settings
@@ -114,9 +114,9 @@ def best_error(rgb: Rgb, truth: Lab, cell_set: CellSet) -> Errors:
 def errors_of(mat: Pixels, cell_set: CellSet, headings: tuple[int, ...]) -> tuple[float, float]:
     """Return the mean colour difference of a mat with the robot: as drawn, and of the best splits."""
     glyphs = glyph_set(cell_set)
-    view = whole_field(COLS * glyphs.cols, ROWS * glyphs.rows, (glyphs.cols, glyphs.rows))
+    view = whole_field(COLS * glyphs.cols, ROWS * glyphs.rows, CellPoints(glyphs.cols, glyphs.rows))
     true_view = Viewport(COLS * CELL_PX[0], ROWS * CELL_PX[1], view.mm_per_px * glyphs.cols / CELL_PX[0],
-                         view.left_mm, view.top_mm, CELL_PX)  # fmt: skip
+                         view.left_mm, view.top_mm, CellPoints(*CELL_PX))  # fmt: skip
     truth = averaged(mat, true_view)
     ground = in_cells(truth)
     picture = shrink(mat, view, GROUND)
@@ -151,7 +151,7 @@ def _compared(cells: Cells, cell_set: CellSet, rgb: Rgb) -> tuple[Errors, Errors
 def frame_cpu_s(mat: Pixels, cell_set: CellSet, frames: int) -> float:
     """Return the CPU that drawing a frame takes while the robot drives a circle with its rays on."""
     glyphs = glyph_set(cell_set)
-    view = whole_field(COLS * glyphs.cols, ROWS * glyphs.rows, (glyphs.cols, glyphs.rows))
+    view = whole_field(COLS * glyphs.cols, ROWS * glyphs.rows, CellPoints(glyphs.cols, glyphs.rows))
     painter = ScenePainter(mat, GROUND, PenTrace())
     picture = painter.paint(view, _driving(0))
     cells = fit_cells(picture, glyphs, all_cells(ROWS, COLS)).reshape(ROWS, COLS)

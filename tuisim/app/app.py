@@ -40,7 +40,7 @@ from tuisim.app.speech import Voice
 from tuisim.app.terminal.drawing import Drawing, drawing_for
 from tuisim.app.terminal.pacer import Pacer
 from tuisim.app.workspace import Workspace
-from tuisim.config.options import DEFAULT_FPS, Settings
+from tuisim.config.options import AUTO, DEFAULT_FPS, Settings
 from tuisim.core.spec import RunSpec
 from tuisim.errors import TuisimError
 from tuisim.protocol import End, Ended
@@ -106,6 +106,8 @@ class AppSettings:
     """auto, truecolor, 256, 16 or none; must be set before the terminal is opened."""
     cells: str | None = None
     """One of `CELLS`; None: what was chosen before, else auto."""
+    pixels: str = AUTO
+    """One of `PIXELS`."""
 
 
 def _first_next_run(settings: AppSettings) -> NextRun:
@@ -133,6 +135,7 @@ class LabApp(PanelMessages):
     def __init__(self, settings: AppSettings, drawing: Drawing | None = None) -> None:
         super().__init__(drawing)
         self.settings = settings
+        self.pixels = settings.pixels
         self.run_controller = RunController(settings.program, _first_next_run(settings), settings.speed)
         self.panel_area = PanelArea(settings.panels_on, settings.panels_off)
         self.key_footer = KeyFooter()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -50,9 +50,27 @@ _SPOT_MM = 10.0
 _NONE, _EDGE, _BODY, _WHEEL, _SENSOR, _MARKER, _BUMPER, _PRESSED, _SPOT = range(9)
 
 
+class CellPoints(NamedTuple):
+    """The pixels of a picture in a character cell."""
+
+    cols: int = 1
+    rows: int = 2
+    aspect: float = 2.0
+    """Height of the cell, as a multiple of its width."""
+
+    @property
+    def tall(self) -> float:
+        """Height of a pixel, as a multiple of its width."""
+        return self.aspect * self.cols / self.rows
+
+
+SQUARE = CellPoints()
+"""Two square pixels, one above the other."""
+
+
 @dataclass(frozen=True, slots=True)
 class Viewport:
-    """A picture of part of the field; in the app, of character cells that are twice as high as wide."""
+    """A picture of part of the field, in the app of character cells."""
 
     width_px: int
     height_px: int
@@ -61,13 +79,12 @@ class Viewport:
     """World x of the left edge of the picture."""
     top_mm: float
     """World y of the top edge of the picture."""
-    cell_px: tuple[int, int] = (1, 2)
-    """Columns and rows of pixels in a character cell: by default they are square."""
+    cell: CellPoints = SQUARE
 
     @property
     def mm_per_row(self) -> float:
         """The height of a pixel."""
-        return self.mm_per_px * 2 * self.cell_px[0] / self.cell_px[1]
+        return self.mm_per_px * self.cell.tall
 
     def to_px(self, x_mm: float, y_mm: float) -> tuple[float, float]:
         """Return the picture column and row of a world point; whole numbers are pixel corners."""
@@ -113,7 +130,7 @@ def drawn_reach_mm(outline: RobotOutline) -> float:
 
 def drawn_scale(outline: RobotOutline, view: Viewport) -> float:
     """Return the factor by which a robot is drawn enlarged, at least 1."""
-    return max(1.0, _MIN_CELLS * view.cell_px[0] * view.mm_per_px / (2 * outline.half_width_mm))
+    return max(1.0, _MIN_CELLS * view.cell.cols * view.mm_per_px / (2 * outline.half_width_mm))
 
 
 def draw_robot(
@@ -134,7 +151,7 @@ def draw_robot(
         pressed: Whether each bumper is pressed; empty for none.
         detail_cols: Details are drawn for so many pixels across a cell, 1 or 2; None: for those of the view.
     """
-    detail_cols = detail_cols or min(view.cell_px[0], 2)
+    detail_cols = detail_cols or min(view.cell.cols, 2)
     scale = drawn_scale(outline, view)
     col, row = view.to_px(pose.x_mm, pose.y_mm)
     step_mm, row_mm = view.mm_per_px / scale, view.mm_per_row / scale
@@ -143,13 +160,13 @@ def draw_robot(
     top, bottom = _around(row, reach_mm / row_mm + 2, view.height_px)
     if left >= right or top >= bottom:
         return
-    across, down = (-(-samples // points) for samples, points in zip(_SAMPLES, view.cell_px, strict=True))
+    across, down = (-(-samples // points) for samples, points in zip(_SAMPLES, view.cell[:2], strict=True))
     east = (_sampled(left, right, across) - col)[None, :] * step_mm
     north = (row - _sampled(top, bottom, down))[:, None] * row_mm
     heading = math.radians(pose.heading_deg)
     cos, sin = math.cos(heading), math.sin(heading)
     side, ahead = east * sin - north * cos, east * cos + north * sin
-    detail_mm = step_mm * view.cell_px[0] / detail_cols
+    detail_mm = step_mm * view.cell.cols / detail_cols
     parts = _parts(outline, side, ahead, detail_mm, detail_cols)
     _mount(parts, outline, side, ahead, detail_mm, pressed)
     _blend(picture[top:bottom, left:right], parts.reshape(bottom - top, down, right - left, across), colors, opacity)

@@ -117,6 +117,7 @@ def open_app(**given: Any) -> int:
         fps=settings.fps,
         colors=settings.colors,
         cells=settings.cells,
+        pixels=settings.pixels,
     )
     with _drawing_on_stdout():
         return run_app(app_settings)

@@ -27,7 +27,7 @@ from tuisim.runs.run_folder import StoredRun, field_files
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
 
-_OF_THE_APP = frozenset({"panels_on", "panels_off", "quiet", "rays", "speed", "fps", "colors", "cells"})
+_OF_THE_APP = frozenset({"panels_on", "panels_off", "quiet", "rays", "speed", "fps", "colors", "cells", "pixels"})
 """Fields of `Settings` that do not affect the run."""
 
 

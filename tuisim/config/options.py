@@ -51,6 +51,19 @@ class CellSet(StrEnum):
 AUTO = "auto"
 CELLS = (AUTO, *CellSet)
 """What `--cells` accepts."""
+
+
+class Protocol(StrEnum):
+    """How a terminal is told to draw pixels."""
+
+    KITTY = "kitty"
+    ITERM = "iterm"
+    SIXEL = "sixel"
+
+
+NO_PIXELS = "none"
+PIXELS = (AUTO, *Protocol, NO_PIXELS)
+"""What `--pixels` accepts."""
 MAX_POSITION_MM = 10_000
 MAX_ANGLE_DEG = 36_000
 MAX_SEED = 2**63 - 1
@@ -121,6 +134,8 @@ class Settings:
     colors: str = "auto"
     cells: str | None = None
     """One of `CELLS`; None: what was chosen in the app, else auto."""
+    pixels: str = AUTO
+    """One of `PIXELS`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -252,6 +267,7 @@ OPTIONS: tuple[Option, ...] = (
     Option(APP, ("--fps",), "fps", "Maximum frames per second, 1 … 60.", "N", whole(1, 60)),
     Option(APP, ("--colors",), "colors", "Colours: auto, truecolor, 256, 16 or none.", "DEPTH", _one_of(COLOR_DEPTHS)),
     Option(APP, ("--cells",), "cells", f"Glyphs of the world: {', '.join(CELLS)}.", "SET", _one_of(CELLS)),
+    Option(APP, ("--pixels",), "pixels", f"Draw real pixels: {', '.join(PIXELS)}.", "HOW", _one_of(PIXELS)),
     Option(PANEL, ("-O", "--output"), "panels_on", "Show the output.", panel="output"),
     Option(PANEL, ("-A", "--array"), "panels_on", "Show the sensor arrays.", panel="arrays"),
     Option(PANEL, ("-c", "--chart"), "panels_on", "Show the chart.", panel="chart"),

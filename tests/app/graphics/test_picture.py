@@ -8,7 +8,8 @@ import pytest
 
 from tests.app.graphics.decoder import PixelTerminal
 from tuisim.app.graphics import sixel
-from tuisim.app.graphics.picture import Graphics, Protocol, Rectangle, TilePicture, rectangles
+from tuisim.app.graphics.picture import Graphics, Rectangle, TilePicture, rectangles
+from tuisim.config.options import Protocol
 
 ROWS, COLS = 11, 21
 CELL_PX = 6, 13

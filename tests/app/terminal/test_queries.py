@@ -7,8 +7,9 @@ from textual import events
 from textual.message import Message
 
 from tuisim.app.graphics.choice import graphics_of
-from tuisim.app.graphics.picture import Graphics, Protocol
+from tuisim.app.graphics.picture import Graphics
 from tuisim.app.terminal.queries import AnswerParser, TerminalAnswered, TerminalFacts
+from tuisim.config.options import AUTO, NO_PIXELS, Protocol
 
 XTERM = "\x1bP>|XTerm(379)\x1b\\\x1b[6;14;7t\x1b[?63;1;2;4;6;9;15;22c"
 KITTY = "\x1bP>|kitty(0.36.4)\x1b\\\x1b[6;20;10t\x1b[?62;52;c"
@@ -39,18 +40,24 @@ CHOICES = {
     "WezTerm": (WEZTERM, Graphics(Protocol.ITERM, (8, 16))),
     "tmux with sixel": (TMUX, Graphics(Protocol.SIXEL, (9, 18), in_tmux=True)),
     "no pictures": (PLAIN, None),
+    "only the kernel knows the size": ("\x1bP>|XTerm(379)\x1b\\\x1b[?63;4c", Graphics(Protocol.SIXEL, (9, 18))),
     "no answer": ("", None),
-    "size that cannot be": ("\x1bP>|XTerm(379)\x1b\\\x1b[6;0;7t\x1b[?63;4c", None),
+    "size that cannot be": ("\x1b[6;0;7t\x1b[?63;4c", Graphics(Protocol.SIXEL, (9, 18))),
 }
 
 
 @pytest.mark.parametrize(("answers", "expected"), CHOICES.values(), ids=CHOICES)
 def test_the_answers_decide_how_pixels_are_drawn(answers: str, expected: Graphics | None) -> None:
-    assert graphics_of(_facts(answers), None, (9, 18)) == expected
+    assert graphics_of(_facts(answers), AUTO, (9, 18)) == expected
 
 
 def test_the_user_may_know_better() -> None:
     assert graphics_of(TerminalFacts(), Protocol.SIXEL, None) == Graphics(Protocol.SIXEL, (8, 16))
+    assert graphics_of(_facts(XTERM), NO_PIXELS, None) is None
+
+
+def test_sixel_needs_the_size_of_a_cell() -> None:
+    assert graphics_of(_facts("\x1b[?63;4c"), AUTO, None) is None
 
 
 @pytest.mark.parametrize("answers", [XTERM, KITTY + KITTY_YES, TMUX], ids=["xterm", "kitty", "tmux"])

@@ -72,6 +72,10 @@ class _Card(PixelView):
         self._tried = best
 
     @property
+    def graphics(self) -> None:
+        """Glyphs are shown even where pixels are possible."""
+
+    @property
     def cell_set(self) -> CellSet:
         return self._tried
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tuisim.app.graphics import kitty
-from tuisim.app.graphics.picture import Graphics, Protocol
+from tuisim.app.graphics.picture import Graphics
 from tuisim.app.terminal.queries import TerminalFacts
+from tuisim.config.options import AUTO, NO_PIXELS, Protocol
 
 INLINE_IMAGES: Mapping[str, str] = {
     "iTerm2": "https://iterm2.com/documentation-images.html",
@@ -18,19 +19,22 @@ DEFAULT_CELL_PX = (8, 16)
 """Size of a cell if neither the terminal nor the kernel tells."""
 
 
-def graphics_of(facts: TerminalFacts, wanted: Protocol | None, cell_px: tuple[int, int] | None) -> Graphics | None:
-    """Return how a terminal is drawn with pixels; None if it cannot, or does not tell.
+def graphics_of(facts: TerminalFacts, wanted: str, cell_px: tuple[int, int] | None) -> Graphics | None:
+    """Return how a terminal is drawn with pixels; None if it cannot, does not tell, or should not.
 
     Args:
         facts: What it has answered.
-        wanted: A protocol that the user knows it has; None to choose.
+        wanted: One of `PIXELS`.
         cell_px: Width and height of a cell as the kernel knows them.
     """
-    protocol = wanted or _protocol_of(facts)
-    if protocol is None:
+    if wanted == NO_PIXELS:
         return None
+    protocol = _protocol_of(facts) if wanted == AUTO else Protocol(wanted)
     # A terminal that scales its window, as on many laptops, draws in its own pixels, not the kernel's.
-    return Graphics(protocol, facts.cell_px or cell_px or DEFAULT_CELL_PX, in_tmux=facts.program == "tmux")
+    known_px = facts.cell_px or cell_px
+    if protocol is None or (protocol is Protocol.SIXEL and wanted == AUTO and known_px is None):
+        return None
+    return Graphics(protocol, known_px or DEFAULT_CELL_PX, in_tmux=facts.program == "tmux")
 
 
 def _protocol_of(facts: TerminalFacts) -> Protocol | None:
@@ -39,6 +43,4 @@ def _protocol_of(facts: TerminalFacts) -> Protocol | None:
         return Protocol.KITTY
     if name in INLINE_IMAGES:
         return Protocol.ITERM
-    if facts.has_sixel and (facts.cell_px or name == "tmux"):
-        return Protocol.SIXEL
-    return None
+    return Protocol.SIXEL if facts.has_sixel else None

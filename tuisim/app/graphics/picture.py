@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 from itertools import groupby
 from typing import NamedTuple
 
@@ -12,14 +11,7 @@ import numpy as np
 
 from tuisim.app.graphics import iterm, kitty, sixel
 from tuisim.app.render.mat import Pixels
-
-
-class Protocol(StrEnum):
-    """How a terminal is told to draw pixels."""
-
-    KITTY = "kitty"
-    ITERM = "iterm"
-    SIXEL = "sixel"
+from tuisim.config.options import Protocol
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +83,7 @@ class TilePicture:
     """
 
     def __init__(self, graphics: Graphics, first_image: int = 1) -> None:
-        self._graphics = graphics
+        self.graphics = graphics
         self._points: Pixels = np.empty((0, 0, 3), np.uint8)
         self._versions = np.empty((0, 0), np.int64)
         self._changes = 0
@@ -111,7 +103,7 @@ class TilePicture:
         Returns:
             Runs of changed cells: row, first column, number of cells. All rows if the size has changed.
         """
-        width, height = self._graphics.cell_points
+        width, height = self.graphics.cell_points
         rows, cols = len(points) // height, points.shape[1] // width
         self._changes += 1
         if points.shape != self._points.shape:
@@ -119,11 +111,20 @@ class TilePicture:
             self._points = points
             return [(row, 0, cols) for row in range(rows)]
         differs = (points != self._points).reshape(rows, height, cols, width * 3).any(axis=(1, 3))
-        if self._graphics.protocol is Protocol.KITTY:
+        if self.graphics.protocol is Protocol.KITTY:
             differs = _whole_tiles(differs)
         self._versions[differs] = self._changes
         self._points = points
         return [(one.top, one.left, one.right - one.left) for one in _row_runs(differs)]
+
+    def half_blocks(self, row: int) -> list[int]:
+        """Return the cells of a row as half blocks (see `render.cells.Cells`), for what cannot show pixels."""
+        width, height = self.graphics.cell_points
+        points = self._points[row * height : (row + 1) * height].astype(np.float32)
+        upper, lower = (half.reshape(len(half), -1, width, 3).mean(axis=(0, 2)) for half in np.array_split(points, 2))
+        packed = [np.rint(half).astype(np.int64) @ (1 << 16, 1 << 8, 1) for half in (upper, lower)]
+        cells: list[int] = (packed[0] << 24 | packed[1]).tolist()
+        return cells
 
     def forget(self) -> None:
         """Assume that the terminal has nothing of it."""
@@ -151,7 +152,7 @@ class TilePicture:
     def _draw_at(
         self, down: int, right: int, cells: Sequence[PictureCell], is_shown: Callable[[int, int], bool]
     ) -> str:
-        if self._graphics.protocol is Protocol.KITTY:
+        if self.graphics.protocol is Protocol.KITTY:
             return self._placeholders(down, right, cells)
         changed = np.zeros(self._versions.shape, bool)
         for cell in cells:
@@ -171,14 +172,14 @@ class TilePicture:
         )
 
     def _part(self, some: Rectangle) -> Pixels:
-        width, height = self._graphics.cell_points
+        width, height = self.graphics.cell_points
         return self._points[some.top * height : some.bottom * height, some.left * width : some.right * width]
 
     def _encoded(self, some: Rectangle) -> str:
         points = self._part(some)
-        if self._graphics.protocol is Protocol.ITERM:
+        if self.graphics.protocol is Protocol.ITERM:
             return iterm.encode(points, some.right - some.left, some.bottom - some.top)
-        scale = self._graphics.cell_px[0] // self._graphics.cell_points[0]
+        scale = self.graphics.cell_px[0] // self.graphics.cell_points[0]
         return sixel.encode(points.repeat(scale, axis=0).repeat(scale, axis=1) if scale > 1 else points)
 
     # Kitty
@@ -217,7 +218,7 @@ class TilePicture:
         return self._passed_on(codes), [had[1]] if had is not None else []
 
     def _passed_on(self, codes: str) -> str:
-        return kitty.through_tmux(codes) if self._graphics.in_tmux else codes
+        return kitty.through_tmux(codes) if self.graphics.in_tmux else codes
 
 
 Mask = np.ndarray[tuple[int, int], np.dtype[np.bool_]]

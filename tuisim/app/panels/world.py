@@ -20,7 +20,6 @@ from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesView, PixelView
 from tuisim.charts.axes import time_limits
-from tuisim.charts.glyphs import glyph_set
 from tuisim.charts.text_runs import Run
 from tuisim.charts.world_image import Viewport, drawn_scale
 from tuisim.core.geometry import Pose
@@ -209,9 +208,9 @@ class WorldView(PixelView):
         if self._snapshot is None or self._mat is None or not self.size or not self.is_mounted:
             return
         scene = self._scene_of(self._snapshot)
-        glyphs = glyph_set(self.cell_set)
-        width_px, height_px = glyphs.cols * self.size.width, glyphs.rows * self.size.height
-        port = following(width_px, height_px, self.zoom, scene.pose, self._port, (glyphs.cols, glyphs.rows))
+        cell = self.cell
+        width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
+        port = following(width_px, height_px, self.zoom, scene.pose, self._port, cell)
         if self._painter is None:
             self._painter = ScenePainter(self._mat, self.ground_rgb, self.trace, self.color_mode.grey)
         trace = self.trace if self.past_trace is None else self.past_trace
@@ -258,7 +257,7 @@ class WorldView(PixelView):
     @property
     def _cell_mm(self) -> float:
         """The width of a cell."""
-        return self._port.mm_per_px * self._port.cell_px[0] if self._port else 0.0
+        return self._port.mm_per_px * self._port.cell.cols if self._port else 0.0
 
     def _at(self, event: events.MouseEvent) -> tuple[float, float]:
         """Return the world position under the mouse: the cell centre, or finer if the terminal supports it."""
@@ -266,8 +265,8 @@ class WorldView(PixelView):
         col, row = event.pointer_x, event.pointer_y
         if col == event.x and row == event.y:
             col, row = col + 0.5, row + 0.5
-        cols, rows = self._port.cell_px
-        return self._port.to_mm(cols * col, rows * row)
+        cell = self._port.cell
+        return self._port.to_mm(cell.cols * col, cell.rows * row)
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
         if event.button != 1 or self._port is None or self._snapshot is None:

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tuisim.charts.world_image import SQUARE, CellPoints, Viewport
 from tuisim.charts.world_image import Pixels as Pixels
-from tuisim.charts.world_image import Viewport
 from tuisim.core.field import disc_mask
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
@@ -25,10 +25,10 @@ _KEEP_INSIDE = 0.22
 """A following view moves once the robot is nearer to an edge than this share of its size."""
 
 
-def whole_field(width_px: int, height_px: int, cell_px: tuple[int, int] = (1, 2)) -> Viewport:
+def whole_field(width_px: int, height_px: int, cell: CellPoints = SQUARE) -> Viewport:
     """Return the viewport that shows the whole field, centred, in a picture of that size (each at least 1)."""
-    mm_per_px = _fit_mm_per_px(width_px, height_px, cell_px)
-    return _around(width_px, height_px, mm_per_px, FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2, cell_px)
+    mm_per_px = _fit_mm_per_px(width_px, height_px, cell)
+    return _around(width_px, height_px, mm_per_px, FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2, cell)
 
 
 def following(
@@ -37,7 +37,7 @@ def following(
     zoom: int,
     pose: Pose,
     previous: Viewport | None,
-    cell_px: tuple[int, int] = (1, 2),
+    cell: CellPoints = SQUARE,
 ) -> Viewport:
     """Return a viewport that keeps the robot visible.
 
@@ -50,42 +50,35 @@ def following(
         zoom: One of `ZOOMS`; 1 shows the whole field and never moves.
         pose: The pose of the robot.
         previous: The viewport of the last frame, if any.
-        cell_px: Columns and rows of pixels in a character cell.
+        cell: The pixels in a character cell.
     """
     if zoom == 1:
-        return whole_field(width_px, height_px, cell_px)
-    mm_per_px = _fit_mm_per_px(width_px, height_px, cell_px) / zoom
+        return whole_field(width_px, height_px, cell)
+    mm_per_px = _fit_mm_per_px(width_px, height_px, cell) / zoom
     same_scale = (
         previous is not None
-        and (previous.width_px, previous.height_px, previous.cell_px) == (width_px, height_px, cell_px)
+        and (previous.width_px, previous.height_px, previous.cell) == (width_px, height_px, cell)
         and math.isclose(previous.mm_per_px, mm_per_px)
     )
     if same_scale and previous is not None and _well_inside(previous, pose):
         return previous
     x_mm = _clamped(pose.x_mm, width_px * mm_per_px, FIELD_WIDTH_MM)
-    y_mm = _clamped(pose.y_mm, height_px * mm_per_px * _tall(cell_px), FIELD_HEIGHT_MM)
-    moved = _around(width_px, height_px, mm_per_px, x_mm, y_mm, cell_px)
+    y_mm = _clamped(pose.y_mm, height_px * mm_per_px * cell.tall, FIELD_HEIGHT_MM)
+    moved = _around(width_px, height_px, mm_per_px, x_mm, y_mm, cell)
     return previous if previous is not None and moved == previous else moved
 
 
-def _tall(cell_px: tuple[int, int]) -> float:
-    """Return the height of a pixel, as a multiple of its width."""
-    return 2 * cell_px[0] / cell_px[1]
+def _fit_mm_per_px(width_px: int, height_px: int, cell: CellPoints) -> float:
+    return max(FIELD_WIDTH_MM / width_px, FIELD_HEIGHT_MM / (height_px * cell.tall))
 
 
-def _fit_mm_per_px(width_px: int, height_px: int, cell_px: tuple[int, int]) -> float:
-    return max(FIELD_WIDTH_MM / width_px, FIELD_HEIGHT_MM / (height_px * _tall(cell_px)))
-
-
-def _around(
-    width_px: int, height_px: int, mm_per_px: float, x_mm: float, y_mm: float, cell_px: tuple[int, int]
-) -> Viewport:
+def _around(width_px: int, height_px: int, mm_per_px: float, x_mm: float, y_mm: float, cell: CellPoints) -> Viewport:
     # Whole-pixel margins: a field edge that falls between pixels would be a blurred line.
-    mm_per_row = mm_per_px * _tall(cell_px)
+    mm_per_row = mm_per_px * cell.tall
     left_px = round(width_px / 2 - x_mm / mm_per_px)
     top_px = round(height_px / 2 - (FIELD_HEIGHT_MM - y_mm) / mm_per_row)
     left_mm, top_mm = -left_px * mm_per_px, FIELD_HEIGHT_MM + top_px * mm_per_row
-    return Viewport(width_px, height_px, mm_per_px, left_mm, top_mm, cell_px)
+    return Viewport(width_px, height_px, mm_per_px, left_mm, top_mm, cell)
 
 
 def _clamped(centre_mm: float, shown_mm: float, field_mm: float) -> float:
@@ -132,7 +125,7 @@ def shrink(mat: Pixels, view: Viewport, outside_rgb: tuple[int, int, int]) -> Pi
     rows, row_edges = _edges(height_mm - view.top_mm, view.mm_per_row, view.height_px, height_mm)
     if len(col_edges) < 2 or len(row_edges) < 2:
         return picture
-    picture[rows, cols] = _reduced(mat, row_edges, col_edges, keep_detail=view.cell_px[0] == 1)
+    picture[rows, cols] = _reduced(mat, row_edges, col_edges, keep_detail=view.cell.cols == 1)
     return picture
 
 

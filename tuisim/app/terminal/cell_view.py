@@ -22,6 +22,7 @@ from textual.strip import Strip
 from textual.timer import Timer
 from textual.widget import Widget
 
+from tuisim.app.graphics.picture import Graphics, PictureCell, TilePicture
 from tuisim.app.render.cells import (
     PALETTE_16,
     PALETTE_256,
@@ -39,6 +40,7 @@ from tuisim.app.render.cells import (
 from tuisim.app.terminal.drawing import BLOCKS, drawing_of
 from tuisim.charts.glyphs import GLYPHS, GlyphSet, glyph_set, half_block_of
 from tuisim.charts.text_runs import Run, cut_line
+from tuisim.charts.world_image import CellPoints
 from tuisim.config.options import CellSet
 
 if TYPE_CHECKING:
@@ -79,6 +81,8 @@ class PixelView(RowsView):
         self._coarse: npt.NDArray[np.bool_] = np.empty((0, 0), bool)
         """The cells that are drawn as half blocks, to be refined."""
         self._glyphs = glyph_set(CellSet.HALF)
+        self._tiles: TilePicture | None = None
+        """The image, while it is drawn with pixels."""
         self._refine: Timer | None = None
         self._changed_s = 0.0
         self._strips: list[Strip | None] = []
@@ -94,6 +98,20 @@ class PixelView(RowsView):
         return drawing_of(self.app).cells
 
     @property
+    def graphics(self) -> Graphics | None:
+        """How pixels are drawn now; None for cells."""
+        return drawing_of(self.app).graphics
+
+    @property
+    def cell(self) -> CellPoints:
+        """The points of an image in a cell."""
+        if (graphics := self.graphics) is not None:
+            width_px, height_px = graphics.cell_px
+            return CellPoints(*graphics.cell_points, height_px / width_px)
+        glyphs = glyph_set(self.cell_set)
+        return CellPoints(glyphs.cols, glyphs.rows)
+
+    @property
     def ground_rgb(self) -> tuple[int, int, int]:
         """Background colour of the widget."""
         return self.background_colors[1].rgb
@@ -101,6 +119,10 @@ class PixelView(RowsView):
     def set_picture(self, picture: Pixels) -> None:
         """Show an image of square pixels, two in a cell; only cells that differ are repainted."""
         self._square = picture
+        if (graphics := self.graphics) is not None:
+            width, height = graphics.cell_points
+            self._show_pixels(_in_halves(picture, width, height), graphics)
+            return
         if self.cell_set in BLOCKS:
             self._show(picture, CellSet.HALF)
             return
@@ -108,10 +130,36 @@ class PixelView(RowsView):
         self._show(picture.repeat(fine.rows // 2, axis=0).repeat(fine.cols, axis=1), self.cell_set)
 
     def set_fine_picture(self, picture: Pixels) -> None:
-        """Show an image with the points of the app's glyphs; only cells that differ are repainted."""
-        self._show(picture, self.cell_set)
+        """Show an image with the points of `cell`; only cells that differ are repainted."""
+        if (graphics := self.graphics) is not None:
+            self._show_pixels(picture, graphics)
+        else:
+            self._show(picture, self.cell_set)
+
+    def _show_pixels(self, picture: Pixels, graphics: Graphics) -> None:
+        if self._tiles is None or self._tiles.graphics != graphics:
+            self._tiles = TilePicture(graphics, 1 + id(self) % 200 * 65536)
+            self._forget_cells()
+        runs = self._tiles.put(picture)
+        rows, _ = self._tiles.size
+        self._changed_s = time.monotonic()
+        if len(self._strips) != rows:
+            self._strips = [None] * rows
+            self.refresh()
+            return
+        for row, _, _ in runs:
+            self._strips[row] = None
+        if runs:
+            self.refresh(*[Region(col, row, length, 1) for row, col, length in runs])
+
+    def _forget_cells(self) -> None:
+        self._cells, self._strips = np.empty((0, 0), np.int64), []
+        self._coarse = np.empty((0, 0), bool)
 
     def _show(self, picture: Pixels, cell_set: CellSet) -> None:
+        if self._tiles is not None:
+            self._tiles = None
+            self._forget_cells()
         old, was = self._shown, self._cells
         fine = glyph_set(cell_set)
         self._reduce(picture)
@@ -170,11 +218,9 @@ class PixelView(RowsView):
 
     def clear_picture(self) -> None:
         """Clear the image."""
-        if self._cells.size:
-            self._raw = self._square = None
-            self._cells = np.empty((0, 0), np.int64)
-            self._coarse = np.empty((0, 0), bool)
-            self._strips = []
+        if self._strips:
+            self._raw = self._square = self._tiles = None
+            self._forget_cells()
             self.refresh()
 
     def _reduce(self, picture: Pixels) -> None:
@@ -198,7 +244,8 @@ class PixelView(RowsView):
             return self._blank()
         strip = self._strips[y]
         if strip is None:
-            strip = self._strips[y] = CellStrip(self._cells[y].tolist())
+            strip = CellStrip(self._cells[y].tolist()) if self._tiles is None else PictureStrip(self._tiles.row(y))
+            self._strips[y] = strip
         return strip
 
     def _blank(self) -> Strip:
@@ -342,8 +389,11 @@ class CellStrip(Strip):
         # The base class's caches are omitted: every method that uses one is overridden here.
         self.cells = cells
         """One number per cell."""
+        self._begin(len(cells))
+
+    def _begin(self, count: int) -> None:
         self._made: list[Segment] | None = None
-        self._cell_length = self._cell_count = len(cells)
+        self._cell_length = self._cell_count = count
         self._link_ids = set()
         self._render_cache = None
 
@@ -354,33 +404,36 @@ class CellStrip(Strip):
         return self._made
 
     def _plain(self) -> Strip:
-        return Strip(self._segments, len(self.cells))
+        return Strip(self._segments, self.cell_length)
 
     def __bool__(self) -> bool:
-        return bool(self.cells)
+        return bool(self._cell_length)
 
     def crop(self, start: int, end: int | None = None) -> Strip:
         """Return the cells from `start` up to `end`."""
-        length = len(self.cells)
+        length = self.cell_length
         start, end = max(0, start), length if end is None else min(length, end)
-        return self if start == 0 and end == length else CellStrip(self.cells[start : max(start, end)])
+        return self if start == 0 and end == length else self._part(start, max(start, end))
+
+    def _part(self, start: int, end: int) -> CellStrip:
+        return CellStrip(self.cells[start:end])
 
     def divide(self, cuts: Iterable[int]) -> Sequence[Strip]:
         """Return the strips between the cuts, the first one from column 0."""
         pieces, at = [], 0
         for cut in cuts:
-            if cut <= len(self.cells):
+            if cut <= self.cell_length:
                 pieces.append(self.crop(at, cut))
                 at = cut
         return pieces
 
     def adjust_cell_length(self, cell_length: int, style: Style | None = None) -> Strip:
         """Return the strip cropped or padded to a length."""
-        return self if cell_length == len(self.cells) else self._plain().adjust_cell_length(cell_length, style)
+        return self if cell_length == self.cell_length else self._plain().adjust_cell_length(cell_length, style)
 
     def crop_extend(self, start: int, end: int, style: Style | None) -> Strip:
         """Return the strip between two columns, padded where it is too short."""
-        return self.crop(start, end) if end <= len(self.cells) else self._plain().crop_extend(start, end, style)
+        return self.crop(start, end) if end <= self.cell_length else self._plain().crop_extend(start, end, style)
 
     def apply_filter(self, filter: LineFilter, background: TextualColor) -> Strip:  # noqa: A002  # the base class's name
         """Return the strip with a filter of Textual applied."""
@@ -393,3 +446,37 @@ class CellStrip(Strip):
     def apply_offsets(self, x: int, y: int) -> Strip:
         """Return the strip unchanged: half blocks cannot be selected as text."""
         return self
+
+
+class PictureStrip(CellStrip):
+    """A row of cells that are parts of a picture.
+
+    Args:
+        parts: The parts, of one row of one picture.
+    """
+
+    __slots__ = ["parts"]
+
+    def __init__(self, parts: Sequence[PictureCell]) -> None:
+        self.parts = parts
+        self._begin(len(parts))
+
+    @property
+    def cells(self) -> Sequence[int]:  # type: ignore[override]  # a slot of the base class
+        """The cells as half blocks."""
+        if not self.parts:
+            return ()
+        first = self.parts[0]
+        return first.picture.half_blocks(first.row)[first.col : first.col + len(self.parts)]
+
+    def _part(self, start: int, end: int) -> PictureStrip:
+        return PictureStrip(self.parts[start:end])
+
+
+def _in_halves(picture: Pixels, width: int, height: int) -> Pixels:
+    """Return an image of two pixels in a cell with so many points across and down a cell."""
+    upper, lower = picture[0::2].repeat(height // 2, axis=0), picture[1::2].repeat(height - height // 2, axis=0)
+    cols = picture.shape[1]
+    halves = (upper.reshape(-1, height // 2, cols, 3), lower.reshape(-1, height - height // 2, cols, 3))
+    points: Pixels = np.concatenate(halves, axis=1).reshape(-1, cols, 3).repeat(width, axis=1)
+    return points

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from textual.app import App
 
+from tuisim.app.graphics.picture import Graphics
 from tuisim.app.terminal.browser import in_browser
 from tuisim.app.terminal.probe import best_cells
 from tuisim.config.options import AUTO, CELLS, CellSet
@@ -29,6 +30,8 @@ class Drawing:
     """What the user has chosen: `AUTO`, or the name of a set."""
     best: CellSet = CellSet.HALF
     """The finest set that the terminal is known to show."""
+    graphics: Graphics | None = None
+    """How pixels are drawn; None to draw cells."""
     is_slow: Callable[[], bool] = lambda: False
     """Whether the link to the terminal is too slow for fine cells now."""
     is_idle: Callable[[], bool] = lambda: True

@@ -8,7 +8,7 @@ where it changes, a cursor jump over unchanged cells.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import NamedTuple
 
 from rich.cells import cell_len, split_graphemes
@@ -18,8 +18,9 @@ from rich.style import Style
 from textual._compositor import ChopsUpdate, CompositorUpdate, LayoutUpdate
 from textual.strip import SGR_STYLES, Strip
 
+from tuisim.app.graphics.picture import PictureCell, TilePicture
 from tuisim.app.render.cells import PALETTE_256, TRUECOLOR, sgr_index
-from tuisim.app.terminal.cell_view import CellStrip, color_depth
+from tuisim.app.terminal.cell_view import CellStrip, PictureStrip, color_depth
 from tuisim.charts.glyphs import GLYPHS
 
 _SEEN_ON_BLANKS = frozenset({"4", "7", "9", "21", "51", "52", "53"})
@@ -39,8 +40,8 @@ class CellLook(NamedTuple):
     link: str = ""
 
 
-Cell = tuple[str, CellLook]
-"""Character and style of a cell; the right half of a wide character is empty."""
+Cell = tuple[str, CellLook | PictureCell]
+"""Character and style of a cell; the right half of a wide character is empty, and so is a part of a picture."""
 
 
 class FrameBuffer:
@@ -48,10 +49,14 @@ class FrameBuffer:
 
     def __init__(self) -> None:
         self._rows: dict[int, list[Cell | None]] = {}
+        self._pictures: set[TilePicture] = set()
+        """Those that have been drawn."""
 
     def forget(self) -> None:
         """Assume nothing about the terminal's content: the next update is sent completely."""
         self._rows.clear()
+        for picture in self._pictures:
+            picture.forget()
 
     def codes(self, update: CompositorUpdate, console: Console) -> str | None:
         """Return the codes that update the terminal, empty if it shows the update already.
@@ -71,17 +76,33 @@ class FrameBuffer:
         else:
             self.forget()
             return None
+        places: dict[TilePicture, list[tuple[int, int, PictureCell]]] = {}
         for y, x, strip in pieces:
-            self._put(pen, y, x, _cells(strip, console))
-        return pen.finish()
+            for col, cell in self._put(pen, y, x, _cells(strip, console)):
+                places.setdefault(cell.picture, []).append((y, col, cell))
+        self._pictures.update(places)
+        return pen.finish() + "".join(
+            picture.draw(some, partial(self._shows, picture)) for picture, some in places.items()
+        )
 
-    def _put(self, pen: _Pen, y: int, first: int, cells: Sequence[Cell]) -> None:
+    def _shows(self, picture: TilePicture, y: int, x: int) -> bool:
+        """Return whether a cell of the screen is a part of a picture."""
+        row = self._rows.get(y, ())
+        cell = row[x] if x < len(row) else None
+        return cell is not None and isinstance(cell[1], PictureCell) and cell[1].picture is picture
+
+    def _put(self, pen: _Pen, y: int, first: int, cells: Sequence[Cell]) -> Iterator[tuple[int, PictureCell]]:
+        """Write cells that differ; yield the column and the cell of those that are a part of a picture."""
         row = self._rows.setdefault(y, [])
         if (lacking := first + len(cells) - len(row)) > 0:
             row += [None] * lacking
         for x, cell in enumerate(cells, first):
             if row[x] != cell:
-                pen.write(x, y, cell, row)
+                text, look = cell
+                if isinstance(look, PictureCell):
+                    yield x, look
+                else:
+                    pen.write(x, y, text, look, row)
                 row[x] = cell
 
 
@@ -109,6 +130,8 @@ def _pieces_of_part(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
 
 
 def _cells(strip: Strip, console: Console) -> Sequence[Cell]:
+    if isinstance(strip, PictureStrip):
+        return [("", cell) for cell in strip.parts]
     if isinstance(strip, CellStrip):
         depth = color_depth(console)
         return [_image_cell(cell, depth) for cell in strip.cells]
@@ -193,9 +216,8 @@ class _Pen:
         self._look = CellLook()
         self._x = self._y = -1
 
-    def write(self, x: int, y: int, cell: Cell, row: Sequence[Cell | None]) -> None:
+    def write(self, x: int, y: int, text: str, look: CellLook, row: Sequence[Cell | None]) -> None:
         """Write a cell of a row whose other cells are final."""
-        text, look = cell
         if not text:
             # The left half of the character covers it.
             return
@@ -219,7 +241,9 @@ class _Pen:
 
     def _writes(self, cell: Cell | None) -> bool:
         """Return whether a cell can be written without a code."""
-        return cell is not None and cell[0].isascii() and cell[0] != "" and not any(self._changes(cell[1]))
+        if cell is None or isinstance(cell[1], PictureCell) or not cell[0]:
+            return False
+        return cell[0].isascii() and not any(self._changes(cell[1]))
 
     def _changes(self, look: CellLook) -> Iterable[str]:
         """Yield the codes that switch to a style."""

@@ -26,6 +26,7 @@ from textual.color import Color
 from textual.command import Provider
 from textual.css.query import NoMatches
 from textual.driver import Driver
+from textual.drivers import linux_driver
 from textual.drivers.linux_driver import LinuxDriver
 from textual.filter import LineFilter
 from textual.geometry import Size
@@ -35,11 +36,15 @@ from tuisim.app import background
 from tuisim.app.action import ActionProvider, Palette
 from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
+from tuisim.app.graphics import kitty
+from tuisim.app.graphics.choice import graphics_of
 from tuisim.app.terminal.browser import in_browser, offer
 from tuisim.app.terminal.cell_view import PixelView
 from tuisim.app.terminal.drawing import Drawing
 from tuisim.app.terminal.frame_buffer import FrameBuffer
+from tuisim.app.terminal.queries import QUESTIONS, AnswerParser, TerminalAnswered, TerminalFacts, cell_size_px
 from tuisim.app.terminal.screenshot import save_screenshot, screen_cells
+from tuisim.config.options import AUTO
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
 
@@ -117,6 +122,9 @@ class TerminalApp(App[None]):
         self.frame_buffer = FrameBuffer()
         self.drawing = drawing or Drawing()
         """How pictures are drawn."""
+        self.pixels = AUTO
+        """One of `PIXELS`."""
+        self.terminal_facts = TerminalFacts()
         self.too_small: Size | None = None
         """Size of a terminal that is too small, else None."""
         self._waiting_keys: deque[events.Key] = deque()
@@ -206,6 +214,7 @@ class TerminalApp(App[None]):
     def on_resize(self, event: events.Resize) -> None:
         """Send everything again: a resized terminal has cut or moved its content."""
         self.frame_buffer.forget()
+        self._choose_graphics()
 
     def get_line_filters(self) -> Sequence[LineFilter]:
         """Return the filters for everything that is drawn."""
@@ -220,6 +229,26 @@ class TerminalApp(App[None]):
             loop.add_signal_handler(number, partial(self.exit, return_code=128 + number))
         if isinstance(self._driver, TerminalDriver):
             loop.add_signal_handler(signal.SIGTSTP, self.action_suspend_process)
+
+    def on_terminal_answered(self, event: TerminalAnswered) -> None:
+        """Draw with pixels if the terminal can; ask a terminal that may know kitty's protocol for it."""
+        if event.facts.asks_for_kitty and self._driver is not None:
+            self._driver.write(kitty.QUERY)
+        self.terminal_facts = event.facts
+        self._choose_graphics()
+
+    def _choose_graphics(self) -> None:
+        size_px = cell_size_px(self._driver.fileno) if isinstance(self._driver, TerminalDriver) else None
+        found = graphics_of(self.terminal_facts, self.pixels, size_px)
+        if found != self.drawing.graphics:
+            self.drawing.graphics = found
+            self.redraw_pictures()
+
+    def redraw_pictures(self) -> None:
+        """Draw all pictures again: with pixels or glyphs, as `drawing` says now."""
+        for screen in self.screen_stack:
+            for view in screen.query(PixelView):
+                view.redraw()
 
     @on(Driver.SignalResume)
     def action_redraw(self) -> None:
@@ -315,14 +344,28 @@ class ResilientOutput:
         return self._file.fileno()
 
 
+# The driver makes its parser itself.
+linux_driver.XTermParser = AnswerParser  # type: ignore[attr-defined]
+
+_SILENT = ("dumb", "linux")
+"""Kinds of terminal that are not asked: they may show the questions as text, and draw no pixels."""
+
+
 class TerminalDriver(LinuxDriver):
-    """Textual's driver with an output that survives the loss of its terminal."""
+    """Textual's driver with an output that survives the loss of its terminal, and asks what the terminal can do."""
 
     def __init__(
         self, app: App[object], *, debug: bool = False, mouse: bool = True, size: tuple[int, int] | None = None
     ) -> None:
         super().__init__(app, debug=debug, mouse=mouse, size=size)
         self._file = cast(TextIOWrapper, ResilientOutput(cast(TextIO, self._file)))
+
+    def start_application_mode(self) -> None:
+        """Take the terminal over, and ask what it can do."""
+        super().start_application_mode()  # type: ignore[no-untyped-call]
+        if os.environ.get("TERM", "dumb") not in _SILENT:
+            self.write(QUESTIONS)
+            self.flush()
 
     def stop_as_job(self) -> bool:
         """Restore the terminal and stop the whole process group; resume when the shell says so.
