@@ -18,6 +18,9 @@ Pixels = npt.NDArray[np.uint8]
 _CODE = re.compile(
     r"\x1b\[(?P<row>\d+);(?P<col>\d+)H"
     r"|\x1b\[(?P<style>[\d;]*)m"
+    r"|\x1b\[(?P<steps>\d+)C"
+    r"|\x1b\[(?P<other>[?>=]?[\d;$]*[a-zA-Z])"
+    r"|\x1b\](?!1337)(?P<command>[^\x1b\x07]*)(?:\x1b\\|\x07)"
     r"|\x1bPtmux;(?P<tmux>(?:\x1b\x1b|[^\x1b])*)\x1b\\"
     r"|\x1bP[\d;]*q(?P<sixel>[^\x1b]*)\x1b\\"
     r"|\x1b_G(?P<keys>[^;\x1b]*)(?:;(?P<data>[^\x1b]*))?\x1b\\"
@@ -60,6 +63,10 @@ class PixelTerminal:
                 parts = found["style"].split(";")
                 if parts[:2] == ["38", "2"]:
                     self._color = int(parts[2]) << 16 | int(parts[3]) << 8 | int(parts[4])
+            elif found["steps"]:
+                self._col += int(found["steps"])
+            elif found["other"] is not None or found["command"] is not None:
+                continue
             elif found["tmux"] is not None:
                 self.feed(found["tmux"].replace("\x1b\x1b", "\x1b"))
             elif found["sixel"] is not None:
@@ -77,15 +84,15 @@ class PixelTerminal:
                 self._write(found["text"])
 
     def _write(self, text: str) -> None:
-        assert text.isprintable(), repr(text)
+        assert text.isprintable() or text == "\n", repr(text)
         self._placed.pop((self._row, self._col), None)
         self.texts[self._row, self._col] = text
         self._col += 1
 
     def _cells(self, top: int, left: int, height_px: int, width_px: int) -> tuple[slice, slice]:
         width, height = self._cell_px
-        for row in range(top, top - -height_px // -height):
-            for col in range(left, left - -width_px // -width):
+        for row in range(top, top - -height_px // height):
+            for col in range(left, left - -width_px // width):
                 self.texts.pop((row, col), None)
         return slice(top * height, top * height + height_px), slice(left * width, left * width + width_px)
 

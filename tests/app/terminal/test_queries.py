@@ -8,7 +8,8 @@ from textual.message import Message
 
 from tuisim.app.graphics.choice import graphics_of
 from tuisim.app.graphics.picture import Graphics
-from tuisim.app.terminal.queries import AnswerParser, TerminalAnswered, TerminalFacts
+from tuisim.app.terminal.answers import AnswerParser, TerminalAnswered
+from tuisim.app.terminal.queries import TerminalFacts
 from tuisim.config.options import AUTO, NO_PIXELS, Protocol
 
 XTERM = "\x1bP>|XTerm(379)\x1b\\\x1b[6;14;7t\x1b[?63;1;2;4;6;9;15;22c"

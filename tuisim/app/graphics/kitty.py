@@ -50,6 +50,10 @@ def encode(picture: Pixels, image: int, cols: int, rows: int) -> str:
     return "".join(parts)
 
 
+DELETE_ALL = "\x1b_Ga=d,d=A,q=2\x1b\\"
+"""Deletes all images and their data."""
+
+
 def delete(image: int) -> str:
     """Return the codes that delete an image and its data."""
     return f"\x1b_Ga=d,d=I,q=2,i={image}\x1b\\"

@@ -208,7 +208,8 @@ class WorldView(PixelView):
         if self._snapshot is None or self._mat is None or not self.size or not self.is_mounted:
             return
         scene = self._scene_of(self._snapshot)
-        cell = self.cell
+        graphics = self.graphics
+        cell = self.cell_for(graphics)
         width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
         port = following(width_px, height_px, self.zoom, scene.pose, self._port, cell)
         if self._painter is None:
@@ -218,7 +219,7 @@ class WorldView(PixelView):
             return
         self._scene, self._port, self._trace_drawn = scene, port, trace.count
         self._painter.trace = trace
-        self.set_fine_picture(self._painter.paint(port, scene))
+        self.set_fine_picture(self._painter.paint(port, scene), graphics)
 
     def redraw(self) -> None:
         """Draw the image again: the app's glyphs or colours have changed."""

@@ -99,13 +99,14 @@ class PixelView(RowsView):
 
     @property
     def graphics(self) -> Graphics | None:
-        """How pixels are drawn now; None for cells."""
-        return drawing_of(self.app).graphics
+        """How pixels are drawn now; None for cells: on a slow link, only an image that stands still has pixels."""
+        drawing = drawing_of(self.app)
+        is_moving = time.monotonic() - self._changed_s < STILL_S
+        return None if is_moving and drawing.is_slow() else drawing.graphics
 
-    @property
-    def cell(self) -> CellPoints:
-        """The points of an image in a cell."""
-        if (graphics := self.graphics) is not None:
+    def cell_for(self, graphics: Graphics | None) -> CellPoints:
+        """Return the points of an image in a cell; `graphics` is None for the app's glyphs."""
+        if graphics is not None:
             width_px, height_px = graphics.cell_px
             return CellPoints(*graphics.cell_points, height_px / width_px)
         glyphs = glyph_set(self.cell_set)
@@ -129,9 +130,9 @@ class PixelView(RowsView):
         fine = glyph_set(self.cell_set)
         self._show(picture.repeat(fine.rows // 2, axis=0).repeat(fine.cols, axis=1), self.cell_set)
 
-    def set_fine_picture(self, picture: Pixels) -> None:
-        """Show an image with the points of `cell`; only cells that differ are repainted."""
-        if (graphics := self.graphics) is not None:
+    def set_fine_picture(self, picture: Pixels, graphics: Graphics | None = None) -> None:
+        """Show an image with the points of `cell_for(graphics)`; only cells that differ are repainted."""
+        if graphics is not None:
             self._show_pixels(picture, graphics)
         else:
             self._show(picture, self.cell_set)
@@ -176,7 +177,8 @@ class PixelView(RowsView):
         cells[at] = self._fitted(glyphs, at, was[at] if as_before else None)
         self._put(cells)
         self._changed_s = time.monotonic()
-        if self._coarse.any() and self._refine is None:
+        is_to_be_refined = self._coarse.any() or drawing_of(self.app).graphics is not None
+        if is_to_be_refined and self._refine is None:
             self._refine = self.set_interval(REFINE_S, self._refine_some)
 
     def _fitted(self, glyphs: GlyphSet, at: CellIndex, before: Cells | None) -> Cells:
@@ -200,13 +202,21 @@ class PixelView(RowsView):
         is_still = time.monotonic() - self._changed_s >= STILL_S
         if not drawing.is_idle() or (drawing.is_slow() and not is_still):
             return
+        if drawing.graphics is not None:
+            self._stop_refining()
+            self.redraw()
+            return
         rows, cols = np.nonzero(self._coarse)
         at = rows[:REFINED_CELLS], cols[:REFINED_CELLS]
         self._coarse[at] = False
         cells = self._cells.copy()
         cells[at] = self._fitted(self._glyphs, at, None)
         self._put(cells)
-        if not self._coarse.any() and self._refine is not None:
+        if not self._coarse.any():
+            self._stop_refining()
+
+    def _stop_refining(self) -> None:
+        if self._refine is not None:
             self._refine.stop()
             self._refine = None
 

@@ -18,6 +18,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, NAME_QUERY, facts_in
 from tuisim.config.options import CellSet
 
 ANSWER_S = 0.4
@@ -25,13 +26,8 @@ ANSWER_S = 0.4
 _OCTANT = "\U0001cd02"
 WIDTH_QUERY = f"\r{_OCTANT}\x1b[6n"
 """Prints an octant at the left edge and asks for the position of the cursor."""
-NAME_QUERY = "\x1b[>0q\x1b[c"
-"""XTVERSION, and the primary device attributes, which every terminal answers: without a name before them there is
-none. See https://invisible-island.net/xterm/ctlseqs/ctlseqs.html."""
 _CLEAR = "\r\x1b[K"
 _POSITION = re.compile(rb"\x1b\[\d+;(\d+)R")
-_NAME = re.compile(rb"\x1bP>\|([^\x1b\x07]*)(?:\x1b\\|\x07)")
-_ATTRIBUTES = re.compile(rb"\x1b\[\?[\d;]*c")
 _NAME_AND_VERSION = re.compile(r"([A-Za-z0-9]+)[ (/-]*v?([\d.-]*)")
 
 Version = tuple[int, ...]
@@ -129,8 +125,8 @@ def _asked() -> CellSet:
         cols = int(found[1]) - 1 if (found := _POSITION.search(position)) else None
         if cols != 1:
             return cells_of("", cols)
-        name = _NAME.search(_ask(fd, NAME_QUERY, _ATTRIBUTES.search))
-        return cells_of(name[1].decode("ascii", "replace") if name else "", cols)
+        answers = _ask(fd, NAME_QUERY + ATTRIBUTES_QUERY, lambda answer: facts_in(answer.decode("latin-1")).attributes)
+        return cells_of(facts_in(answers.decode("latin-1")).name, cols)
     finally:
         termios.tcsetattr(fd, termios.TCSANOW, before)
 

@@ -38,13 +38,14 @@ from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.graphics import kitty
 from tuisim.app.graphics.choice import graphics_of
+from tuisim.app.terminal.answers import AnswerParser, TerminalAnswered
 from tuisim.app.terminal.browser import in_browser, offer
 from tuisim.app.terminal.cell_view import PixelView
-from tuisim.app.terminal.drawing import Drawing
+from tuisim.app.terminal.drawing import Drawing, drawing_of
 from tuisim.app.terminal.frame_buffer import FrameBuffer
-from tuisim.app.terminal.queries import QUESTIONS, AnswerParser, TerminalAnswered, TerminalFacts, cell_size_px
+from tuisim.app.terminal.queries import QUESTIONS, TerminalFacts, cell_size_px
 from tuisim.app.terminal.screenshot import save_screenshot, screen_cells
-from tuisim.config.options import AUTO
+from tuisim.config.options import AUTO, NO_PIXELS, Protocol
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
 
@@ -193,10 +194,11 @@ class TerminalApp(App[None]):
 
     def choose_cells(self, chosen: str) -> None:
         """Draw every picture with another set of glyphs, and keep the choice; `AUTO` or the name of a set."""
-        self.drawing.choose(chosen)
-        for screen in self.screen_stack:
-            for view in screen.query(PixelView):
-                view.redraw()
+        try:
+            self.drawing.choose(chosen)
+        finally:
+            self._choose_graphics()
+            self.redraw_pictures()
 
     def painted(self, size: int) -> None:
         """Called with the number of characters after an update was sent to the terminal."""
@@ -239,7 +241,9 @@ class TerminalApp(App[None]):
 
     def _choose_graphics(self) -> None:
         size_px = cell_size_px(self._driver.fileno) if isinstance(self._driver, TerminalDriver) else None
-        found = graphics_of(self.terminal_facts, self.pixels, size_px)
+        # Who has chosen glyphs wants to see them.
+        wanted = NO_PIXELS if self.pixels == AUTO and self.drawing.chosen != AUTO else self.pixels
+        found = graphics_of(self.terminal_facts, wanted, size_px)
         if found != self.drawing.graphics:
             self.drawing.graphics = found
             self.redraw_pictures()
@@ -366,6 +370,13 @@ class TerminalDriver(LinuxDriver):
         if os.environ.get("TERM", "dumb") not in _SILENT:
             self.write(QUESTIONS)
             self.flush()
+
+    def stop_application_mode(self) -> None:
+        """Leave the terminal, and nothing in its memory."""
+        graphics = drawing_of(self._app).graphics
+        if graphics is not None and graphics.protocol is Protocol.KITTY:
+            self.write(kitty.through_tmux(kitty.DELETE_ALL) if graphics.in_tmux else kitty.DELETE_ALL)
+        super().stop_application_mode()
 
     def stop_as_job(self) -> bool:
         """Restore the terminal and stop the whole process group; resume when the shell says so.

@@ -1,0 +1,107 @@
+"""The app draws the world and the sensor arrays with pixels where the terminal can."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from textual.pilot import Pilot
+
+from tests.app.app_help import ready, settings, until
+from tests.app.graphics.decoder import PixelTerminal
+from tests.app.wires import on_wire, until_quiet, wire_of
+from tuisim.app.app import LabApp
+from tuisim.app.panels.arrays import Arrays
+from tuisim.app.panels.world import WorldView
+from tuisim.app.terminal.answers import TerminalAnswered
+from tuisim.app.terminal.cell_view import PixelView
+from tuisim.app.terminal.queries import facts_in
+from tuisim.config.options import AUTO, CellSet, Protocol
+
+CELL_PX = 8, 16
+ANSWERS = {
+    Protocol.SIXEL: "\x1bP>|XTerm(379)\x1b\\\x1b[6;16;8t\x1b[?63;4c",
+    Protocol.ITERM: "\x1bP>|iTerm2 3.5.4\x1b\\\x1b[6;16;8t\x1b[?64;4c",
+    Protocol.KITTY: "\x1bP>|kitty(0.36.4)\x1b\\\x1b[6;16;8t\x1b[?62;52;c\x1b_Gi=31;OK\x1b\\",
+}
+
+
+def _seen(pilot: Pilot[Any]) -> PixelTerminal:
+    terminal = PixelTerminal(40, 120, CELL_PX)
+    terminal.feed("".join(wire_of(pilot).sent))
+    return terminal
+
+
+def _part(terminal: PixelTerminal, view: PixelView) -> np.ndarray[Any, Any]:
+    x, y, width, height = view.content_region
+    return terminal.pixels[y * 16 : (y + height) * 16, x * 8 : (x + width) * 8]
+
+
+def _drawn(view: PixelView, protocol: Protocol) -> np.ndarray[Any, Any]:
+    assert view._tiles is not None
+    points = view._tiles._points
+    return np.rint(np.rint(points * (100 / 255)) * 255 / 100).astype(np.uint8) if protocol == "sixel" else points
+
+
+async def _sharp(pilot: Pilot[Any], view: PixelView) -> None:
+    """Wait until a picture is drawn with pixels: while it moves and the link may be slow, it need not be."""
+    await until(pilot, lambda: view._tiles is not None)
+    await until_quiet(pilot)
+
+
+async def _answered(pilot: Pilot[Any], answers: str) -> None:
+    await ready(pilot)
+    await until_quiet(pilot)
+    pilot.app.post_message(TerminalAnswered(facts_in(answers)))
+    await until_quiet(pilot)
+
+
+@pytest.mark.parametrize("protocol", Protocol)
+async def test_what_the_terminal_shows_is_what_was_drawn(protocol: Protocol) -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await _answered(pilot, ANSWERS[protocol])
+        for key in ("right", "a", "a", "up"):
+            await pilot.press(key)
+        for view in (pilot.app.query_one(WorldView), pilot.app.query_one(Arrays).query_one(PixelView)):
+            await _sharp(pilot, view)
+            assert np.array_equal(_part(_seen(pilot), view), _drawn(view, protocol))
+
+
+async def test_a_dialog_hides_a_part_of_the_picture_and_gives_it_back() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await _answered(pilot, ANSWERS[Protocol.SIXEL])
+        world = pilot.app.query_one(WorldView)
+        await pilot.press("question_mark")
+        await until_quiet(pilot)
+        assert not np.array_equal(_part(_seen(pilot), world), _drawn(world, Protocol.SIXEL))
+        await pilot.press("escape")
+        await _sharp(pilot, world)
+        assert np.array_equal(_part(_seen(pilot), world), _drawn(world, Protocol.SIXEL))
+
+
+async def test_a_terminal_without_pixels_gets_cells() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await _answered(pilot, "\x1b[?1;2c")
+        assert pilot.app.query_one(WorldView)._tiles is None
+
+
+async def test_glyphs_that_the_user_has_chosen_are_shown_instead() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await _answered(pilot, ANSWERS[Protocol.SIXEL])
+        pilot.app.choose_cells(CellSet.HALF)
+        await until_quiet(pilot)
+        assert pilot.app.query_one(WorldView)._tiles is None
+        pilot.app.choose_cells(AUTO)
+        await _sharp(pilot, pilot.app.query_one(WorldView))
+
+
+async def test_on_a_slow_link_only_a_picture_that_stands_still_has_pixels() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await _answered(pilot, ANSWERS[Protocol.SIXEL])
+        world = pilot.app.query_one(WorldView)
+        pilot.app.drawing.is_slow = lambda: True
+        await pilot.press("right")
+        await pilot.press("right")
+        assert world._tiles is None
+        await _sharp(pilot, world)
