@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import count, groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -79,15 +79,14 @@ class TilePicture:
 
     Args:
         graphics: How it is drawn.
-        first_image: Number of its first image, for the protocols that number them.
     """
 
-    def __init__(self, graphics: Graphics, first_image: int = 1) -> None:
+    def __init__(self, graphics: Graphics) -> None:
         self.graphics = graphics
         self._points: Pixels = np.empty((0, 0, 3), np.uint8)
         self._versions = np.empty((0, 0), np.int64)
         self._changes = 0
-        self._first_image = first_image
+        self._first_image = 1 + next(_COUNT) % _MOST_PICTURES * _MOST_IMAGES
         self._tiles: dict[tuple[int, int], tuple[int, int]] = {}
         """The version and the image of each tile that the terminal has, by row and column of its first cell."""
 
@@ -225,6 +224,9 @@ Mask = np.ndarray[tuple[int, int], np.dtype[np.bool_]]
 """Some cells of a picture, shape (rows, columns)."""
 
 _TILE_ROWS, _TILE_COLS = 4, 8
+_COUNT = count()
+_MOST_PICTURES, _MOST_IMAGES = 255, 1 << 16
+"""Numbers of images have 24 bits; each picture has its own."""
 _MOST_TILES = 256
 """Most tiles in a row."""
 _JOIN_CELLS = 6

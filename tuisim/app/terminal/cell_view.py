@@ -139,7 +139,7 @@ class PixelView(RowsView):
 
     def _show_pixels(self, picture: Pixels, graphics: Graphics) -> None:
         if self._tiles is None or self._tiles.graphics != graphics:
-            self._tiles = TilePicture(graphics, 1 + id(self) % 200 * 65536)
+            self._tiles = TilePicture(graphics)
             self._forget_cells()
         runs = self._tiles.put(picture)
         rows, _ = self._tiles.size
