@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -20,11 +21,12 @@ from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import PenSpec, RobotSpec, RunSpec, WorldSpec
+from tuisim.core.tick_record import TICK_FIELDS
 from tuisim.movies.cell_painter import CellPainter
 from tuisim.movies.clip import END_MS, Panel, Recorded
 from tuisim.movies.files import SMALL_BYTES, small_movie
 from tuisim.movies.painter import FramePainter
-from tuisim.runs.records import TELEMETRY_FILE, OutputWriter, TelemetryWriter
+from tuisim.runs.records import HEADER_BYTES, TELEMETRY_FILE, OutputWriter, TelemetryWriter
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
@@ -207,7 +209,10 @@ BAD = {
         "--size: 20x10 is too small (no room for all panels)",
     ),
     "no room": ("movie last --size 160x120", "--size: 160x120 is too small (no room for the panel world)"),
-    "too large": ("movie last --speed 0.01 --fps 50", "too large: 5,001 frames of 600x545, at most 1,529"),
+    "too large": (
+        "movie last --speed 0.01 --fps 50",
+        "too large: 5,001 frames of 600x545, at most 1,223 (--out FILE.webp,",
+    ),
 }
 
 
@@ -228,6 +233,24 @@ def test_a_run_without_ticks(here: Command, run: StoredRun, tmp_path: Path) -> N
     done = here("runs", "movie", "last")
     assert (done.returncode, [*tmp_path.glob("*.gif")]) == (2, [])
     assert "run 1 has no recorded tick" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("field", "value"), [("x_mm", math.nan), ("y_mm", 1e30), ("heading_deg", math.inf), ("left_speed_dps", math.nan)]
+)
+def test_damaged_records_cost_only_their_frames(
+    here: Command, run: StoredRun, tmp_path: Path, field: str, value: float
+) -> None:
+    path = run.folder / TELEMETRY_FILE
+    content = bytearray(path.read_bytes())
+    records = np.frombuffer(content, list(TICK_FIELDS), offset=HEADER_BYTES)
+    records[field][[0, 50, 100]] = value
+    path.write_bytes(content)
+    for name in ("a.webp", "a.cast"):
+        done = here("runs", "movie", "last", "--out", name, "--fps", "2", "--panels", "world,chart,arrays")
+        note = f"note: {TELEMETRY_FILE}: 3 of 101 records are damaged and left out"
+        assert (done.returncode, done.stderr.splitlines()) == (0, [note])
+    assert len(frames_of(tmp_path / "a.webp")[0]) == 3
 
 
 def test_a_run_that_has_not_ended(here: Command, run: StoredRun) -> None:

@@ -283,6 +283,10 @@ def field_view(width_px: int, height_px: int) -> Viewport:
     return Viewport(*_field_px(mm_per_px), mm_per_px, 0.0, FIELD_HEIGHT_MM)
 
 
+_FAR_MM = 1e5
+"""Pen traces farther from the field are not drawn: the time for a line grows with its length."""
+
+
 @dataclass(frozen=True, slots=True)
 class PenTrace:
     """The pen trace of a run."""
@@ -303,7 +307,9 @@ def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> PenTrace:
     pen = spec.robot.pen
     x_mm, y_mm = pen_points_mm(spec.robot, telemetry)
     points = np.stack([x_mm, FIELD_HEIGHT_MM - y_mm], axis=1)
-    down = np.concatenate([[False], (telemetry["flags"] & FLAG_PEN_DOWN) != 0, [False]])
+    # Damaged records may have no valid pose. Also false for NaN.
+    near = (np.abs(points) < _FAR_MM).all(axis=1)
+    down = np.concatenate([[False], near & ((telemetry["flags"] & FLAG_PEN_DOWN) != 0), [False]])
     starts, ends = np.flatnonzero(down[1:] & ~down[:-1]), np.flatnonzero(~down[1:] & down[:-1])
     lines = []
     for start, end in zip(starts, ends, strict=True):

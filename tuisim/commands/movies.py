@@ -103,10 +103,12 @@ def _default_name(run: StoredRun, suffix: str) -> str:
 
 def _recorded(run: StoredRun) -> Recorded:
     from tuisim.movies.clip import Recorded
+    from tuisim.runs.frames import damage_note
 
-    for note in run.notes:
+    recorded = Recorded(run)
+    for note in filter(None, (*run.notes, damage_note(run))):
         echo_error(f"note: {note}")
-    return Recorded(run)
+    return recorded
 
 
 def _check_number(value: float, low: float, high: float, key: str) -> None:

@@ -27,8 +27,9 @@ if TYPE_CHECKING:
 Watch = Callable[[int, int], None]
 """Called with the number of frames drawn and of all frames."""
 
-MOST_BYTES = 500_000_000
+MOST_BYTES = 400_000_000
 """Frames of a movie in memory."""
+MOST_FRAMES = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +58,7 @@ class MovieFormat:
 
     write: Callable[[Clip, Watch], bytes]
     frame_bytes: int
-    """Bytes of a pixel or of a character of a frame in memory."""
+    """Bytes of a pixel or of a character of a frame in memory; 0 if the frames are not kept."""
     painter: type[FramePainter | CellPainter] = FramePainter
     least: Size = LEAST
     most: Size = MOST
@@ -122,8 +123,8 @@ def _cast(clip: Clip, watch: Watch) -> bytes:
 
 MOVIE_FORMATS: Mapping[str, MovieFormat] = {
     ".gif": MovieFormat(_gif, 1),
-    ".webp": MovieFormat(_webp, 3),
-    ".apng": MovieFormat(_apng, 3),
+    ".webp": MovieFormat(_webp, 0),
+    ".apng": MovieFormat(_apng, 6),
     ".cast": MovieFormat(_cast, 24, CellPainter, cell_painter.LEAST, cell_painter.MOST, "characters"),
 }
 """Every format of a movie by the suffix of its files. To add one: write its function and a line here."""
@@ -177,12 +178,13 @@ def save_movie(clip: Clip, path: Path, watch: Watch = lambda done, total: None) 
 
 def _check_size(clip: Clip, kind: MovieFormat) -> None:
     width, height = kind.painter(clip.recorded, clip.panels, clip.span_s, clip.size).size
-    most = MOST_BYTES // (kind.frame_bytes * width * height)
+    most = min(MOST_BYTES // (kind.frame_bytes * width * height), MOST_FRAMES) if kind.frame_bytes else MOST_FRAMES
     count = shot_count(*clip.span_s, clip.speed, clip.fps)
     if count > most:
+        other = "--out FILE.webp, " if most < count <= MOST_FRAMES else ""
         raise ConfigError(
             f"too large: {count:,} frames of {width}x{height}, at most {most:,}",
-            "a higher --speed, a lower --fps, a smaller --size, or a shorter range between --from and --to",
+            f"{other}a higher --speed, a lower --fps, a smaller --size, or a shorter range between --from and --to",
         )
 
 

@@ -158,7 +158,8 @@ def world_points_mm(records: Array, x_mm: float, y_mm: float) -> tuple[Array, Ar
 
     # As `core.geometry.world_point`, for all ticks at once.
     turn = np.radians(records["heading_deg"] - 90.0)
-    cos, sin = np.cos(turn), np.sin(turn)
+    with np.errstate(invalid="ignore"):  # a damaged record may have no valid heading
+        cos, sin = np.cos(turn), np.sin(turn)
     return records["x_mm"] + cos * x_mm - sin * y_mm, records["y_mm"] + sin * x_mm + cos * y_mm
 
 
