@@ -144,11 +144,16 @@ async def _end(process: Process) -> None:
     await asyncio.wait_for(process.wait(), PATIENCE_S)
 
 
+def children(pid: int) -> set[int]:
+    """Return the processes that a process has started."""
+    listed = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True, check=False)
+    return {int(word) for word in listed.stdout.split()}
+
+
 def descendants(pid: int) -> set[int]:
     """Return all processes that a process has started, and that they have."""
-    listed = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True, check=False)
-    children = {int(word) for word in listed.stdout.split()} - {pid}
-    return children.union(*map(descendants, children))
+    found = children(pid)
+    return found.union(*map(descendants, found))
 
 
 async def gone(processes: set[int]) -> None:
@@ -246,10 +251,11 @@ async def test_a_closed_tab_ends_its_app_and_its_program_only(serve: Serve) -> N
     server = await serve(RUNS_ON, "-R")
     async with server.tab() as kept:
         await kept.until(lambda: "running" in kept.text)
-        others = descendants(server.process.pid)
+        others = children(server.process.pid)
         async with server.tab() as tab:
             await tab.until(lambda: "running" in tab.text)
-            ended = descendants(server.process.pid) - others
+            (app,) = children(server.process.pid) - others
+            ended = {app} | descendants(app)
         assert len(ended) > 1
         await gone(ended)
         assert all(map(is_there, others))
