@@ -49,7 +49,7 @@ def _braille() -> list[str]:
     ]
 
 
-_SEXTANTS_FROM, _BRAILLE_FROM, _ASCII_FROM = 256, 320, 576
+_SEXTANTS_FROM, BRAILLE_FROM, _ASCII_FROM = 256, 320, 576
 
 GLYPHS: tuple[str, ...] = ("▀", *_octants()[1:], *_sextants(), *_braille(), *map(chr, range(128)))
 """Every glyph by its number in a cell. 0 is the upper half block: two colours without a glyph are a half block."""
@@ -62,6 +62,50 @@ def block_patterns() -> dict[str, tuple[int, int]]:
     return {char: (3, pattern) for pattern, char in enumerate(_sextants())} | octants
 
 
+_INK = {
+    ' ': "00000000", '.': "00001111", ',': "00001131", ':': "00221111", "'": "00220000", '`': "20010000",
+    '"': "11440000", '-': "00002200", '_': "00000044", '=': "00334500", '+': "00226600", '~': "00004400",
+    '^': "11440000", '/': "01055130", '\\': "10602403", '|': "11232323", '(': "01325113", ')': "10231531",
+    '[': "12414132", ']': "21151523", '<': "00246400", '>': "00424600", 'r': "00446010", 'L': "10606034",
+    'J': "12161632", "7": "22173320", 'T': "33443311", 'Y': "11663311", 'v': "00335511", 'o': "00446622",
+    'x': "00335522", 'z': "00354233", 'c': "00436013", 'n': "00555511", 'u': "00336623", 'X': "11566622",
+    'O': "11666622", '#': "01788711", '%': "10933703", "8": "22777722", 'M': "11997711", 'W': "11779922",
+    '@': "00699843",
+}  # fmt: skip
+"""How much of each of 2 × 4 points the strokes of a character cover, row by row, from 0 to 9 for half of it or more;
+measured with DejaVu Sans Mono."""
+
+SIGNS = tuple(_INK)
+"""The characters that pictures in ASCII consist of."""
+
+
+@cache
+def sign_ink() -> Covered:
+    """Return how dark each point of each of `SIGNS` is, shape (signs, 8), 0 to 1."""
+    return np.array([[int(digit) / 9 for digit in ink] for ink in _INK.values()], np.float32)
+
+
+def sign_number(sign: str) -> int:
+    """Return the number of an ASCII character in `GLYPHS`."""
+    return _ASCII_FROM + ord(sign)
+
+
+def nearest_signs(ink: Covered, letters: bool = True) -> npt.NDArray[np.int64]:
+    """Return the numbers of the characters that look most like points of some darkness, shape (n, 8), 0 to 1.
+
+    Args:
+        ink: How dark each point is.
+        letters: Whether letters may be among them.
+    """
+    table = sign_ink()
+    away = np.square(table).sum(axis=1) - 2 * ink @ table.T
+    numbers = np.array([sign_number(sign) for sign in SIGNS])
+    if not letters:
+        away[:, [sign.isalnum() for sign in SIGNS]] = np.inf
+    nearest: npt.NDArray[np.int64] = numbers[away.argmin(axis=1)]
+    return nearest
+
+
 @dataclass(frozen=True, slots=True)
 class GlyphSet:
     """A grid of points in a cell, and the glyphs that cover some of them."""
@@ -71,7 +115,7 @@ class GlyphSet:
     covered: Covered
     """Shape (glyphs, cols × rows)."""
     numbers: npt.NDArray[np.int64]
-    """Of each glyph, in `GLYPHS`; ascending."""
+    """Of each glyph, in `GLYPHS`; ascending, but for ASCII, where several patterns have the same glyph."""
 
 
 def _bits(patterns: list[int], points: int) -> Covered:
@@ -94,9 +138,13 @@ def glyph_set(cells: CellSet) -> GlyphSet:
     if cells is CellSet.OCTANT:
         patterns = list(range(1, 255, 2))
         return GlyphSet(2, 4, _bits(patterns, 8), np.array(patterns))
-    if cells is CellSet.BRAILLE:
+    if cells in (CellSet.BRAILLE, CellSet.ASCII):
         patterns = [at for at in range(1, 255) if at.bit_count() < 4 or (at.bit_count() == 4 and at & 1)]
-        return GlyphSet(2, 4, _bits(patterns, 8), np.array(patterns) + _BRAILLE_FROM)
+        covered = _bits(patterns, 8)
+        numbers = (
+            np.array(patterns) + BRAILLE_FROM if cells is CellSet.BRAILLE else nearest_signs(covered, letters=False)
+        )
+        return GlyphSet(2, 4, covered, numbers)
     return GlyphSet(1, 2, _bits([1], 2), np.array([0]))
 
 

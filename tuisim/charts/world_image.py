@@ -107,6 +107,10 @@ class RobotColors:
     bumper: Rgb = (0, 135, 95)
     pressed: Rgb = (255, 0, 0)
     spot: Rgb = (135, 0, 95)
+    edge_px: float = 0.35
+    """Width of the edge in pixels."""
+    edge_mm: float = 12.0
+    """Largest width of the edge."""
 
 
 COLORED = RobotColors()
@@ -115,6 +119,11 @@ GREY = RobotColors(
     bumper=(108, 108, 108), pressed=(0, 0, 0), spot=(128, 128, 128),
 )  # fmt: skip
 """For a terminal without colours: dark body, white edge and marker, to stand out on any grey."""
+MONO = RobotColors(
+    edge=(0, 0, 0), body=(255, 255, 255), wheel=(0, 0, 0), sensor=(255, 255, 255), marker=(0, 0, 0), edge_px=0.7,
+    edge_mm=100.0,
+)  # fmt: skip
+"""For a terminal of two colours: a black arrow on white within a black edge."""
 GHOST = RobotColors(edge=(255, 255, 255), body=(175, 0, 175), wheel=(95, 0, 95), marker=(255, 215, 255))
 """For a robot at an earlier pose."""
 GREY_GHOST = RobotColors(body=(158, 158, 158), wheel=(88, 88, 88), sensor=(88, 88, 88), marker=(0, 0, 0))
@@ -167,7 +176,8 @@ def draw_robot(
     cos, sin = math.cos(heading), math.sin(heading)
     side, ahead = east * sin - north * cos, east * cos + north * sin
     detail_mm = step_mm * view.cell.cols / detail_cols
-    parts = _parts(outline, side, ahead, detail_mm, detail_cols)
+    edge_mm = min(colors.edge_px * detail_mm, colors.edge_mm)
+    parts = _parts(outline, side, ahead, detail_mm, detail_cols, edge_mm)
     _mount(parts, outline, side, ahead, detail_mm, pressed)
     _blend(picture[top:bottom, left:right], parts.reshape(bottom - top, down, right - left, across), colors, opacity)
 
@@ -182,7 +192,7 @@ def _sampled(first_px: int, end_px: int, samples: int) -> FloatArray:
 
 
 def _parts(
-    outline: RobotOutline, side: FloatArray, ahead: FloatArray, px_mm: float, cell_cols: int
+    outline: RobotOutline, side: FloatArray, ahead: FloatArray, px_mm: float, cell_cols: int, edge_mm: float
 ) -> npt.NDArray[np.intp]:
     """Return which part covers each sample, given by its distance to the right and ahead in mm."""
     across = np.abs(side)
@@ -190,7 +200,7 @@ def _parts(
     front_mm, back_mm = outline.front_mm, outline.back_mm
     inside_mm = np.minimum(outline.half_width_mm - across, np.minimum(ahead - back_mm, front_mm - ahead))
     parts[inside_mm >= 0] = _EDGE
-    parts[inside_mm >= min(0.35 * px_mm, 12.0)] = _BODY
+    parts[inside_mm >= edge_mm] = _BODY
     wheel_mm = max(outline.wheel_width_mm, 1.2 * px_mm)
     beside = np.abs(across - outline.half_width_mm + wheel_mm / 2) <= wheel_mm / 2
     parts[beside & (np.abs(ahead) <= outline.wheel_radius_mm)] = _WHEEL

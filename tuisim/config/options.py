@@ -28,7 +28,7 @@ from tuisim.source import PRELUDE_TEXTS
 _Number = TypeVar("_Number", int, float)
 
 PRELOADS = tuple(PRELUDE_TEXTS)
-COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "none")
+COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "8", "none")
 
 
 class CellSet(StrEnum):
@@ -265,7 +265,7 @@ OPTIONS: tuple[Option, ...] = (
     Option(APP, ("-u", "--ultrasound"), "rays", "Show the ultrasonic rays."),
     Option(APP, ("-q", "--quiet"), "quiet", "Make no sound."),
     Option(APP, ("--fps",), "fps", "Maximum frames per second, 1 … 60.", "N", whole(1, 60)),
-    Option(APP, ("--colors",), "colors", "Colours: auto, truecolor, 256, 16 or none.", "DEPTH", _one_of(COLOR_DEPTHS)),
+    Option(APP, ("--colors",), "colors", f"Colours: {', '.join(COLOR_DEPTHS)}.", "DEPTH", _one_of(COLOR_DEPTHS)),
     Option(APP, ("--cells",), "cells", f"Glyphs of the world: {', '.join(CELLS)}.", "SET", _one_of(CELLS)),
     Option(APP, ("--pixels",), "pixels", f"Draw real pixels: {', '.join(PIXELS)}.", "HOW", _one_of(PIXELS)),
     Option(PANEL, ("-O", "--output"), "panels_on", "Show the output.", panel="output"),

@@ -18,10 +18,14 @@ from textual.app import App, ComposeResult
 from textual.geometry import Region
 from textual.strip import Strip
 
+from tuisim.app.render.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256
 from tuisim.app.terminal.cell_view import CellStrip, LinesView, PixelView
-from tuisim.app.terminal.frame_buffer import FrameBuffer
+from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
+from tuisim.charts.glyphs import GLYPHS
 
 WIDTH, ROWS = 60, 12
+FULL, MODE_256, MODE_16 = TextMode(), TextMode(PALETTE_256), TextMode(PALETTE_16)
+MODE_8, PLAIN = TextMode(PALETTE_8), TextMode(MONO, is_ascii=True)
 STYLES = (
     None,
     Style(color="#ff0000"),
@@ -32,12 +36,8 @@ STYLES = (
 )
 
 
-def console(system: Any = "truecolor") -> Console:
-    return Console(file=StringIO(), force_terminal=True, color_system=system, _environ={})
-
-
-def sent(frame_buffer: FrameBuffer, update: CompositorUpdate, system: Any = "truecolor") -> str:
-    codes = frame_buffer.codes(update, console(system))
+def sent(frame_buffer: FrameBuffer, update: CompositorUpdate, mode: TextMode = FULL) -> str:
+    codes = frame_buffer.codes(update, mode)
     assert codes is not None
     return codes
 
@@ -83,27 +83,43 @@ def test_only_what_differs_is_sent(before: str, after: str, codes: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("strip", "system", "codes"),
+    ("strip", "mode", "codes"),
     [
-        pytest.param(CellStrip([0xFF0000_FF0000] * 3), "truecolor", "\x1b[48;2;255;0;0m   \x1b[0m", id="even cells"),
+        pytest.param(CellStrip([0xFF0000_FF0000] * 3), FULL, "\x1b[48;2;255;0;0m   \x1b[0m", id="even cells"),
         pytest.param(
-            CellStrip([0xFF0000_0000FF] * 2), "truecolor", "\x1b[38;2;255;0;0;48;2;0;0;255m▀▀\x1b[0m", id="half blocks"
+            CellStrip([0xFF0000_0000FF] * 2), FULL, "\x1b[38;2;255;0;0;48;2;0;0;255m▀▀\x1b[0m", id="half blocks"
         ),
-        pytest.param(CellStrip([0xFF0000_0000FF]), "256", "\x1b[38;5;196;48;5;21m▀\x1b[0m", id="256 colours"),
-        pytest.param(CellStrip([0xFF0000_0000FF]), "standard", "\x1b[31;44m▀\x1b[0m", id="16 colours"),
+        pytest.param(CellStrip([0xFF0000_0000FF]), MODE_256, "\x1b[38;5;196;48;5;21m▀\x1b[0m", id="256 colours"),
+        pytest.param(CellStrip([0xFF0000_0000FF]), MODE_16, "\x1b[31;44m▀\x1b[0m", id="16 colours"),
+        pytest.param(CellStrip([0xFF4646_C80000]), MODE_16, "\x1b[91;41m▀\x1b[0m", id="two reds of 16"),
+        pytest.param(CellStrip([0xFF4646_0000FF]), MODE_8, "\x1b[31;44m▀\x1b[0m", id="8 colours"),
+        pytest.param(CellStrip([100 << 48 | 0xFFFFFF << 24]), PLAIN, f"{GLYPHS[100]}", id="no colours"),
+        pytest.param(
+            Strip([Segment("a", Style(color="#44505e", bgcolor="#10151c"))]),
+            MODE_8,
+            "\x1b[37;40ma\x1b[0m",
+            id="dim of 8",
+        ),
+        pytest.param(
+            Strip([Segment("a", Style(color="#ffffff", bgcolor="#2f4a63")), Segment("b", Style(bgcolor="#10151c"))]),
+            PLAIN,
+            "\x1b[7ma\x1b[0mb",
+            id="a highlight without colours",
+        ),
+        pytest.param(Strip([Segment("╭─ 0° · ä 中 ▶")]), PLAIN, "+- 0o . a ?? >", id="ASCII"),
         pytest.param(
             Strip([Segment("a b", Style(bold=True)), Segment(" "), Segment("c", Style(bold=True))]),
-            "truecolor",
+            FULL,
             "\x1b[1ma b c\x1b[0m",
             id="blanks are alike",
         ),
         pytest.param(
-            Strip([Segment("a", Style(bold=True)), Segment("b")]), "256", "\x1b[1ma\x1b[0mb", id="an attribute ends"
+            Strip([Segment("a", Style(bold=True)), Segment("b")]), MODE_256, "\x1b[1ma\x1b[0mb", id="an attribute ends"
         ),
     ],
 )
-def test_a_colour_is_written_where_it_changes(strip: Strip, system: str, codes: str) -> None:
-    assert sent(FrameBuffer(), rows([strip]), system) == f"\x1b[1;1H{codes}"
+def test_a_colour_is_written_where_it_changes(strip: Strip, mode: TextMode, codes: str) -> None:
+    assert sent(FrameBuffer(), rows([strip]), mode) == f"\x1b[1;1H{codes}"
 
 
 def test_a_link_ends_where_its_text_ends() -> None:
@@ -112,14 +128,14 @@ def test_a_link_ends_where_its_text_ends() -> None:
     assert sent(FrameBuffer(), rows([linked])).endswith(";http://b\x1b\\a\x1b]8;;\x1b\\c")
 
 
-@pytest.mark.parametrize("system", ["truecolor", "256"])
-def test_a_picture_below_a_dialog_is_the_picture(system: str) -> None:
+@pytest.mark.parametrize("mode", [FULL, MODE_256])
+def test_a_picture_below_a_dialog_is_the_picture(mode: TextMode) -> None:
     """Textual makes plain segments of what lies under a dialog; that must not be sent again."""
     cells = CellStrip([grey << 40 | grey << 32 | grey << 24 | grey << 16 | grey << 8 | grey for grey in range(8, 248)])
     frame_buffer = FrameBuffer()
-    sent(frame_buffer, rows([cells]), system)
+    sent(frame_buffer, rows([cells]), mode)
 
-    assert sent(frame_buffer, rows([Strip(list(cells))]), system) == ""
+    assert sent(frame_buffer, rows([Strip(list(cells))]), mode) == ""
 
 
 def test_after_something_else_has_written_everything_is_sent_again() -> None:
@@ -134,7 +150,7 @@ def test_an_unknown_kind_of_update_is_left_to_textual() -> None:
     frame_buffer = FrameBuffer()
     sent(frame_buffer, rows([text("word")]))
 
-    assert frame_buffer.codes(InlineUpdate([text("else")]), console()) is None
+    assert frame_buffer.codes(InlineUpdate([text("else")]), FULL) is None
     assert sent(frame_buffer, rows([text("word")])) == "\x1b[1;1Hword"
 
 
@@ -155,6 +171,7 @@ def test_the_terminal_shows_what_textual_itself_would_have_sent(seed: int) -> No
     rng = random.Random(seed)
     mine, own = pyte.Screen(30, 4), pyte.Screen(30, 4)
     my_stream, own_stream = pyte.Stream(mine), pyte.Stream(own)
+    own_console = Console(file=StringIO(), force_terminal=True, color_system="truecolor", _environ={})
     frame_buffer = FrameBuffer()
     lines = [random_row(rng) for _ in range(4)]
     for _ in range(8):
@@ -162,7 +179,7 @@ def test_the_terminal_shows_what_textual_itself_would_have_sent(seed: int) -> No
             lines[y] = random_row(rng)
         update = rows(*lines)
         my_stream.feed(sent(frame_buffer, update))
-        own_stream.feed(update.render_segments(console()).replace("\n", "\r\n"))
+        own_stream.feed(update.render_segments(own_console).replace("\n", "\r\n"))
 
     assert shown(mine) == shown(own)
 

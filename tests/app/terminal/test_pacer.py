@@ -175,10 +175,10 @@ def test_fine_frames_are_for_quick_links(line: Line, slow: bool) -> None:
 
 def test_a_link_is_slow_until_the_first_answer_and_quick_again_after_a_rest() -> None:
     line = Line(10_000)
-    assert line.pacer.is_slow
-
+    seen = [line.pacer.is_slow]
     line.drive(3.0)
     line.drive(3.0, size=10)
 
+    assert seen == [True]
     assert not line.pacer.is_slow
     assert line.pacer.is_idle

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pty
+import sys
 import threading
 from collections.abc import Mapping
 
@@ -101,8 +102,8 @@ def test_a_terminal_is_asked(
     monkeypatch.setenv("TERM", "xterm-256color")
     monkeypatch.setattr(probe, "first_environment", lambda: {"LANG": "C.UTF-8"})
     with open(terminal.inside, "rb+", buffering=0, closefd=False) as tty:
-        monkeypatch.setattr(probe.sys, "stdin", tty)
-        monkeypatch.setattr(probe.sys, "stdout", tty)
+        monkeypatch.setattr(sys, "stdin", tty)
+        monkeypatch.setattr(sys, "stdout", tty)
         found = best_cells()
     terminal.close()
 

@@ -15,6 +15,7 @@ from textual.widget import Widget
 
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.obstacles import BoxGrip, box_at
+from tuisim.app.render.cells import MONO
 from tuisim.app.render.mat import ZOOMS, Pixels, following
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
 from tuisim.app.snapshot import RunPhase, Snapshot
@@ -33,6 +34,9 @@ TURN_STEP_DEG = 5.0
 _RAY_LAG_PX = 1.0
 """Rays are recomputed once their ends have moved this far: they change far more cells than the robot does, and a
 smaller move is invisible."""
+
+_PAPER = (255, 255, 255)
+"""Off the mat, where there are no colours: nothing is drawn there."""
 
 _TITLE = PANELS["world"].title
 _ANY_PEN = PenSpec()
@@ -213,7 +217,10 @@ class WorldView(PixelView):
         width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
         port = following(width_px, height_px, self.zoom, scene.pose, self._port, cell)
         if self._painter is None:
-            self._painter = ScenePainter(self._mat, self.ground_rgb, self.trace, self.color_mode.grey)
+            mode = self.color_mode
+            mono = mode.depth == MONO
+            outside_rgb = _PAPER if mono else self.ground_rgb
+            self._painter = ScenePainter(self._mat, outside_rgb, self.trace, mode.grey, mono)
         trace = self.trace if self.past_trace is None else self.past_trace
         if scene == self._scene and port == self._port and self._trace_drawn == trace.count:
             return

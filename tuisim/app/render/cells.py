@@ -185,8 +185,8 @@ def changed_runs(old: Cells, new: Cells, gap: int = MERGE_GAP) -> list[tuple[int
     )
 
 
-TRUECOLOR, PALETTE_256, PALETTE_16 = 1 << 24, 256, 16
-"""Colour depths, as numbers of colours."""
+TRUECOLOR, PALETTE_256, PALETTE_16, PALETTE_8, MONO = 1 << 24, 256, 16, 8, 2
+"""Colour depths, as numbers of colours; the two of `MONO` are those of the terminal itself."""
 
 _CUBE = (0, 95, 135, 175, 215, 255)
 _GREYS = tuple(range(8, 248, 10))
@@ -219,12 +219,12 @@ class ColorMode:
     @property
     def dithers(self) -> bool:
         """Whether there are so few colours that shades between them are dithered."""
-        return self.depth < PALETTE_256
+        return MONO < self.depth < PALETTE_256
 
 
 def reduce_cells(cells: Cells, mode: ColorMode) -> Cells:
     """Return cells in colours that the terminal supports."""
-    if mode.depth >= TRUECOLOR and not mode.grey:
+    if mode.depth == MONO or (mode.depth >= TRUECOLOR and not mode.grey):
         return cells
     colors = np.stack((cells >> 24, cells), axis=-1)[..., None] >> np.array([16, 8, 0]) & 255
     flat = colors.reshape(-1, 3).astype(np.uint8)
@@ -244,7 +244,7 @@ def _nearest(pixels: Pixels, depth: int) -> Pixels:
         return pixels
     if depth >= PALETTE_256:
         return _palette_rgb()[_nearest_256(pixels.astype(np.int32))]
-    return _STANDARD[_nearest_16(pixels.astype(np.int32))].astype(np.uint8)
+    return _STANDARD[_nearest_16(pixels.astype(np.int32), depth)].astype(np.uint8)
 
 
 def reduce_pixels(pixels: Pixels, rows: npt.NDArray[np.intp], cols: npt.NDArray[np.intp], mode: ColorMode) -> Pixels:
@@ -266,14 +266,27 @@ def reduce_pixels(pixels: Pixels, rows: npt.NDArray[np.intp], cols: npt.NDArray[
         return _nearest(pixels, mode.depth)
     # Strong colours are close enough to one of the 16; dithering would only spoil them.
     paleness = 1 - (pixels.max(axis=1).astype(np.float32) - pixels.min(axis=1)) / 255
+    if mode.depth == PALETTE_8:
+        return _dithered_8(pixels, (_BAYER[rows % 4, cols % 4] + 0.5) / 16, paleness)
     offset = (_BAYER[rows % 4, cols % 4] - 7.5) / 8 * _DITHER * paleness
     return _nearest(np.clip(pixels + offset[:, None], 0, 255).astype(np.uint8), mode.depth)
+
+
+_SHARES_8 = ((0, 128, 211, 220, 255), (0.0, 0.5, 0.75, 0.875, 1.0))
+"""The share of white in a grey among 8 colours, which have no other grey."""
+
+
+def _dithered_8(pixels: Pixels, thresholds: npt.NDArray[np.float64], paleness: npt.NDArray[np.float32]) -> Pixels:
+    """Return pale pixels as black and white, each in a share that tells it from other greys; others as the nearest."""
+    white = np.interp(pixels @ _LUMA, *_SHARES_8) > thresholds
+    dithered = np.where(white[:, None], _STANDARD[7], _STANDARD[0])
+    return np.where((paleness > 0.75)[:, None], dithered, _nearest(pixels, PALETTE_8)).astype(np.uint8)
 
 
 def sgr_index(rgb: int, depth: int) -> int:
     """Return the palette number nearest to 0xRRGGBB: 16 to 255, or 0 to 15 for a depth of 16."""
     color = np.array([[rgb >> 16, rgb >> 8 & 255, rgb & 255]], np.int32)
-    return int((_nearest_256(color) if depth >= PALETTE_256 else _nearest_16(color))[0])
+    return int((_nearest_256(color) if depth >= PALETTE_256 else _nearest_16(color, depth))[0])
 
 
 @lru_cache(maxsize=1)
@@ -294,8 +307,8 @@ def _nearest_256(pixels: npt.NDArray[np.int32]) -> npt.NDArray[np.intp]:
     return nearest
 
 
-def _nearest_16(pixels: npt.NDArray[np.int32]) -> npt.NDArray[np.intp]:
+def _nearest_16(pixels: npt.NDArray[np.int32], depth: int = PALETTE_16) -> npt.NDArray[np.intp]:
     # Green weighs most and blue least, as in human vision.
-    errors = ((pixels[:, None, :] - _STANDARD) ** 2) @ np.array([3, 5, 2])
+    errors = ((pixels[:, None, :] - _STANDARD[:depth]) ** 2) @ np.array([3, 5, 2])
     nearest: npt.NDArray[np.intp] = errors.argmin(axis=1)
     return nearest

@@ -10,7 +10,7 @@ from itertools import groupby
 import numpy as np
 
 from tuisim.app.render.mat import MatPictures, Pixels
-from tuisim.charts.world_image import COLORED, GHOST, GREY, GREY_GHOST, Viewport, draw_robot
+from tuisim.charts.world_image import COLORED, GHOST, GREY, GREY_GHOST, MONO, Viewport, draw_robot
 from tuisim.core.css_colors import Rgb, css_rgb
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import outline_of
@@ -48,13 +48,15 @@ class ScenePainter:
         mat: The mat, shape (height in mm, width in mm, 3).
         outside_rgb: Colour of what lies off the mat.
         trace: The pen trace; it may grow, and be replaced.
-        grey: Draw the robot for a terminal without colours.
+        grey: Draw for a terminal with greys only.
+        mono: Draw for a terminal without any colours.
     """
 
-    def __init__(self, mat: Pixels, outside_rgb: Rgb, trace: PenTrace, grey: bool = False) -> None:
+    def __init__(self, mat: Pixels, outside_rgb: Rgb, trace: PenTrace, grey: bool = False, mono: bool = False) -> None:
         self.trace = trace
         self._mat = MatPictures(mat, outside_rgb)
-        self._robot_colors = GREY if grey else COLORED
+        self._robot_colors = MONO if mono else GREY if grey else COLORED
+        self._grey = grey or mono
         self._ghost_colors = GREY_GHOST if grey else GHOST
         self._ground: Pixels | None = None
         self._ground_key: object = None
@@ -67,7 +69,7 @@ class ScenePainter:
         if scene.rays and scene.robot.ultrasonic is not None:
             ultrasonic = scene.robot.ultrasonic
             x_mm, y_mm = world_point(scene.rays_from or scene.pose, ultrasonic.x_mm, ultrasonic.y_mm)
-            draw_rays(picture, view, x_mm, y_mm, scene.rays)
+            draw_rays(picture, view, x_mm, y_mm, scene.rays, self._grey)
         if scene.ghost is not None:
             draw_robot(picture, view, scene.ghost, outline, self._ghost_colors, _GHOST_OPACITY)
         draw_robot(picture, view, scene.pose, outline, self._robot_colors, pressed=scene.pressed)
@@ -85,9 +87,38 @@ class ScenePainter:
             self.trace.join()
         for piece in self.trace.pieces(self._pieces_drawn):
             rows, cols = trace_pixels(view, piece.xs_mm, piece.ys_mm, piece.width_mm)
-            self._ground[rows, cols] = piece.rgb
+            self._ground[rows, cols] = visible_on(self._ground_below(view)[rows, cols], piece.rgb, self._grey)
         self._pieces_drawn = len(self.trace)
         return self._ground
+
+    def _ground_below(self, view: Viewport) -> Pixels:
+        """Return what the pen draws on: not what it has drawn, which may be drawn again."""
+        return self._mat.picture(view)
+
+
+_LUMA = np.array([0.299, 0.587, 0.114])
+_APART, _GREY_APART = 130.0, 90.0
+"""Least difference of a line from the ground: as a distance of colours, and of their brightness."""
+
+
+def visible_on(ground: Pixels, rgb: Rgb, grey: bool = False) -> Pixels:
+    """Return a colour for each pixel below a line: that of the line, or a darker or lighter one where it would vanish.
+
+    Args:
+        ground: Shape (n, 3).
+        rgb: Colour of the line.
+        grey: Only brightness will be seen.
+    """
+    line = np.array(rgb, np.float64)
+    if grey:
+        vanishes = np.abs(ground @ _LUMA - line @ _LUMA) < _GREY_APART
+    else:
+        vanishes = np.square(ground - line).sum(axis=1) < _APART**2
+    shown = np.repeat(line[None], len(ground), axis=0)
+    is_light = (ground @ _LUMA > 127)[:, None]
+    shown[vanishes] = np.where(is_light, line * 0.3, line * 0.3 + 178)[vanishes]
+    pixels: Pixels = np.rint(shown).astype(np.uint8)
+    return pixels
 
 
 OBSTACLE_RGB = (175, 95, 0)
@@ -152,7 +183,14 @@ def _joined(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatArray,
     return np.concatenate((xs[good], between_x)), np.concatenate((ys[good], between_y))
 
 
-def draw_rays(picture: Pixels, view: Viewport, x_mm: float, y_mm: float, rays: Sequence[tuple[float, float]]) -> None:
+def draw_rays(
+    picture: Pixels,
+    view: Viewport,
+    x_mm: float,
+    y_mm: float,
+    rays: Sequence[tuple[float, float]],
+    grey: bool = False,
+) -> None:
     """Paint rays from one point of the world, as far as they are on the field.
 
     Args:
@@ -161,6 +199,7 @@ def draw_rays(picture: Pixels, view: Viewport, x_mm: float, y_mm: float, rays: S
         x_mm: World x of the sensor.
         y_mm: World y of the sensor.
         rays: (world angle in degrees, length in mm) each.
+        grey: Only brightness will be seen.
     """
     col, row = view.to_px(x_mm, y_mm)
     low_col, low_row = (round(edge) for edge in view.to_px(0.0, FIELD_HEIGHT_MM))
@@ -180,7 +219,9 @@ def draw_rays(picture: Pixels, view: Viewport, x_mm: float, y_mm: float, rays: S
     covered[rows[inside] * picture.shape[1] + cols[inside]] = True
     covered_at = np.flatnonzero(covered)
     pixels = picture.reshape(-1, 3)
-    mixed = pixels[covered_at] * (1 - _RAY_OPACITY) + np.array(RAY_RGB) * _RAY_OPACITY
+    below = pixels[covered_at]
+    opacity = 1.0 if grey else _RAY_OPACITY
+    mixed = below * (1 - opacity) + visible_on(below, RAY_RGB, grey) * opacity
     pixels[covered_at] = np.rint(mixed).astype(np.uint8)
 
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 from rich.color import Color
-from rich.console import Console
 from rich.segment import Segment
 from rich.style import Style
 from textual.app import ComposeResult
@@ -24,9 +23,7 @@ from textual.widget import Widget
 
 from tuisim.app.graphics.picture import Graphics, PictureCell, TilePicture
 from tuisim.app.render.cells import (
-    PALETTE_16,
-    PALETTE_256,
-    TRUECOLOR,
+    MONO,
     CellIndex,
     Cells,
     ColorMode,
@@ -37,7 +34,8 @@ from tuisim.app.render.cells import (
     reduce_cells,
     reduce_pixels,
 )
-from tuisim.app.terminal.drawing import BLOCKS, drawing_of
+from tuisim.app.render.mono import mono_cells
+from tuisim.app.terminal.drawing import BLOCKS, color_depth, drawing_of
 from tuisim.charts.glyphs import GLYPHS, GlyphSet, glyph_set, half_block_of
 from tuisim.charts.text_runs import Run, cut_line
 from tuisim.charts.world_image import CellPoints
@@ -90,7 +88,7 @@ class PixelView(RowsView):
     @property
     def color_mode(self) -> ColorMode:
         """The colours that the terminal supports."""
-        return ColorMode(color_depth(self.app.console), bool(self.app.no_color))
+        return ColorMode(color_depth(self.app), bool(self.app.no_color))
 
     @property
     def cell_set(self) -> CellSet:
@@ -182,7 +180,10 @@ class PixelView(RowsView):
             self._refine = self.set_interval(REFINE_S, self._refine_some)
 
     def _fitted(self, glyphs: GlyphSet, at: CellIndex, before: Cells | None) -> Cells:
-        return reduce_cells(fit_cells(self._shown, glyphs, at, before), self.color_mode)
+        mode = self.color_mode
+        if mode.depth == MONO:
+            return mono_cells(self._shown, glyphs, at, self.cell_set)
+        return reduce_cells(fit_cells(self._shown, glyphs, at, before), mode)
 
     def _put(self, cells: Cells) -> None:
         if cells.shape != self._cells.shape:
@@ -365,15 +366,6 @@ def _changes(before: Sequence[Run], now: Sequence[Run]) -> list[tuple[int, int]]
         else:
             runs.append((x, 1))
     return runs
-
-
-_DEPTHS = {"standard": PALETTE_16, "windows": PALETTE_16, "256": PALETTE_256}
-"""Number of colours by the name of Rich's colour system."""
-
-
-def color_depth(console: Console) -> int:
-    """Return the number of colours that a console supports; full colour if it does not say."""
-    return _DEPTHS.get(console.color_system or "", TRUECOLOR)
 
 
 @lru_cache(maxsize=8192)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from textual.app import App
 
 from tuisim.app.graphics.picture import Graphics
+from tuisim.app.render.cells import MONO, PALETTE_16, PALETTE_256, TRUECOLOR
 from tuisim.app.terminal.browser import in_browser
 from tuisim.app.terminal.probe import best_cells
 from tuisim.config.options import AUTO, CELLS, CellSet
@@ -32,6 +34,8 @@ class Drawing:
     """The finest set that the terminal is known to show."""
     graphics: Graphics | None = None
     """How pixels are drawn; None to draw cells."""
+    most_colors: int = TRUECOLOR
+    """The user's limit."""
     is_slow: Callable[[], bool] = lambda: False
     """Whether the link to the terminal is too slow for fine cells now."""
     is_idle: Callable[[], bool] = lambda: True
@@ -59,7 +63,22 @@ def drawing_for(given: str | None) -> Drawing:
     return Drawing(best if chosen == AUTO else CellSet(chosen), chosen, best)
 
 
-def drawing_of(app: App[object]) -> Drawing:
+_DEPTHS = {"standard": PALETTE_16, "windows": PALETTE_16, "256": PALETTE_256}
+"""Number of colours by the name of Rich's colour system."""
+
+
+def color_depth(app: App[Any]) -> int:
+    """Return the number of colours that an app draws with; full colour if the terminal does not say.
+
+    Blocks without colours are drawn in greys; dots and signs need none at all.
+    """
+    drawing = drawing_of(app)
+    if app.no_color and drawing.cells not in BLOCKS:
+        return MONO
+    return min(_DEPTHS.get(app.console.color_system or "", TRUECOLOR), drawing.most_colors)
+
+
+def drawing_of(app: App[Any]) -> Drawing:
     """Return how an app draws pictures."""
     found = getattr(app, "drawing", None)
     return found if isinstance(found, Drawing) else Drawing()

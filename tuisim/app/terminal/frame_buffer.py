@@ -13,14 +13,14 @@ from typing import NamedTuple
 
 from rich.cells import cell_len, split_graphemes
 from rich.color import Color, ColorSystem
-from rich.console import Console
 from rich.style import Style
 from textual._compositor import ChopsUpdate, CompositorUpdate, LayoutUpdate
 from textual.strip import SGR_STYLES, Strip
 
 from tuisim.app.graphics.picture import PictureCell, TilePicture
-from tuisim.app.render.cells import PALETTE_256, TRUECOLOR, sgr_index
-from tuisim.app.terminal.cell_view import CellStrip, PictureStrip, color_depth
+from tuisim.app.render.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR, sgr_index
+from tuisim.app.terminal.cell_view import CellStrip, PictureStrip
+from tuisim.app.terminal.plain import as_ascii
 from tuisim.charts.glyphs import GLYPHS
 
 _SEEN_ON_BLANKS = frozenset({"4", "7", "9", "21", "51", "52", "53"})
@@ -28,6 +28,21 @@ _SEEN_ON_BLANKS = frozenset({"4", "7", "9", "21", "51", "52", "53"})
 _UPPER_HALF = "▀"
 _REWRITTEN = 4
 """Rewriting this many unchanged characters costs no more than a jump over them."""
+
+
+_SYSTEMS = {
+    TRUECOLOR: ColorSystem.TRUECOLOR, PALETTE_256: ColorSystem.EIGHT_BIT, PALETTE_16: ColorSystem.STANDARD,
+    PALETTE_8: ColorSystem.STANDARD,
+}  # fmt: skip
+
+
+class TextMode(NamedTuple):
+    """What a terminal supports."""
+
+    depth: int = TRUECOLOR
+    """How many colours."""
+    is_ascii: bool = False
+    """Whether it shows ASCII only."""
 
 
 class CellLook(NamedTuple):
@@ -58,12 +73,12 @@ class FrameBuffer:
         for picture in self._pictures:
             picture.forget()
 
-    def codes(self, update: CompositorUpdate, console: Console) -> str | None:
+    def codes(self, update: CompositorUpdate, mode: TextMode) -> str | None:
         """Return the codes that update the terminal, empty if it shows the update already.
 
         Args:
             update: The update from Textual.
-            console: Provides the colour system.
+            mode: What the terminal supports.
 
         Returns:
             None for an unknown kind of update; the terminal's content is unknown after it.
@@ -78,7 +93,7 @@ class FrameBuffer:
             return None
         places: dict[TilePicture, list[tuple[int, int, PictureCell]]] = {}
         for y, x, strip in pieces:
-            for col, cell in self._put(pen, y, x, _cells(strip, console)):
+            for col, cell in self._put(pen, y, x, _cells(strip, mode)):
                 places.setdefault(cell.picture, []).append((y, col, cell))
         self._pictures.update(places)
         return pen.finish() + "".join(
@@ -129,18 +144,19 @@ def _pieces_of_part(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
                 yield y, x, strip.crop(0, end - x)
 
 
-def _cells(strip: Strip, console: Console) -> Sequence[Cell]:
+def _cells(strip: Strip, mode: TextMode) -> Sequence[Cell]:
     if isinstance(strip, PictureStrip):
         return [("", cell) for cell in strip.parts]
     if isinstance(strip, CellStrip):
-        depth = color_depth(console)
-        return [_image_cell(cell, depth) for cell in strip.cells]
-    system = console._color_system or ColorSystem.TRUECOLOR
-    return [cell for text, style, control in strip if not control for cell in _written(text, style, system)]
+        return [_image_cell(cell, mode.depth) for cell in strip.cells]
+    return [cell for text, style, control in strip if not control for cell in _written(text, style, mode)]
 
 
 @lru_cache(maxsize=16384)
 def _image_cell(cell: int, depth: int) -> Cell:
+    if depth == MONO:
+        glyph = GLYPHS[cell >> 48]
+        return glyph, CellLook((), "" if glyph == " " else "39")
     fore, back = _rgb_codes(cell >> 24 & 0xFFFFFF, depth)[0], _rgb_codes(cell & 0xFFFFFF, depth)[1]
     return (" ", CellLook((), "", back)) if _is_same(fore, back) else (GLYPHS[cell >> 48], CellLook((), fore, back))
 
@@ -159,13 +175,16 @@ def _rgb_codes(rgb: int, depth: int) -> tuple[str, str]:
     number = sgr_index(rgb, depth)
     if depth >= PALETTE_256:
         return f"38;5;{number}", f"48;5;{number}"
-    shade = number if number < 8 else number + 52
+    # The bright ones are 90 to 97 and 100 to 107.
+    shade = number if number < PALETTE_8 else number + 52
     return str(30 + shade), str(40 + shade)
 
 
 @lru_cache(maxsize=4096)
-def _written(text: str, style: Style | None, system: ColorSystem) -> tuple[Cell, ...]:
-    look = _look(style, system)
+def _written(text: str, style: Style | None, mode: TextMode) -> tuple[Cell, ...]:
+    look = _look(style, mode.depth)
+    if mode.is_ascii:
+        text = as_ascii(text)
     if text.isascii():
         return tuple(_simplest(char, look) for char in text)
     cells: list[Cell] = []
@@ -185,23 +204,48 @@ def _simplest(text: str, look: CellLook) -> Cell:
 
 
 @lru_cache(maxsize=4096)
-def _look(style: Style | None, system: ColorSystem) -> CellLook:
+def _look(style: Style | None, depth: int) -> CellLook:
     if style is None:
         return CellLook()
     shown = style._attributes & style._set_attributes
     attributes = tuple(code for bit, code in enumerate(SGR_STYLES) if shown & 1 << bit)
-    foreground, background = _color_codes(style.color, system)[0], _color_codes(style.bgcolor, system)[1]
-    return CellLook(attributes, foreground, background, f"id={style._link_id};{style.link}" if style.link else "")
+    link = f"id={style._link_id};{style.link}" if style.link else ""
+    if depth == MONO:
+        return CellLook(_without_colors(attributes, style), link=link)
+    foreground, background = _color_codes(style.color, depth)[0], _color_codes(style.bgcolor, depth)[1]
+    return CellLook(attributes, foreground, background, link)
 
 
-def _color_codes(color: Color | None, system: ColorSystem) -> tuple[str, str]:
+_LIT = 50.0
+"""A background brighter than this, of 255, is a highlight, and not that of a panel or dialog."""
+_REVERSE = "7"
+
+
+def _without_colors(attributes: tuple[str, ...], style: Style) -> tuple[str, ...]:
+    """Return the attributes of a style, and reverse video where only its background makes it stand out."""
+    background = style.bgcolor.triplet if style.bgcolor else None
+    if background is None or _REVERSE in attributes:
+        return attributes
+    red, green, blue = background
+    return (*attributes, _REVERSE) if 0.3 * red + 0.59 * green + 0.11 * blue > _LIT else attributes
+
+
+_SEEN_ON_BLACK = 120
+"""Text and lines whose channels add up to more are not black."""
+
+
+def _color_codes(color: Color | None, depth: int) -> tuple[str, str]:
     if color is None:
         return "39", "49"
-    if color.triplet is not None and system is ColorSystem.EIGHT_BIT:
+    if depth == PALETTE_8 and color.triplet is not None and sum(color.triplet) > _SEEN_ON_BLACK:
+        # The nearest of so few is black too often, and black on black is nothing.
+        number = sgr_index(int.from_bytes(color.triplet, "big"), depth) or 7
+        return str(30 + number), _rgb_codes(int.from_bytes(color.triplet, "big"), depth)[1]
+    if color.triplet is not None and depth in (PALETTE_8, PALETTE_256):
         # The same reduction as in images; otherwise an image under a dialog would be resent in nearly identical
         # colours.
-        return _rgb_codes(int.from_bytes(color.triplet, "big"), PALETTE_256)
-    least = color.downgrade(system)
+        return _rgb_codes(int.from_bytes(color.triplet, "big"), depth)
+    least = color.downgrade(_SYSTEMS[depth])
     return ";".join(least.get_ansi_codes()), ";".join(least.get_ansi_codes(foreground=False))
 
 

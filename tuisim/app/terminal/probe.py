@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, NAME_QUERY, facts_in
-from tuisim.config.options import CellSet
+from tuisim.config.options import AUTO, CellSet
 
 ANSWER_S = 0.4
 """Longest time to wait for an answer."""
@@ -29,6 +29,9 @@ WIDTH_QUERY = f"\r{_OCTANT}\x1b[6n"
 _CLEAR = "\r\x1b[K"
 _POSITION = re.compile(rb"\x1b\[\d+;(\d+)R")
 _NAME_AND_VERSION = re.compile(r"([A-Za-z0-9]+)[ (/-]*v?([\d.-]*)")
+
+_PLAIN = ("", "dumb", "unknown")
+"""Kinds of terminals that nothing is known about."""
 
 Version = tuple[int, ...]
 
@@ -77,10 +80,18 @@ def cells_without_asking(environment: Mapping[str, str]) -> CellSet | None:
         environment: As it was when the process started: Python changes the locale C to UTF-8.
     """
     terminal = environment.get("TERM", "")
-    if terminal in ("", "dumb", "unknown") or not _may_be_utf8(environment):
+    if terminal in _PLAIN or not _may_be_utf8(environment):
         return CellSet.ASCII
     # The fonts of the Linux console have the characters of code page 437.
     return CellSet.HALF if terminal == "linux" else None
+
+
+def colors_without_asking(terminal: str) -> str:
+    """Return the colours that a kind of terminal, as in TERM, is known to have; `auto` if Textual knows better."""
+    if terminal in _PLAIN or terminal.startswith(("vt1", "vt2", "vt3")):
+        return "none"
+    # The Linux console has eight colours for backgrounds.
+    return "8" if terminal in ("linux", "ansi") else AUTO
 
 
 def _may_be_utf8(environment: Mapping[str, str]) -> bool:

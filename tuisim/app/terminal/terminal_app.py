@@ -41,11 +41,11 @@ from tuisim.app.graphics.choice import graphics_of
 from tuisim.app.terminal.answers import AnswerParser, TerminalAnswered
 from tuisim.app.terminal.browser import in_browser, offer
 from tuisim.app.terminal.cell_view import PixelView
-from tuisim.app.terminal.drawing import Drawing, drawing_of
-from tuisim.app.terminal.frame_buffer import FrameBuffer
+from tuisim.app.terminal.drawing import Drawing, color_depth, drawing_of
+from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
 from tuisim.app.terminal.queries import QUESTIONS, TerminalFacts, cell_size_px
 from tuisim.app.terminal.screenshot import save_screenshot, screen_cells
-from tuisim.config.options import AUTO, NO_PIXELS, Protocol
+from tuisim.config.options import AUTO, NO_PIXELS, CellSet, Protocol
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
 
@@ -185,7 +185,7 @@ class TerminalApp(App[None]):
             renderable = cast(ConsoleRenderable, _Codes(_message_codes(self.too_small)))
             self.frame_buffer.forget()
         elif isinstance(update, CompositorUpdate) and self._writes:
-            codes = self.frame_buffer.codes(update, self.console)
+            codes = self.frame_buffer.codes(update, self.text_mode)
             if codes is not None:
                 renderable = cast(ConsoleRenderable, _Codes(codes)) if codes else None
         super()._display(screen, renderable)
@@ -202,6 +202,11 @@ class TerminalApp(App[None]):
 
     def painted(self, size: int) -> None:
         """Called with the number of characters after an update was sent to the terminal."""
+
+    @property
+    def text_mode(self) -> TextMode:
+        """What the terminal supports."""
+        return TextMode(color_depth(self), self.drawing.cells is CellSet.ASCII)
 
     @property
     def _writes(self) -> bool:

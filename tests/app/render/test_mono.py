@@ -1,0 +1,73 @@
+"""Pictures without colours."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tuisim.app.render.cells import all_cells
+from tuisim.app.render.mat import Pixels, whole_field
+from tuisim.app.render.mono import mono_cells
+from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState, visible_on
+from tuisim.charts.glyphs import GLYPHS, glyph_set
+from tuisim.charts.world_image import CellPoints
+from tuisim.config.options import CellSet
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import RobotSpec
+
+ROWS, COLS = 20, 50
+SETS = (CellSet.BRAILLE, CellSet.ASCII)
+
+
+def lines(picture: Pixels, cells: CellSet) -> list[str]:
+    """A picture as text."""
+    glyphs = glyph_set(cells)
+    rows, cols = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
+    found = mono_cells(picture, glyphs, all_cells(rows, cols), cells).reshape(rows, cols)
+    return ["".join(GLYPHS[cell >> 48] for cell in row) for row in found.tolist()]
+
+
+def area(grey: int, cells: CellSet) -> str:
+    """A cell of a plain area."""
+    return lines(np.full((4, 2, 3), grey, np.uint8), cells)[0]
+
+
+@pytest.mark.parametrize("cells", SETS)
+def test_the_greys_of_the_mats_look_different(cells: CellSet) -> None:
+    shown = [area(grey, cells) for grey in (255, 220, 211, 128, 0)]
+
+    assert len(set(shown)) == 5
+    assert shown[0] == " "
+
+
+@pytest.mark.parametrize("cells", SETS)
+@pytest.mark.parametrize("ground", [255, 220, 128, 0])
+def test_the_robot_and_its_heading_are_seen(cells: CellSet, ground: int) -> None:
+    mat = np.full((1143, 2362, 3), ground, np.uint8)
+    glyphs = glyph_set(cells)
+    view = whole_field(COLS * glyphs.cols, ROWS * glyphs.rows, CellPoints(glyphs.cols, glyphs.rows))
+
+    def drawn(heading_deg: float) -> list[str]:
+        scene = SceneState(RobotSpec(), Pose(1181, 571, heading_deg))
+        return lines(ScenePainter(mat, (255, 255, 255), PenTrace(), mono=True).paint(view, scene), cells)
+
+    pictures = [drawn(heading) for heading in range(0, 360, 45)]
+    empty = lines(ScenePainter(mat, (255,) * 3, PenTrace(), mono=True).paint(
+        view, SceneState(RobotSpec(), Pose(9000, 9000, 0))), cells)  # fmt: skip
+    for at, picture in enumerate(pictures):
+        differs = [sum(a != b for a, b in zip("".join(picture), "".join(other), strict=True))
+                   for other in [*pictures[:at], *pictures[at + 1 :], empty]]  # fmt: skip
+        assert min(differs) >= 5
+
+
+@pytest.mark.parametrize("grey", [False, True], ids=["colours", "greys"])
+@pytest.mark.parametrize("ground", [(255, 0, 0), (255, 255, 255), (0, 0, 0), (128, 128, 128), (200, 30, 30)], ids=str)
+def test_a_line_shows_on_any_ground(ground: tuple[int, int, int], grey: bool) -> None:
+    below = np.array([ground], np.uint8)
+
+    shown = visible_on(below, (255, 0, 0), grey).astype(float)
+
+    light = np.array([0.299, 0.587, 0.114])
+    away = abs((shown - below) @ light)[0] if grey else np.sqrt(np.square(shown - below).sum())
+    assert away > 50
+    assert ground != (255, 255, 255) or shown.tolist() == [[255, 0, 0]]

@@ -1,0 +1,70 @@
+"""The app on terminals without Unicode or colours."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import tuisim
+from tests.app.app_help import LOGS, ready, settings
+from tests.app.wires import on_wire, until_quiet, wire_of
+from tuisim.app.app import LabApp
+from tuisim.app.render.cells import MONO
+from tuisim.app.terminal.drawing import Drawing, color_depth
+from tuisim.app.terminal.plain import as_ascii
+from tuisim.app.terminal.probe import colors_without_asking
+from tuisim.config.options import CellSet
+
+SOURCES = [path for path in Path(tuisim.__file__).parent.rglob("*") if path.suffix in (".py", ".tcss")]
+
+
+def test_every_sign_of_the_app_has_one_in_ascii() -> None:
+    used = set("".join(path.read_text("utf-8") for path in SOURCES))
+
+    lost = {char for char in used if not char.isascii() and as_ascii(char) in ("", "?", "??")}
+    # Letters of other scripts appear in examples only.
+    assert not {char for char in lost if not char.isalpha()} - set("\u200b\ufeff")
+
+
+@pytest.mark.parametrize(
+    ("text", "plain"),
+    [
+        pytest.param("╭──╮│╰╯┼", "+--+|+++", id="frames"),
+        pytest.param("━┃═", "=#=", id="heavy frames"),
+        pytest.param("⠀⠁⣿", " .@", id="braille"),
+        pytest.param("é中✓", "e??v", id="letters"),
+    ],
+)
+def test_each_sign_keeps_its_width(text: str, plain: str) -> None:
+    assert as_ascii(text) == plain
+
+
+@pytest.mark.parametrize(
+    ("terminal", "colors"),
+    [("dumb", "none"), ("", "none"), ("vt100", "none"), ("vt220", "none"), ("linux", "8"), ("xterm-256color", "auto")],
+)
+def test_colours_of_a_kind_of_terminal(terminal: str, colors: str) -> None:
+    assert colors_without_asking(terminal) == colors
+
+
+@pytest.mark.parametrize(
+    ("cells", "most"), [pytest.param(CellSet.ASCII, 0x7F, id="ascii"), pytest.param(CellSet.BRAILLE, 0x28FF, id="dots")]
+)
+async def test_without_colours_nothing_but_text_is_sent(
+    cells: CellSet, most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    async with on_wire(LabApp(settings(LOGS), Drawing(cells))) as pilot:
+        app = await ready(pilot)
+        await until_quiet(pilot)
+        await pilot.press("question_mark")
+        await until_quiet(pilot)
+        assert color_depth(app) == MONO
+        sent = "".join(wire_of(pilot).sent)
+
+    assert max(map(ord, sent)) <= most
+    assert "World" in sent
+    styles = {code for codes in re.findall(r"\x1b\[([\d;]*)m", sent) for code in codes.split(";")}
+    assert styles <= {"", "0", "1", "2", "3", "4", "7", "9"}
