@@ -18,6 +18,7 @@ from tuisim.config.options import OPTIONS
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import MOUNTS
 from tuisim.logs.export import EXPORTERS
+from tuisim.movies.files import MOVIE_FORMATS
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 HOW_TO_ADD = README.partition("| to add | you need |")[2].partition("\n\n")[0].splitlines()[2:]
@@ -29,6 +30,7 @@ TABLES = {
     "subcommand of log": SUBCOMMANDS,
     "profile": PROFILES,
     "export format": EXPORTERS,
+    "movie format": MOVIE_FORMATS,
     "option": [option.flags[0] for option in OPTIONS],
     "panel's key": [panel.key for panel in PANELS.values()],
     "app's key": [action.key_label for action in ACTIONS.values() if not action.id.startswith("nudge-")],

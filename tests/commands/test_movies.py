@@ -16,7 +16,7 @@ from PIL import Image
 from tests.conftest import Command
 from tests.running import told
 from tests.runs.run_recorder import PROGRAM, Recorder
-from tuisim.charts.world_image import COLORED, Viewport, fitting_view
+from tuisim.charts.world_image import COLORED, Viewport, fitting_view, pen_trace
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.simulation import Simulation
@@ -26,7 +26,7 @@ from tuisim.movies.cell_painter import CellPainter
 from tuisim.movies.clip import END_MS, Panel, Recorded
 from tuisim.movies.files import SMALL_BYTES, small_movie
 from tuisim.movies.painter import FramePainter
-from tuisim.runs.records import HEADER_BYTES, TELEMETRY_FILE, OutputWriter, TelemetryWriter
+from tuisim.runs.records import HEADER_BYTES, OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, TelemetryWriter
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
@@ -34,9 +34,12 @@ ROBOT = RobotSpec(pen=PenSpec(down=True, color="#ff00ff"))
 START = Pose(600, 570, 0)
 
 
+SPEC = RunSpec(ROBOT, WorldSpec("Grey_bands", start=START), ROBOLAB)
+
+
 def record(*speeds_dps: float) -> StoredRun:
     """Store a run that drives each speed for half a second."""
-    store, spec = RunStore(), RunSpec(ROBOT, WorldSpec("Grey_bands", start=START), ROBOLAB)
+    store, spec = RunStore(), SPEC
     new = store.new_run(PROGRAM, spec)
     telemetry = TelemetryWriter(new.folder)
     recorder = Recorder(store, new, spec, telemetry, OutputWriter(new.folder), Simulation(spec, telemetry))
@@ -78,7 +81,7 @@ def view(width_px: int, height_px: int) -> Viewport:
 def test_a_movie_follows_the_robot(here: Command, run: StoredRun, tmp_path: Path, suffix: str) -> None:
     done = here("runs", "movie", "last", "--out", f"a{suffix}", "--fps", "10")
     assert (done.returncode, told(done)) == (0, [])
-    assert done.stdout.startswith(f"a{suffix}: 11 frames, 2.1 s, ")
+    assert done.stdout.startswith(f"a{suffix}: 11 frames, 2.1 s at 1×, ")
     frames, durations = frames_of(tmp_path / f"a{suffix}")
     assert (len(frames), sum(durations)) == (11, 11 * 100 + END_MS)
     last = run.telemetry.last()
@@ -160,9 +163,22 @@ def test_a_picture_shows_an_instant(here: Command, tmp_path: Path, at: str, valu
         assert (str(picture.width), str(picture.height)) == (root.attrib["width"], root.attrib["height"])
 
 
+def test_a_long_run_is_shown_faster(here: Command) -> None:
+    record(*[100, -100] * 61)
+    words = ("--out", "a.webp", "--fps", "1", "--size", "160x120", "--panels", "world")
+    assert here("runs", "movie", "last", *words).stdout.startswith("a.webp: 32 frames, 33.0 s at 2×, ")
+
+
+def test_a_run_without_samples_has_no_chart(here: Command, tmp_path: Path) -> None:
+    (RunStore().load_run("last").folder / OUTPUT_FILE).unlink()
+    here("runs", "picture", "last", "--out", "a.svg")
+    texts = ElementTree.parse(tmp_path / "a.svg").getroot().iter("{http://www.w3.org/2000/svg}text")
+    assert ["".join(node.itertext()) for node in texts] == ["1.00 s"]
+
+
 def test_without_a_file_it_is_named_after_the_program(here: Command, tmp_path: Path) -> None:
-    assert here("runs", "picture", "last").stdout == "log.png\n"
-    assert (tmp_path / "log.png").is_file()
+    assert here("runs", "picture", "last").stdout == "log-picture.png\n"
+    assert (tmp_path / "log-picture.png").is_file()
 
 
 def test_a_small_movie_of_a_long_run_is_faster() -> None:
@@ -246,6 +262,8 @@ def test_damaged_records_cost_only_their_frames(
     records = np.frombuffer(content, list(TICK_FIELDS), offset=HEADER_BYTES)
     records[field][[0, 50, 100]] = value
     path.write_bytes(content)
+    # A line to a point far away takes minutes to draw.
+    assert all(abs(at) < 10_000 for line in pen_trace(SPEC, records).lines for point in line for at in point)
     for name in ("a.webp", "a.cast"):
         done = here("runs", "movie", "last", "--out", name, "--fps", "2", "--panels", "world,chart,arrays")
         note = f"note: {TELEMETRY_FILE}: 3 of 101 records are damaged and left out"

@@ -20,11 +20,12 @@ if TYPE_CHECKING:
 
 _SIZE = re.compile(r"(\d{1,6})[x×](\d{1,6})")
 _PANELS = "world, chart, arrays"
-_DEFAULT_PANELS = "world,chart"
+_FAST_S = 60
+"""A longer run is shown faster, unless the speed is given."""
 
 _run = argument("word", "RUN", lambda: ("last",))
 _panels = option(
-    "--panels", default=_DEFAULT_PANELS, metavar="NAMES", help=f"What is shown: some of {_PANELS} ({_DEFAULT_PANELS})."
+    "--panels", metavar="NAMES", help=f"What is shown: some of {_PANELS} (world, and chart if there are samples)."
 )
 _size = option("--size", default="", metavar="WxH", help="Width and height in pixels (600 wide).")
 _movie_size = option(
@@ -34,10 +35,10 @@ _movie_size = option(
 
 @command(
     _run,
-    option("--out", metavar="FILE", type=Value(), help="The file: .gif, .webp, .apng or .cast (PROGRAM.gif)."),
+    option("--out", metavar="FILE", type=Value(), help="The file: .gif, .webp, .apng or .cast (PROGRAM-movie.gif)."),
     option("--from", "start_s", type=float, metavar="S", help="Start, in simulated seconds."),
     option("--to", "stop_s", type=float, metavar="S", help="End, in simulated seconds."),
-    option("--speed", type=float, default=1.0, metavar="N", help="Multiple of real time (1)."),
+    option("--speed", type=float, metavar="N", help="Multiple of real time (1; more for more than a minute)."),
     option("--fps", type=float, default=20.0, metavar="N", help="Frames per second, 1 to 50 (20)."),
     _panels,
     _movie_size,
@@ -47,58 +48,62 @@ def movie(
     out: str | None,
     start_s: float | None,
     stop_s: float | None,
-    speed: float,
+    speed: float | None,
     fps: float,
-    panels: str,
+    panels: str | None,
     size: str,
 ) -> int:
     """Save a run as a movie: the world, the chart, the sensor arrays, with time and values."""
     from tuisim.movies.files import MOVIE_FORMATS, Clip, check_target, save_movie
 
     run = RunStore().load_run(word)
-    path = Path(out or _default_name(run, ".gif"))
+    path = Path(out or _default_name(run, "movie.gif"))
     check_target(path, "movie", MOVIE_FORMATS)
-    _check_number(speed, 0.01, 1000, "--speed")
+    if speed is not None:
+        _check_number(speed, 0.01, 1000, "--speed")
     _check_number(fps, 1, 50, "--fps")
     kind = MOVIE_FORMATS[path.suffix.lower()]
     shown, sides = _panels_of(panels), _size_of(size, kind.least, kind.most, kind.unit)
     with Progress(f"drawing {path.name}"):
         recorded = _recorded(run)
-        clip = Clip(recorded, shown, recorded.span_s(start_s, stop_s), speed, fps, sides)
+        span_s = recorded.span_s(start_s, stop_s)
+        speed = speed or max(1, math.ceil((span_s[1] - span_s[0]) / _FAST_S))
+        clip = Clip(recorded, shown or _useful(recorded), span_s, speed, fps, sides)
         size_bytes = save_movie(clip, path, partial(tell, f"drawing {path.name}"))
     shots = clip.shots
     lasts_s = sum(shot.duration_ms for shot in shots) / 1000
-    echo(f"{path}: {len(shots)} frames, {lasts_s:.1f} s, {size_bytes:,} bytes")
+    echo(f"{path}: {len(shots)} frames, {lasts_s:.1f} s at {speed:g}×, {size_bytes:,} bytes")
     return 0
 
 
 @command(
     _run,
-    option("--out", metavar="FILE", type=Value(), help="The file: .png or .svg (PROGRAM.png)."),
+    option("--out", metavar="FILE", type=Value(), help="The file: .png or .svg (PROGRAM-picture.png)."),
     option("--at", "time_s", type=float, metavar="S", help="Simulated time in seconds (the end)."),
     _panels,
     _size,
 )
-def picture(word: str, out: str | None, time_s: float | None, panels: str, size: str) -> int:
+def picture(word: str, out: str | None, time_s: float | None, panels: str | None, size: str) -> int:
     """Save one instant of a run as a picture: the world, the chart, the sensor arrays."""
     from tuisim.movies.files import PICTURE_FORMATS, check_target, save_picture
     from tuisim.movies.painter import LEAST, MOST
 
     run = RunStore().load_run(word)
-    path = Path(out or _default_name(run, ".png"))
+    path = Path(out or _default_name(run, "picture.png"))
     check_target(path, "picture", PICTURE_FORMATS)
     shown, sides = _panels_of(panels), _size_of(size, LEAST, MOST, "pixels")
     with Progress(f"drawing {path.name}"):
         recorded = _recorded(run)
         at_s = recorded.end_s if time_s is None else time_s
         _check_number(at_s, 0, recorded.end_s, "--at")
-        save_picture(recorded, shown, at_s, path, sides)
+        save_picture(recorded, shown or _useful(recorded), at_s, path, sides)
     echo(str(path))
     return 0
 
 
-def _default_name(run: StoredRun, suffix: str) -> str:
-    return (Path(run.program.name).stem.strip("-.") or "run") + suffix
+def _default_name(run: StoredRun, end: str) -> str:
+    # Not the program's name alone: its mat may be called so.
+    return f"{Path(run.program.name).stem.strip('-.') or 'run'}-{end}"
 
 
 def _recorded(run: StoredRun) -> Recorded:
@@ -117,9 +122,19 @@ def _check_number(value: float, low: float, high: float, key: str) -> None:
         raise ConfigError(f"must be from {low:g} to {high:g}, got {value:g}", key=key)
 
 
-def _panels_of(text: str) -> tuple[Panel, ...]:
+def _useful(recorded: Recorded) -> tuple[Panel, ...]:
+    """Return the panels that have something to show."""
     from tuisim.movies.clip import Panel
 
+    return (Panel.WORLD, Panel.CHART) if recorded.samples else (Panel.WORLD,)
+
+
+def _panels_of(text: str | None) -> tuple[Panel, ...]:
+    """Return the named panels, in their order on the picture; none for None."""
+    from tuisim.movies.clip import Panel
+
+    if text is None:
+        return ()
     names = [name.strip() for name in text.split(",") if name.strip()]
     for name in names:
         if name not in list(Panel):
