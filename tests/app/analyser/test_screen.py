@@ -222,7 +222,9 @@ async def test_what_the_keys_do(run: StoredRun) -> None:
             assert so(screen, model), keys
 
 
-async def test_every_action_does_no_harm_to_an_empty_log(tmp_path: Path) -> None:
+async def test_every_action_does_no_harm_to_an_empty_log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # A screenshot is saved where one is.
+    monkeypatch.chdir(tmp_path)
     spec = build_run_spec(Settings())
     handle = start_run(program("print('no sample')"), spec, RunOptions(speed=0.0))
     handle.wait()
