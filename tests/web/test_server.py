@@ -210,7 +210,7 @@ async def test_a_download_that_breaks_off_is_no_file(visited: Visited, monkeypat
 async def test_an_app_that_sends_nonsense_is_ended(visited: Visited) -> None:
     socket, pid = await (await visited()).started()
     await socket.send_json(["stdin", "nonsense"])
-    assert await heard(socket) == "The app has failed; the server's terminal tells more."
+    assert await heard(socket) == "The app has been ended."
     await gone(pid)
 
 
@@ -268,8 +268,9 @@ async def test_the_app_does_not_take_the_servers_terminal_for_its_own(
 GONE = "tuisim: mine.py: there is no such program"
 ENDS = {
     "the user quits": ("0 a note", "", []),
-    "what to open is gone": (f"2 note: x\n{GONE}\n", GONE, [f"note: x\n{GONE}\n"]),
+    "what to open is gone": (f"2 note: x\n{GONE}\n", GONE, [f"note: x\n{GONE}"]),
     "a long reason": ("2 tuisim: " + "é" * 300, "tuisim: " + "é" * 57, ["tuisim: " + "é" * 300]),
+    "somebody ends it": ("143 ", "The app has been ended.", []),
     "a failure": ("1 Traceback", "The app has failed; the server's terminal tells more.", ["Traceback"]),
 }
 

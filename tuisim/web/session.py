@@ -74,7 +74,7 @@ class Session(AppService):
         errors = asyncio.create_task(_last_bytes(self._process.stderr))
         with suppress(asyncio.IncompleteReadError):
             await self._pass_on(self._process.stdout)
-        self.errors = (await errors).decode("utf-8", "replace")
+        self.errors = (await errors).decode("utf-8", "replace").strip()
         await self._process.wait()
 
     async def _pass_on(self, output: asyncio.StreamReader) -> None:
@@ -103,8 +103,10 @@ class Session(AppService):
         """What to tell the visitor after the app has ended; empty if nothing has failed."""
         if not self.has_failed:
             return ""
-        last = self.errors.rstrip().rpartition("\n")[2]
-        return last if last.startswith("tuisim: ") else "The app has failed; the server's terminal tells more."
+        last = self.errors.rpartition("\n")[2]
+        if last.startswith("tuisim: "):
+            return last
+        return "The app has failed; the server's terminal tells more." if last else "The app has been ended."
 
     async def stop(self) -> None:
         """End the app and everything it has started, at once if it does not end by itself."""

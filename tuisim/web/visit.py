@@ -62,7 +62,7 @@ class Visit:
 
     async def _until_app_ends(self) -> None:
         await self._session.ended()
-        if self._session.has_failed:
+        if self._session.has_failed and self._session.errors:
             self._report(self._session.errors)
         await self.end(self._session.reason)
 
