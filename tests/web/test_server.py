@@ -162,6 +162,7 @@ VISITS = {
     "the terminal": ("static/js/textual.js", "javascript"),
     "the terminal's style": ("static/css/xterm.css", "text/css"),
     "the font": ("static/fonts/RobotoMono-VariableFont_wght.ttf", ""),
+    "the font of symbols": ("fonts/DejaVuSansMono.ttf", ""),
 }
 
 

@@ -28,6 +28,7 @@ HEARTBEAT_S = 15.0
 CLOSE_WITHIN_S = 2.0
 """Time for a browser to confirm that its socket is closed."""
 _PAGE = Path(__file__).parent / "page"
+_FONTS = Path(__file__).parent.parent / "charts" / "fonts"
 _STATIC = Path(textual_serve.__file__).parent / "static"
 _DEFAULT_SIZE = (80, 24)
 
@@ -74,6 +75,7 @@ class Server:
                 web.get(f"{top}/download/{{key}}", self._download),
                 web.static(f"{top}/static", _STATIC),
                 web.static(f"{top}/page", _PAGE),
+                web.static(f"{top}/fonts", _FONTS),
             ]
         )
         application.on_response_prepare.append(_protect)

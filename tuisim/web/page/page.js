@@ -35,6 +35,7 @@ window.onload = async (event) => {
   document.getElementById("again").addEventListener("click", () => location.reload());
   document.getElementById("terminal").dataset.sessionWebsocketUrl = here.replace(/^http/, "ws") + "ws";
   // The terminal measures its cells once.
-  await Promise.allSettled(["", "bold ", "italic "].map((style) => document.fonts.load(`${style}16px "Roboto Mono"`)));
+  const fonts = ["", "bold ", "italic "].map((style) => document.fonts.load(`${style}16px "Roboto Mono"`));
+  await Promise.allSettled([...fonts, document.fonts.load('16px "Monaco"', "⏎")]);
   start(event);
 };
