@@ -138,7 +138,6 @@ async def test_a_stranger_gets_no_app(
 WRONG = {
     "no host": b"GET / HTTP/1.1\r\n\r\n",
     "an endless path": b"GET /" + b"a" * 20_000 + b" HTTP/1.1\r\n\r\n",
-    "encryption": b"\x16\x03\x01\r\n\r\n",
 }
 
 
