@@ -19,6 +19,7 @@ from textual.css.tokenizer import Token
 from textual.notifications import Notification
 
 from tests.app.terminals import Terminal
+from tuisim.config import preferences
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -80,6 +81,12 @@ def _notices_stay(monkeypatch: pytest.MonkeyPatch) -> None:
     """Keep notices until the app removes them, so that a test on a busy machine still finds them."""
     monkeypatch.setattr(Notification, "has_expired", False)
     monkeypatch.setattr(Notification, "time_left", 3600.0)
+
+
+@pytest.fixture(autouse=True)
+def _own_preferences(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A test finds no arrangement of panels that another one has kept."""
+    monkeypatch.setattr(preferences, "preferences_file", lambda: tmp_path / "preferences.json")
 
 
 @pytest.fixture

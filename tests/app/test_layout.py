@@ -7,7 +7,8 @@ import itertools
 import numpy as np
 import pytest
 
-from tuisim.app.panel_area import PanelBox, arrange, size_class
+from tuisim.app.layout.arrangement import arrange, size_class
+from tuisim.app.layout.tree import PanelBox
 from tuisim.app.panels import PANELS, PanelInfo, TerminalSize
 
 SIZES = [(80, 23), (80, 40), (100, 30), (120, 39), (132, 43), (200, 59), (237, 70), (60, 18)]

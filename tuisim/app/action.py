@@ -92,6 +92,8 @@ _LABELS = {
 def _label(key: str) -> str:
     modifier, _, name = key.rpartition("+")
     label = _LABELS.get(name, name)
+    if len(label) in (2, 3) and label[0] == "f" and label[1:].isdigit():
+        label = label.upper()
     return f"⇧{label}" if modifier == "shift" else f"{modifier}+{label}" if modifier else label
 
 

@@ -27,6 +27,7 @@ from tuisim.app.debugger import AppDebugger
 from tuisim.app.editor.document import Document
 from tuisim.app.feed import Feed, PastView, Series, sample_series
 from tuisim.app.goals import AppGoals
+from tuisim.app.layout.borders import LAYOUT_KEYS
 from tuisim.app.lesson import AppLesson
 from tuisim.app.loader import PERIOD_S, Loader
 from tuisim.app.panel_area import PanelArea
@@ -475,12 +476,17 @@ class LabApp(PanelMessages):
 
     def _show_footer(self, state: AppState) -> None:
         off = frozenset(f"panel-{panel}" for panel in PANELS if not self.panel_area.shown(panel))
-        self.key_footer.show(working(state.situation), state.status, off, self._field_keys(), state.failed)
+        actions = working(state.situation)
+        if self.panel_area.is_single:
+            actions = ACTIONS["panel-next"], *actions
+        self.key_footer.show(actions, state.status, off, self._field_keys(), state.failed)
 
     def _field_keys(self) -> tuple[KeyWord, ...]:
         """Return the keys of the text field that has the focus; empty if there is none."""
         # The focus may already be gone while the app ends.
         focused = self.focused if self.screen_stack else None
+        if self.panel_area.chosen:
+            return LAYOUT_KEYS
         if isinstance(focused, Input):
             return FIELD_KEYS
         code = self.panel_area.code
@@ -511,6 +517,10 @@ class LabApp(PanelMessages):
             self.lesson.show()
         self.panel_area.show_next_run(self.run_controller.next_run)
         self.call_after_refresh(self.draw, force=True)
+
+    def on_border_mover_layout_mode_changed(self) -> None:
+        """Show the keys of the layout mode, or the usual ones."""
+        self.situation_changed()
 
     def on_panel_area_rearranged(self) -> None:
         self.mark_box()

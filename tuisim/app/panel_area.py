@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from math import ceil
 from typing import TYPE_CHECKING, Generic, TypeVar, cast
 
 from textual import events
-from textual.containers import Container
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.app.panels import PANELS, NextRunPanel, Panel, PanelPlace, TerminalSize
+from tuisim.app.layout.arrangement import Preset, arrange, is_single, is_tall, size_class, wanted_panels, with_room
+from tuisim.app.layout.borders import BorderMover
+from tuisim.app.layout.kept import KeptLayout, load_borders, load_layout, save_borders, save_layout
+from tuisim.app.panels import PANELS, NextRunPanel, Panel, TerminalSize
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import Snapshot
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 
 if TYPE_CHECKING:
     from tuisim.app.panels.brick import Brick
@@ -42,7 +42,7 @@ class _Mounted(Generic[PanelWidget]):
         return cast("PanelWidget | None", area.panels.get(self._panel) if area is not None else None)
 
 
-class PanelArea(Container):
+class PanelArea(BorderMover):
     """The area of all panels.
 
     Args:
@@ -60,14 +60,21 @@ class PanelArea(Container):
         panel: str
 
     def __init__(self, on: frozenset[str], off: frozenset[str]) -> None:
-        super().__init__(id="panel-area")
-        self.panels: dict[str, Widget] = {}
-        """The panels that have been mounted, by id."""
-        asked = {**dict.fromkeys(on, True), **dict.fromkeys(off, False)}
-        self._asked = {panel: asked[panel] for panel in PANELS if panel in asked}
+        super().__init__()
+        given = {**dict.fromkeys(on, True), **dict.fromkeys(off, False)}
+        self._given = {panel: given[panel] for panel in PANELS if panel in given}
+        """Panels shown or hidden by options, which are not kept."""
+        self._asked = dict(self._given)
         """Panels that were asked for, the latest last."""
+        self._chosen: dict[str, bool] = {}
+        """Those of them that the user has shown or hidden by their keys, which are kept."""
+        self.preset = Preset.STANDARD
         self.alone = ""
         """Id of the maximized panel, empty for none."""
+        self.front = "world"
+        """The panel shown where there is room for one only."""
+        self._shape = ""
+        """The form of the screen for which `moved` was loaded; empty before the first layout."""
         self._roomy: tuple[str, int, int] | None = None
         """The panel that needs a number of columns and rows."""
 
@@ -99,11 +106,83 @@ class PanelArea(Container):
         """Return the panels on the screen."""
         return [cast(Panel, widget) for widget in self.panels.values() if widget.display]
 
+    @property
+    def is_single(self) -> bool:
+        """Whether there is room for one panel only."""
+        return is_single(self.size.width, self.size.height)
+
     def toggle(self, panel: str) -> None:
-        """Show or hide a panel."""
-        show = not self.shown(panel) or bool(self.alone)
+        """Show or hide a panel; where there is room for one only, show it instead of the other one."""
+        show = self.is_single or not self.shown(panel) or bool(self.alone)
         self.alone, self._roomy = "", None
+        if self.is_single:
+            self.front = panel if panel != self.front else "world"
+            self.lay_out()
+            return
         self.request({panel: show})
+        self._chosen.pop(panel, None)
+        self._chosen[panel] = show
+        self._keep_panels()
+
+    def next_panel(self, by: int) -> str:
+        """Return the panel after the one with the focus; where there is room for one only, show it."""
+        if self.is_single:
+            usual = wanted_panels(self.preset, self._asked, self.size.width, self.size.height)
+            panels = [panel for panel in PANELS if panel in {*usual[0], *usual[1], self.front}]
+            self.front = panels[(panels.index(self.front) + by) % len(panels)]
+            self.lay_out()
+            return self.front
+        panels = [panel for panel in self.arrangement.boxes if self._can_focus(panel)]
+        at = panels.index(focused) if (focused := self.focused_panel()) in panels else -1 if by > 0 else 0
+        return panels[(at + by) % len(panels)] if panels else ""
+
+    def _can_focus(self, panel: str) -> bool:
+        return any(child.focusable for child in self.panels[panel].walk_children(Widget, with_self=True))
+
+    def focused_panel(self) -> str:
+        """Return the panel that has the focus, or an empty text."""
+        focused = self.screen.focused
+        around = focused.ancestors_with_self if focused else []
+        return next((name for name, widget in self.panels.items() if widget in around), "")
+
+    def choose_preset(self, preset: Preset) -> Preset:
+        """Show the panels of a preset, or the standard ones if it is shown already, and return which.
+
+        Only what is shown changes, never the run.
+        """
+        unchanged = self.preset == preset and self._asked in ({}, self._given) and not self.moved
+        self.preset = Preset.STANDARD if unchanged else preset
+        self._asked, self._chosen = dict(self._given) if self.preset == Preset.STANDARD else {}, {}
+        self.alone, self._roomy, self.front = "", None, "world"
+        self._load_borders()
+        self.lay_out()
+        self._keep_panels()
+        return self.preset
+
+    def _keep_panels(self) -> None:
+        save_layout(self._size_class(), KeptLayout(self.preset, self._chosen))
+
+    def borders_changed(self) -> None:
+        """Keep the borders for this form of the screen."""
+        save_borders(self._shape, self.moved)
+
+    def _size_class(self) -> TerminalSize:
+        return size_class(self.size.width, self.size.height + 1)
+
+    def _load_borders(self) -> None:
+        tall = " tall" if is_tall(self.size.width, self.size.height) else ""
+        self._shape = f"{self.preset} {self._size_class()}{tall}"
+        self.moved = load_borders(self._shape)
+
+    def _load(self) -> None:
+        """Take up what was kept for this size, at the start, and the borders whenever the size has changed."""
+        if not self._shape:
+            kept = load_layout(self._size_class())
+            self.preset = kept.preset
+            self._chosen = kept.asked
+            self._asked = {**{panel: on for panel, on in kept.asked.items() if panel not in self._given}, **self._given}
+        if not self.chosen:
+            self._load_borders()
 
     def request(self, wanted: Mapping[str, bool | None]) -> None:
         """Show and hide panels. Later requests get room first; None leaves a panel to the size of the terminal."""
@@ -135,30 +214,29 @@ class PanelArea(Container):
             self._roomy = panel, columns, rows
             self.lay_out()
 
-    def _wanted(self) -> list[str]:
-        """Return the ids of the panels to show, by priority."""
+    def _wanted(self) -> tuple[list[str], list[str]]:
+        """Return the ids of the panels to show, by priority, and those for what space is left."""
+        width, height = self.size
+        wanted, fill = wanted_panels(self.preset, self._asked, width, height)
         if self._roomy:
             panel, columns, rows = self._roomy
-            wanted = with_room(panel, self._usually_wanted(), (columns, rows), (self.size.width, self.size.height))
+            wanted = with_room(panel, wanted, (columns, rows), (width, height), self.preset)
             self.alone = panel if wanted == [panel] else ""
-            return wanted
-        return [self.alone] if self.alone else self._usually_wanted()
-
-    def _usually_wanted(self) -> list[str]:
-        size = size_class(self.size.width, self.size.height + 1)
-        asked = [panel for panel, on in reversed(self._asked.items()) if on]
-        rest = [info.id for info in PANELS.values() if size in info.sizes and info.id not in self._asked]
-        return asked + rest
+            return wanted, []
+        if self.alone or self.is_single:
+            return [self.alone or self.front], []
+        return wanted, fill
 
     def lay_out(self) -> None:
         """Lay out every panel."""
         if not self.size:
             return
-        arrangement = arrange(self._wanted(), self.size.width, self.size.height)
+        wanted, fill = self._wanted()
+        self.arrangement = arrange(wanted, self.size.width, self.size.height, fill, self.preset, self.moved)
         with self.app.batch_update():
             for panel, widget in self.panels.items():
-                widget.display = panel in arrangement.boxes
-            for panel, box in arrangement.boxes.items():
+                widget.display = panel in self.arrangement.boxes
+            for panel, box in self.arrangement.boxes.items():
                 styles = self._panel(panel).styles
                 styles.width, styles.height = box.width, box.height
                 styles.offset = (box.x, box.y)
@@ -206,6 +284,7 @@ class PanelArea(Container):
                 self._panel(panel).display = False
 
     def on_resize(self, event: events.Resize) -> None:
+        self._load()
         self.lay_out()
 
     def on_descendant_focus(self, event: events.DescendantFocus) -> None:
@@ -224,180 +303,10 @@ class PanelArea(Container):
         around = focused.ancestors_with_self if focused else []
         for panel in self.panels.values():
             panel.set_class(panel in around, "-focused")
+        self.front = self.focused_panel() or self.front
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment in every panel on the screen."""
         for panel in self.on_screen():
             if cast(Widget, panel).is_attached:
                 panel.show(snapshot)
-
-
-BORDER = 2
-"""Rows or columns that the two edges of a border take."""
-MIN_STRIP_COLS = 36
-"""A panel of the bottom strip is not made narrower than this to fit another one next to it."""
-
-
-@dataclass(frozen=True, slots=True)
-class PanelBox:
-    """The box of a panel, in cells from the upper left corner."""
-
-    x: int
-    y: int
-    width: int
-    height: int
-
-
-@dataclass(frozen=True, slots=True)
-class PanelLayout:
-    """Boxes by panel id, and the panels that did not fit."""
-
-    boxes: dict[str, PanelBox]
-    left_out: tuple[str, ...] = ()
-
-
-def size_class(width: int, height: int) -> TerminalSize:
-    """Return the size of a terminal: small, medium or large."""
-    if width >= 170 and height >= 50:
-        return TerminalSize.LARGE
-    if width >= 112 and height >= 34:
-        return TerminalSize.MEDIUM
-    return TerminalSize.SMALL
-
-
-_LEAST_TEXT, _MOST_TEXT = 40, 58
-"""Columns for text to read, if that is at most half of the screen."""
-
-
-def side_width(width: int, panels: Sequence[str] = ()) -> int:
-    """Return the width of the side column: two sensor discs fit side by side from 112 columns on.
-
-    Args:
-        width: Columns of the screen.
-        panels: The panels in the column; a lesson gets up to half of the screen.
-    """
-    if "lesson" in panels:
-        return min(width // 2, max(_LEAST_TEXT, min(_MOST_TEXT, width * 3 // 8)))
-    if width < 112:
-        return max(26, min(34, width * 28 // 80))
-    return 42 if width < 170 else 46
-
-
-def _in_place(panels: Sequence[str], place: str) -> list[str]:
-    return [info.id for info in PANELS.values() if info.place == place and info.id in panels]
-
-
-def _share(panels: Sequence[str], wanted: Sequence[str], rows: int) -> list[int]:
-    """Divide `rows` among stacked panels: the minimum, then preferred heights by priority, the rest to the topmost."""
-    heights = {panel: PANELS[panel].min_rows for panel in panels}
-    spare = rows - sum(heights.values())
-    for panel in sorted(panels, key=wanted.index):
-        more = min(spare, PANELS[panel].good_rows - heights[panel])
-        heights[panel] += more
-        spare -= more
-    heights[panels[0]] += spare
-    return list(heights.values())
-
-
-def _strip_rows(strip: Sequence[str], width: int) -> list[list[str]]:
-    """Cut the bottom strip into rows of panels that are side by side."""
-    if not strip:
-        return []
-    columns = max(1, min(len(strip), width // MIN_STRIP_COLS))
-    count = ceil(len(strip) / columns)
-    return [list(strip[row::count]) for row in range(count)]
-
-
-def _row_least(row: Sequence[str]) -> int:
-    return max(PANELS[panel].min_rows for panel in row)
-
-
-def _strip_least(rows: list[list[str]]) -> int:
-    return sum(map(_row_least, rows))
-
-
-def _fits(panels: Sequence[str], width: int, height: int) -> bool:
-    side, strip, main = (_in_place(panels, place) for place in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN))
-    if sum(PANELS[panel].min_rows for panel in side) > height:
-        return False
-    left = width - (side_width(width, side) if side and (strip or main) else 0)
-    need = _strip_least(_strip_rows(strip, left)) + sum(PANELS[panel].min_rows for panel in main)
-    return need <= height
-
-
-def _main_rows(width: int, height: int, strip_least: int) -> int:
-    """Return the rows for the world: as many as its shape needs, if the strip below keeps its minimum."""
-    # A cell is two half blocks high, and a half block is roughly square.
-    ideal = ceil((width - BORDER) * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / 2) + BORDER
-    return min(ideal, height - strip_least)
-
-
-def _place_strip(boxes: dict[str, PanelBox], rows: list[list[str]], top: int, width: int, height: int) -> None:
-    # Rows of panels share the height as panels in a column do, except that the rest goes to all of them.
-    least = [_row_least(row) for row in rows]
-    good = [max(PANELS[panel].good_rows for panel in row) for row in rows]
-    spare = height - sum(least)
-    for at, row in enumerate(rows):
-        extra = spare * good[at] // sum(good[at:])
-        spare -= extra
-        rows_high = least[at] + extra
-        x = 0
-        shares = sum(PANELS[panel].weight for panel in row)
-        for panel in row:
-            across = (width - x) * PANELS[panel].weight // shares
-            boxes[panel] = PanelBox(x, top, across, rows_high)
-            x += across
-            shares -= PANELS[panel].weight
-        top += rows_high
-
-
-def arrange(panels: Sequence[str], width: int, height: int) -> PanelLayout:
-    """Place panels on a screen.
-
-    Args:
-        panels: Ids, the most wanted first.
-        width: Columns.
-        height: Rows.
-
-    Returns:
-        Boxes that fill the screen without overlap; panels that found no room are left out.
-    """
-    kept: list[str] = []
-    left_out: list[str] = []
-    for panel in panels:
-        (kept if _fits([*kept, panel], width, height) else left_out).append(panel)
-    side, strip, main = (_in_place(kept, place) for place in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN))
-    boxes: dict[str, PanelBox] = {}
-    left = width
-    if side:
-        left = width - side_width(width, side) if strip or main else 0
-        y = 0
-        for panel, rows_high in zip(side, _share(side, kept, height), strict=True):
-            boxes[panel] = PanelBox(left, y, width - left, rows_high)
-            y += rows_high
-    rows = _strip_rows(strip, left)
-    top = 0
-    if main:
-        top = _main_rows(left, height, _strip_least(rows)) if strip else height
-        boxes[main[0]] = PanelBox(0, 0, left, top)
-    if strip:
-        _place_strip(boxes, rows, top, left, height - top)
-    return PanelLayout(boxes, tuple(left_out))
-
-
-def with_room(panel: str, panels: Sequence[str], least: tuple[int, int], size: tuple[int, int]) -> list[str]:
-    """Return the panels to show so that one has room: as they are, else without those beside it, else it alone.
-
-    Args:
-        panel: The one.
-        panels: Ids, the most wanted first.
-        least: Columns and rows that are room enough.
-        size: Columns and rows of the screen.
-    """
-    others = [other for other in panels if other != panel]
-    elsewhere = [other for other in others if PANELS[other].place != PANELS[panel].place]
-    for beside in (others, elsewhere):
-        box = arrange([panel, *beside], *size).boxes[panel]
-        if box.width >= least[0] and box.height >= least[1]:
-            return [panel, *beside]
-    return [panel]

@@ -103,8 +103,8 @@ async def test_help_has_as_many_columns_as_there_is_room_for() -> None:
 async def test_a_panel_without_room_takes_the_place_of_another() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
-        await pilot.press("A", "H")
-        assert app.panel_area.shown("arrays")
+        await pilot.press("X", "H")
+        assert app.panel_area.shown("positioning")
         assert app.panel_area.shown("controls")
         assert not app.panel_area.shown("instrumentation")
         assert "Simulator controls replaces Instrumentation (i)" in notices(app)
@@ -115,7 +115,7 @@ async def test_a_panel_without_room_takes_the_place_of_another() -> None:
 async def test_resize_there_and_back() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: "White" in screen_text(app))
+        await until(pilot, lambda: all(words in screen_text(app) for words in ("White", "left │ right")))
         before = screen_text(app)
         await pilot.resize_terminal(200, 60)
         await until(pilot, lambda: app.panel_area.shown("positioning"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tuisim.app.action import KeyHelp, key_groups
+from tuisim.app.layout.arrangement import Preset
 
 if TYPE_CHECKING:
     from tuisim.app.workspace import Workspace
@@ -20,12 +21,45 @@ def toggle(workspace: Workspace, panel: str) -> None:
 def enlarge(workspace: Workspace) -> None:
     """Maximize the panel with the focus, or restore the layout."""
     area = workspace.panel_area
-    around = area.screen.focused.ancestors_with_self if area.screen.focused else []
-    panel = next((name for name, widget in area.panels.items() if widget in around), "")
+    panel = area.focused_panel()
     if panel or area.alone:
         area.maximize("" if area.alone else panel)
     else:
         workspace.app.say("No panel has the focus: press tab, or click a panel")
+
+
+def choose_preset(workspace: Workspace, preset: Preset) -> None:
+    """Show the panels of a preset; if it is shown already, the standard ones."""
+    area = workspace.panel_area
+    shown = area.choose_preset(preset)
+    if not area.shown(area.focused_panel()):
+        area.focus_world()
+    key = workspace.app.ACTIONS[f"layout-{preset}"].key_label
+    again = "" if shown == Preset.STANDARD else f" ({key} again: standard)"
+    workspace.app.say(f"Layout: {shown}{again}")
+    workspace.app.situation_changed()
+
+
+def next_panel(workspace: Workspace, by: int) -> None:
+    """Focus the next panel; where there is room for one only, show it."""
+    if panel := workspace.panel_area.next_panel(by):
+        workspace.app.situation_changed()
+        workspace.app.call_after_refresh(workspace.panel_area.attend, panel)
+
+
+def move_borders(workspace: Workspace) -> None:
+    """Begin the layout mode, in which the arrow keys move the borders of the focused panel."""
+    area = workspace.panel_area
+    if not area.arrangement.borders:
+        workspace.app.say("There is one panel only: no borders to move")
+        return
+    area.begin_layout_mode(area.focused_panel() or next(iter(area.arrangement.boxes)))
+
+
+def reset_borders(workspace: Workspace) -> None:
+    """Give every panel the size that the layout gives it."""
+    workspace.panel_area.action_reset_borders()
+    workspace.panel_area.borders_changed()
 
 
 _START = (

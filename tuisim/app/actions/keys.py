@@ -13,6 +13,7 @@ from typing import TypeAlias
 from tuisim.app.action import Action
 from tuisim.app.actions import app, files, lesson, program, robot, time_travel
 from tuisim.app.actions.files import analyse
+from tuisim.app.layout.arrangement import Preset
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import IN_RUN, RunPhase, Situation
 from tuisim.app.workspace import Workspace
@@ -93,6 +94,27 @@ def _toggles() -> list[LabAction]:
     return [
         Action(f"panel-{p.id}", p.key, f"Show or hide {p.title}", PANEL, partial(app.toggle, panel=p.id), footer=p.id)
         for p in PANELS.values()
+    ]
+
+
+_PRESETS = {
+    Preset.DRIVE: ("f6", "Layout to drive: large world, readings, position"),
+    Preset.DEBUG: ("f7", "Layout to debug: code, variables, world, output"),
+    Preset.ANALYSE: ("f8", "Layout to analyse: large chart, arrays, world"),
+    Preset.TEACH: ("f9", "Layout to teach: large world, code, output"),
+}
+
+
+def _layouts() -> list[LabAction]:
+    return [
+        *(
+            Action(f"layout-{preset}", key, title, PANEL, partial(app.choose_preset, preset=preset))
+            for preset, (key, title) in _PRESETS.items()
+        ),
+        Action("borders", "f4", "Move the borders of the focused panel", PANEL, app.move_borders),
+        Action("reset-borders", "shift+f4", "Borders back to the sizes of the layout", PANEL, app.reset_borders),
+        Action("panel-next", "f2", "Next panel", PANEL, partial(app.next_panel, by=1), footer="next panel"),
+        Action("panel-before", "shift+f2", "Previous panel", PANEL, partial(app.next_panel, by=-1)),
     ]
 
 
@@ -178,6 +200,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("clear", "C", "Clear the pen trace", ROBOT, robot.clear_trace, footer="clear"),
         Action("clear-log", "x", "Clear output and chart; the run keeps its log", FILES, files.clear_log),
         *_toggles(),
+        *_layouts(),
         Action("lesson-menu", "M", "Lessons: open, skip a step, start over", LESSON, lesson.menu, _can_change_world),
         Action("answer", "Q", "Answer the question of the lesson", LESSON, lesson.answer),
         Action("hint", "Y", "Next hint of the lesson", LESSON, lesson.hint),

@@ -67,10 +67,14 @@ class PanelInfo:
     sizes: tuple[TerminalSize, ...]
     """Terminal sizes at which it is on by default."""
     min_rows: int
+    fair_rows: int
+    """Height that shows everything, compactly."""
     good_rows: int
-    """Preferred height: filled before another panel gets more than its minimum."""
+    """Preferred height."""
     weight: int = 1
-    """Its share of the width among panels that are side by side."""
+    """Its share of the space among panels that are side by side, or grow."""
+    grows: bool = False
+    """Whether it has a use for more rows than the preferred ones."""
 
     def load(self) -> type[Panel]:
         """Import the panel's class."""
@@ -87,21 +91,21 @@ _LARGE = (TerminalSize.LARGE,)
 PANELS: Mapping[str, PanelInfo] = {
     panel.id: panel
     for panel in (
-        PanelInfo("world", "World", "W", "world:World", _MAIN, _ALL, 8, 14),
-        PanelInfo("lesson", "Lesson", "E", "lesson:LessonPanel", _SIDE, (), 11, 40),
-        PanelInfo("instrumentation", "Instrumentation", "i", "instrumentation:Instrumentation", _SIDE, _ALL, 8, 15),
-        PanelInfo("output", "Output", "O", "output:Output", _BOTTOM, _ALL, 5, 9, weight=3),
-        PanelInfo("arrays", "Sensor arrays", "A", "arrays:Arrays", _SIDE, _MEDIUM_UP, 8, 13),
-        PanelInfo("code", "Code", "D", "code:Code", _BOTTOM, _MEDIUM_UP, 5, 9, weight=4),
-        PanelInfo("chart", "Chart", "c", "chart:Chart", _BOTTOM, _LARGE, 8, 16, weight=5),
-        PanelInfo("controls", "Simulator controls", "H", "controls:Controls", _SIDE, _MEDIUM_UP, 11, 12),
-        PanelInfo("positioning", "Positioning", "X", "position:Positioning", _SIDE, _LARGE, 8, 8),
-        PanelInfo("noise", "Noise", "z", "noise:Noise", _SIDE, _LARGE, 6, 6),
-        PanelInfo("debug", "Debug", "G", "debug:Debug", _SIDE, (), 9, 18),
-        PanelInfo("brick", "Brick", "K", "brick:Brick", _BOTTOM, (), 9, 20, weight=4),
-        PanelInfo("obstacles", "Obstacles", "B", "obstacles:Obstacles", _SIDE, (), 11, 16),
-        PanelInfo("goals", "Goals", "J", "goals:Goals", _SIDE, (), 9, 20),
-        PanelInfo("settings", "Settings", "Z", "settings:Settings", _SIDE, (), 14, 40),
+        PanelInfo("world", "World", "W", "world:World", _MAIN, _ALL, 8, 14, 14),
+        PanelInfo("lesson", "Lesson", "E", "lesson:LessonPanel", _SIDE, (), 11, 24, 40, grows=True),
+        PanelInfo("instrumentation", "Instrumentation", "i", "instrumentation:Instrumentation", _SIDE, _ALL, 8, 13, 16),
+        PanelInfo("output", "Output", "O", "output:Output", _BOTTOM, _ALL, 5, 7, 9, weight=3, grows=True),
+        PanelInfo("arrays", "Sensor arrays", "A", "arrays:Arrays", _SIDE, _MEDIUM_UP, 8, 10, 13),
+        PanelInfo("code", "Code", "D", "code:Code", _BOTTOM, _MEDIUM_UP, 5, 8, 20, weight=4, grows=True),
+        PanelInfo("chart", "Chart", "c", "chart:Chart", _BOTTOM, _LARGE, 8, 10, 16, weight=5, grows=True),
+        PanelInfo("controls", "Simulator controls", "H", "controls:Controls", _SIDE, _MEDIUM_UP, 11, 11, 12),
+        PanelInfo("positioning", "Positioning", "X", "position:Positioning", _SIDE, _LARGE, 8, 8, 8),
+        PanelInfo("noise", "Noise", "z", "noise:Noise", _SIDE, _LARGE, 6, 6, 6),
+        PanelInfo("debug", "Debug", "G", "debug:Debug", _SIDE, (), 9, 18, 18, grows=True),
+        PanelInfo("brick", "Brick", "K", "brick:Brick", _BOTTOM, (), 9, 12, 20, weight=4, grows=True),
+        PanelInfo("obstacles", "Obstacles", "B", "obstacles:Obstacles", _SIDE, (), 11, 12, 16, grows=True),
+        PanelInfo("goals", "Goals", "J", "goals:Goals", _SIDE, (), 9, 20, 20, grows=True),
+        PanelInfo("settings", "Settings", "Z", "settings:Settings", _SIDE, (), 14, 14, 40, grows=True),
     )
 }
 """Every panel by id."""

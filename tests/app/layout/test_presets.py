@@ -1,0 +1,76 @@
+"""Presets: which panels they show, in every size of terminal, and that they leave the run alone."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.app.app_help import ENDLESS, LOGS, ready, screen_text, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.layout.arrangement import Preset, arrange, core_panels, mat_cells, wanted_panels
+from tuisim.app.layout.tree import PanelLayout
+from tuisim.app.panels import PANELS
+from tuisim.app.snapshot import RunPhase
+
+SIZES = [(80, 24), (100, 30), (120, 40), (160, 48), (200, 60), (300, 100), (60, 80)]
+KEYS = {Preset.DRIVE: "f6", Preset.DEBUG: "f7", Preset.ANALYSE: "f8", Preset.TEACH: "f9"}
+
+in_each_size = pytest.mark.parametrize("size", SIZES, ids=[f"{width}x{height}" for width, height in SIZES])
+for_each_preset = pytest.mark.parametrize("preset", Preset)
+
+
+def layout_of(preset: Preset, width: int, height: int) -> PanelLayout:
+    wanted, fill = wanted_panels(preset, {}, width, height - 1)
+    return arrange(wanted, width, height - 1, fill, preset)
+
+
+@in_each_size
+@for_each_preset
+def test_a_preset_shows_what_it_is_made_for(preset: Preset, size: tuple[int, int]) -> None:
+    layout = layout_of(preset, *size)
+    assert set(core_panels(preset)) <= set(layout.boxes)
+    assert not layout.left_out
+    for panel, box in layout.boxes.items():
+        assert box.height >= PANELS[panel].min_rows and box.width >= 24, panel
+    assert sum(box.width * box.height for box in layout.boxes.values()) == size[0] * (size[1] - 1)
+
+
+@in_each_size
+@for_each_preset
+def test_no_third_of_a_panel_is_empty(preset: Preset, size: tuple[int, int]) -> None:
+    for panel, box in layout_of(preset, *size).boxes.items():
+        if panel == "world":
+            assert mat_cells(box) > 2 / 3 * (box.width - 2) * (box.height - 3)
+        elif not PANELS[panel].grows:
+            # Those that grow show more in more rows; the others need the rows of their text.
+            assert box.height - 2 < 1.5 * (PANELS[panel].good_rows - 2), panel
+
+
+@pytest.mark.parametrize(("preset", "key"), KEYS.items(), ids=KEYS)
+async def test_a_key_shows_a_preset_and_again_the_standard_layout(preset: Preset, key: str) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        standard = set(app.panel_area.arrangement.boxes)
+        await pilot.press(key)
+        assert set(core_panels(preset)) <= set(app.panel_area.arrangement.boxes)
+        await until(pilot, lambda: all(f"─ {PANELS[panel].title}" in screen_text(app) for panel in core_panels(preset)))
+        await pilot.press(key)
+        assert set(app.panel_area.arrangement.boxes) == standard
+
+
+async def test_a_preset_leaves_the_run_alone() -> None:
+    async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
+        run, plan = app.run_controller.run, app.run_controller.next_run
+        await pilot.press(*KEYS.values())
+        assert (app.run_controller.run, app.run_controller.next_run) == (run, plan)
+        assert app.run_controller.state == RunPhase.RUNNING
+
+
+async def test_the_palette_offers_every_preset() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("ctrl+p", *"analyse: large")
+        await until(pilot, lambda: "Layout to analyse" in screen_text(app))
+        await pilot.press("enter")
+        await until(pilot, lambda: app.panel_area.preset == Preset.ANALYSE)

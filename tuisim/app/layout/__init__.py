@@ -1,0 +1,1 @@
+"""Where panels go: the tree of the screen, the arrangements of panels, and how they are kept."""

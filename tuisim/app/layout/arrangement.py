@@ -1,0 +1,363 @@
+"""Which panels are shown, and where: the presets, and the forms of the screen that they choose from by its size."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from math import ceil
+
+from tuisim.app.layout.tree import (
+    EDGES,
+    TIME_BAR_ROWS,
+    Axis,
+    Node,
+    PanelBox,
+    PanelLayout,
+    fair_rows,
+    ideal_rows,
+    joined,
+    least_columns,
+    least_rows,
+    panels_of,
+    place,
+)
+from tuisim.app.panels import PANELS, PanelPlace, TerminalSize
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+
+MIN_STRIP_COLS = 36
+"""A panel of the bottom strip is not made narrower than this to fit another one next to it."""
+_SINGLE_COLS, _SINGLE_ROWS = 60, 15
+"""Below this size one panel is shown at a time."""
+_MAX_SIDE_COLS = 46
+_COLUMN_COLS = 40
+"""Columns below the world are not made narrower."""
+_LEAST_TEXT, _MOST_TEXT = 40, 58
+"""Columns for text to read, if that is at most half of the screen."""
+_MAX_WASTE = 0.3
+"""A panel with more empty space beside its mat counts as a poor form."""
+_POOR = 0.7
+
+
+class Preset(StrEnum):
+    """An arrangement of panels for a purpose."""
+
+    STANDARD = "standard"
+    DRIVE = "drive"
+    DEBUG = "debug"
+    ANALYSE = "analyse"
+    TEACH = "teach"
+
+
+Form = Callable[[Sequence[str], int, int], Node]
+"""Returns the tree of some panels for a number of columns and rows."""
+
+
+def size_class(width: int, height: int) -> TerminalSize:
+    """Return the size of a terminal: small, medium or large."""
+    if width >= 170 and height >= 50:
+        return TerminalSize.LARGE
+    if width >= 112 and height >= 34:
+        return TerminalSize.MEDIUM
+    return TerminalSize.SMALL
+
+
+def is_single(width: int, height: int) -> bool:
+    """Return whether the area of the panels is so small that it shows one panel at a time."""
+    return width < _SINGLE_COLS or height < _SINGLE_ROWS - 1
+
+
+def is_tall(width: int, height: int) -> bool:
+    """Return whether an area is higher than wide, as it looks."""
+    return height * 1.6 >= width
+
+
+def side_width(width: int, panels: Sequence[str] = ()) -> int:
+    """Return the width of the side column: two sensor discs fit side by side from 112 columns on.
+
+    Args:
+        width: Columns of the screen.
+        panels: The panels in the column; a lesson gets up to half of the screen.
+    """
+    if "lesson" in panels:
+        return min(width // 2, max(_LEAST_TEXT, min(_MOST_TEXT, width * 3 // 8)))
+    if width < 112:
+        return max(26, min(34, width * 28 // 80))
+    return 42 if width < 170 else _MAX_SIDE_COLS
+
+
+def _in(panels: Sequence[str], where: PanelPlace) -> list[str]:
+    return [info.id for info in PANELS.values() if info.place == where and info.id in panels]
+
+
+def _stacks(columns: Sequence[Sequence[str]], fixed: Mapping[int, int], width: int) -> Node:
+    """Return columns of stacked panels; those in `fixed` get that many columns, the others the rest."""
+    nodes = [joined(Axis.ROWS, column) for column in columns if column]
+    free = [at for at in range(len(nodes)) if at not in fixed]
+    if not free or len(nodes) == 1:
+        return joined(Axis.COLUMNS, nodes, shares=[1 / len(nodes)] * len(nodes))
+    rest = 1 - sum(fixed.values()) / width
+    weights = {at: max(PANELS[panel].weight for panel in columns[at]) for at in free}
+    shares = [
+        fixed[at] / width if at in fixed else rest * weights[at] / sum(weights.values()) for at in range(len(nodes))
+    ]
+    return joined(Axis.COLUMNS, nodes, shares=shares)
+
+
+def _strip(panels: Sequence[str], width: int) -> list[Node]:
+    """Return the rows of the bottom strip: panels side by side, as many as fit."""
+    if not panels:
+        return []
+    columns = max(1, min(len(panels), width // MIN_STRIP_COLS))
+    count = ceil(len(panels) / columns)
+    return [joined(Axis.COLUMNS, panels[row::count]) for row in range(count)]
+
+
+def _wide(panels: Sequence[str], width: int, height: int) -> Node:
+    """The world above the bottom strip, and a column beside both."""
+    side, strip, main = (_in(panels, where) for where in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN))
+    if not strip and not main:
+        return joined(Axis.ROWS, side)
+    beside = side_width(width, side) if side else 0
+    left = joined(Axis.ROWS, [*main, *_strip(strip, width - beside)])
+    if not side:
+        return left
+    shares = (1 - beside / width, beside / width)
+    return joined(Axis.COLUMNS, [left, joined(Axis.ROWS, side)], shares=shares)
+
+
+def _under(panels: Sequence[str], width: int, height: int, strip_rows: int = 0) -> Node:
+    """The world in the whole width, and everything else in columns below it."""
+    side, strip, main = (_in(panels, where) for where in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN))
+    most = max(1, width // _COLUMN_COLS)
+    if most == 1 or not side + strip:
+        return joined(Axis.ROWS, [*main, *side, *strip])
+    high = max(height - (ideal_rows(width) if main else 0), 1)
+    packed: list[list[str]] = []
+    for panel in side:
+        column = next((one for one in packed if _fair([*one, panel]) <= high), None)
+        if column is None:
+            packed.append([panel])
+        else:
+            column.append(panel)
+    growing = [[panel] for panel in strip]
+    if growing and packed and len(packed[-1]) == 1 and 3 * _fair(packed[-1]) < 2 * high:
+        growing[0] = [*packed.pop(), *growing[0]]
+    for columns in (growing, packed):
+        while len(columns) > 1 and len(growing) + len(packed) > most:
+            columns[-2:] = [columns[-2] + columns[-1]]
+    columns = growing + packed
+    fixed = min(side_width(width, side), width // len(columns))
+    below = _stacks(columns, {len(growing) + at: fixed for at in range(len(packed))} if growing else {}, width)
+    if strip_rows and not isinstance(below, str):
+        below = joined(below.axis, below.parts, strip_rows, below.shares)
+    return joined(Axis.ROWS, [*main, below])
+
+
+def _fair(panels: Sequence[str]) -> int:
+    return sum(PANELS[panel].fair_rows for panel in panels)
+
+
+def _over_strip(panels: Sequence[str], width: int, height: int) -> Node:
+    return _under(panels, width, height, max(8, height * 3 // 10))
+
+
+def _halves(first: Sequence[str], second: Sequence[str], share: float) -> Form:
+    """Return the form with two columns, of these panels in this order; further ones go below them."""
+
+    def form(panels: Sequence[str], width: int, height: int) -> Node:
+        if is_tall(width, height) and width < 2 * _COLUMN_COLS:
+            return joined(
+                Axis.ROWS, [panel for panel in dict.fromkeys(("world", *first, *second, *panels)) if panel in panels]
+            )
+        rest = [panel for panel in panels if panel not in {*first, *second}]
+        left = [panel for panel in first if panel in panels] + _in(rest, PanelPlace.BOTTOM)
+        right = [panel for panel in second if panel in panels] + _in(rest, PanelPlace.SIDE)
+        wide = share or 1 - side_width(width, right) / width
+        columns = [joined(Axis.ROWS, _paired(column, round((1 - wide) * width))) for column in (left, right) if column]
+        return joined(Axis.COLUMNS, columns, shares=(wide, 1 - wide)[: len(columns)])
+
+    return form
+
+
+def _paired(panels: Sequence[str], width: int) -> list[Node]:
+    """Return stacked panels, with small ones that follow each other side by side if there is room."""
+    nodes: list[Node] = []
+    for panel in panels:
+        last = nodes[-1] if nodes else None
+        pair = isinstance(last, str) and _is_small(last) and _is_small(panel) and width >= 2 * side_width(112)
+        if pair and last is not None:
+            nodes[-1] = joined(Axis.COLUMNS, [last, panel])
+        else:
+            nodes.append(panel)
+    return nodes
+
+
+def _is_small(panel: str) -> bool:
+    return PANELS[panel].place == PanelPlace.SIDE and not PANELS[panel].grows
+
+
+@dataclass(frozen=True, slots=True)
+class _Plan:
+    """What a preset shows."""
+
+    core: tuple[str, ...]
+    """Panels that it is made for, the most important first."""
+    fill: tuple[str, ...]
+    """Panels for what space is left."""
+    forms: tuple[Form, ...]
+    beside: tuple[str, ...] = ()
+    """Further panels, one for each column that the terminal has beyond those of `core`."""
+    compact: bool = True
+    """Whether a larger world is worth panels that show less than everything."""
+
+
+_SHOWN = tuple(info.id for info in PANELS.values() if info.sizes)
+
+_PLANS: Mapping[Preset, _Plan] = {
+    Preset.STANDARD: _Plan((), _SHOWN, (_wide, _under), compact=False),
+    Preset.DRIVE: _Plan(
+        ("world", "instrumentation", "positioning"),
+        ("arrays", "output", "chart", "controls"),
+        (_halves(("world", "positioning", "output"), ("instrumentation", "arrays", "controls"), 0.0), _under),
+        ("arrays", "output"),
+    ),
+    Preset.DEBUG: _Plan(
+        ("code", "debug", "world", "output"),
+        ("instrumentation", "arrays"),
+        (_halves(("code", "output"), ("world", "debug"), 0.55),),
+    ),
+    Preset.ANALYSE: _Plan(
+        ("chart", "arrays", "world"),
+        ("instrumentation", "output"),
+        (_halves(("chart",), ("world", "arrays", "instrumentation", "output"), 0.58),),
+    ),
+    Preset.TEACH: _Plan(
+        ("world", "code", "output"), (), (_halves(("world", "output"), ("code",), 0.57), _over_strip),
+    ),
+}  # fmt: skip
+
+
+def core_panels(preset: Preset) -> tuple[str, ...]:
+    """Return the panels that a preset is made for; none for the standard, which depends on the size."""
+    return _PLANS[preset].core
+
+
+def wanted_panels(preset: Preset, asked: Mapping[str, bool], width: int, height: int) -> tuple[list[str], list[str]]:
+    """Return the panels to show, by priority, and those for what space is left.
+
+    Args:
+        preset: The arrangement.
+        asked: Panels that were shown or hidden by the user, the latest last.
+        width: Columns of the area.
+        height: Rows of the area.
+    """
+    plan, size = _PLANS[preset], size_class(width, height + 1)
+    columns = max(0, width // _COLUMN_COLS - len(plan.core) + 1)
+    usual = plan.core + plan.beside[:columns] or tuple(panel for panel in _SHOWN if size in PANELS[panel].sizes)
+    latest = [panel for panel, on in reversed(list(asked.items())) if on]
+    wanted = latest + [panel for panel in usual if panel not in asked]
+    fill = [panel for panel in plan.fill if panel not in asked and panel not in wanted]
+    if preset == Preset.STANDARD and not is_tall(width, height):
+        # The strip below a wide world gets no fuller: its panels would be too narrow.
+        fill = _in(fill, PanelPlace.SIDE)
+    return wanted, fill
+
+
+def _kept(form: Form, panels: Sequence[str], fill: Sequence[str], width: int, height: int) -> list[str]:
+    """Return the panels that fit: the wanted ones with what they need, the others where all are shown well."""
+    kept: list[str] = []
+    for panel in panels:
+        node = form([*kept, panel], width, height)
+        if least_rows(node) <= height and least_columns(node) <= width:
+            kept.append(panel)
+    for panel in fill:
+        node = form([*kept, panel], width, height)
+        if fair_rows(node, width) <= height and least_columns(node) <= width:
+            kept.append(panel)
+    return kept
+
+
+def mat_cells(box: PanelBox) -> float:
+    """Return the area of the mat in a world panel, in cells."""
+    width, height = box.width - EDGES, box.height - EDGES - TIME_BAR_ROWS
+    return min(width, 2 * height * FIELD_WIDTH_MM / FIELD_HEIGHT_MM) ** 2 * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / 2
+
+
+def _score(layout: PanelLayout, wanted: int, crowded: bool) -> tuple[int, float]:
+    box = layout.boxes.get("world")
+    cells = mat_cells(box) if box else 0.0
+    inside = (box.width - EDGES) * (box.height - EDGES) if box else 1
+    return wanted, cells * (_POOR if cells < (1 - _MAX_WASTE) * inside else 1.0) * (_POOR**2 if crowded else 1.0)
+
+
+def arrange(
+    panels: Sequence[str],
+    width: int,
+    height: int,
+    fill: Sequence[str] = (),
+    preset: Preset = Preset.STANDARD,
+    moved: Mapping[str, float] | None = None,
+) -> PanelLayout:
+    """Place panels on a screen, in the form in which the world is largest.
+
+    Args:
+        panels: Ids, the most wanted first.
+        width: Columns.
+        height: Rows.
+        fill: Panels for what space is left.
+        preset: Which forms there are.
+        moved: Borders that the user has moved: share of their split, by name.
+
+    Returns:
+        Boxes that fill the screen without overlap; panels that found no room are left out.
+    """
+    if is_single(width, height):
+        panels, left_out = panels[:1], tuple(panels[1:])
+        boxes = {panel: PanelBox(0, 0, width, height) for panel in panels}
+        return PanelLayout(boxes, left_out=left_out)
+    best: tuple[tuple[int, float], Node] | None = None
+    for score, node in _scored(panels, fill, preset, width, height):
+        if best is None or score > best[0]:
+            best = score, node
+    if best is None:
+        return PanelLayout(left_out=tuple(panels))
+    shown = panels_of(best[1])
+    layout = PanelLayout(left_out=tuple(panel for panel in panels if panel not in shown), wanted=panels)
+    place(best[1], PanelBox(0, 0, width, height), moved or {}, layout)
+    return layout
+
+
+def _scored(
+    panels: Sequence[str], fill: Sequence[str], preset: Preset, width: int, height: int
+) -> Iterator[tuple[tuple[int, float], Node]]:
+    """Yield the tree in each form, and how good that is, whatever borders were moved."""
+    for form in _PLANS[preset].forms:
+        if not (kept := _kept(form, panels, fill, width, height)):
+            continue
+        node = form(kept, width, height)
+        layout = PanelLayout(wanted=panels)
+        place(node, PanelBox(0, 0, width, height), {}, layout)
+        crowded = not _PLANS[preset].compact and fair_rows(node, width) > height
+        yield _score(layout, sum(panel in kept for panel in panels), crowded), node
+
+
+def with_room(
+    panel: str, panels: Sequence[str], least: tuple[int, int], size: tuple[int, int], preset: Preset = Preset.STANDARD
+) -> list[str]:
+    """Return the panels to show so that one has room: as they are, else without those beside it, else it alone.
+
+    Args:
+        panel: The one.
+        panels: Ids, the most wanted first.
+        least: Columns and rows that are room enough.
+        size: Columns and rows of the screen.
+        preset: The arrangement.
+    """
+    others = [other for other in panels if other != panel]
+    elsewhere = [other for other in others if PANELS[other].place != PANELS[panel].place]
+    for beside in (others, elsewhere):
+        box = arrange([panel, *beside], *size, preset=preset).boxes[panel]
+        if box.width >= least[0] and box.height >= least[1]:
+            return [panel, *beside]
+    return [panel]
