@@ -17,6 +17,7 @@ from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits
 from textual.containers import VerticalScroll
 from textual.message import Message
 from textual.message_pump import MessagePump
+from textual.theme import ThemeProvider
 from textual.widget import Widget
 from textual.widgets import Static
 
@@ -147,6 +148,11 @@ class Palette(CommandPalette, ClosesOnce[None]):
         # A list that was never shown has no pages and no lines yet.
         if self.query_one(CommandList).size:
             super()._action_command_list(action)
+
+
+def theme_list() -> Palette:
+    """Return Textual's list of themes."""
+    return Palette(providers=[ThemeProvider], placeholder="Search for themes…")
 
 
 class ActionProvider(Provider):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import time
 from collections.abc import Callable, Iterable
@@ -11,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
-from textual import constants, events
+from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.timer import Timer
@@ -33,15 +32,13 @@ from tuisim.app.loader import PERIOD_S, Loader
 from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages
 from tuisim.app.panels import PANELS
-from tuisim.app.render.cells import PALETTE_8, TRUECOLOR
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import GOOD_ENDS, AppState, RunPhase, Situation, end_label
 from tuisim.app.speech import Voice
-from tuisim.app.terminal.drawing import Drawing, drawing_for
+from tuisim.app.terminal.drawing import Drawing, choose_colors, drawing_for
 from tuisim.app.terminal.pacer import Pacer
-from tuisim.app.terminal.probe import colors_without_asking
 from tuisim.app.workspace import Workspace
 from tuisim.config.options import AUTO, DEFAULT_FPS, Settings
 from tuisim.core.spec import RunSpec
@@ -548,22 +545,9 @@ class LabApp(PanelMessages):
             self.action_leave_field()
 
 
-def _choose_colors(colors: str) -> int:
-    """Set the colour depth of the terminal; `auto` leaves the choice to Textual. Return the most colours to use."""
-    if colors == "auto":
-        colors = colors_without_asking(os.environ.get("TERM", ""))
-    system = {"truecolor": "truecolor", "256": "256", "16": "standard", "8": "standard"}.get(colors)
-    if system:
-        # Textual reads the environment when it is imported, before the settings are known.
-        constants.COLOR_SYSTEM = system  # type: ignore[misc]
-    if colors == "none":
-        os.environ["NO_COLOR"] = "1"
-    return PALETTE_8 if colors == "8" else TRUECOLOR
-
-
 def run_app(settings: AppSettings) -> int:
     """Run the app in this terminal until the user quits; return the exit code."""
-    most_colors = _choose_colors(settings.colors)
+    most_colors = choose_colors(settings.colors)
     lab = LabApp(settings, replace(drawing_for(settings.cells), most_colors=most_colors))
     lab.run()
     return lab.return_code or 0

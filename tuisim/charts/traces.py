@@ -11,12 +11,14 @@ from tuisim.core.css_colors import Rgb
 from tuisim.logs.signals import Summary, summary_of
 from tuisim.runs.arrays import FloatArray
 
-_COLORS: tuple[Rgb, ...] = (
-    (255, 215, 0), (95, 215, 255), (255, 95, 135), (95, 215, 95), (215, 135, 255), (255, 135, 0), (95, 135, 255),
-    (255, 255, 255), (0, 215, 175), (175, 135, 95),
+TRACE_COLORS: tuple[Rgb, ...] = (
+    (240, 228, 66), (86, 180, 233), (213, 94, 0), (0, 158, 115), (204, 121, 167), (255, 255, 255), (230, 159, 0),
+    (60, 110, 220),
 )  # fmt: skip
+"""Those of Okabe and Ito, with a lighter blue and white for a dark ground: they stay apart for people who see fewer
+colours. Source: https://jfly.uni-koeln.de/color/."""
 MARKS = "o+x*#%=~&@"
-"""One for each colour, for terminals without colours."""
+"""For terminals without colours; more than there are colours, so that many traces differ in one or the other."""
 
 _OTHER_SCALE = ("ultrasonic", "gyro", "wheel")
 """Millimetres and degrees: they do not fit the scale of light in percent."""
@@ -35,7 +37,7 @@ class Trace:
         self.logged = " " not in name
         """Printed by the program rather than measured by the app."""
         self.on = self.logged
-        self.rgb = _COLORS[number % len(_COLORS)]
+        self.rgb = TRACE_COLORS[number % len(TRACE_COLORS)]
         self.mark = MARKS[number % len(MARKS)]
         self.other_scale = name.lower().startswith(_OTHER_SCALE)
         self._times_s = np.empty(256)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tuisim.app.action import KeyHelp, key_groups
+from tuisim.app.action import KeyHelp, key_groups, theme_list
 from tuisim.app.layout.arrangement import Preset
 
 if TYPE_CHECKING:
@@ -101,6 +101,11 @@ def choose_cells(workspace: Workspace) -> None:
             app.say(f"The choice applies to this session only: {error}")
 
     app.push_screen(CellsCard(app.drawing.chosen, app.drawing.best), chosen)
+
+
+def choose_theme(workspace: Workspace) -> None:
+    """Show the themes."""
+    workspace.app.push_screen(theme_list())
 
 
 def redraw(workspace: Workspace) -> None:

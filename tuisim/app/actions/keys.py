@@ -208,6 +208,7 @@ ACTIONS: Mapping[str, LabAction] = {
         *_nudges(),
         Action("help", "question_mark", "Help: all keys", APP, app.show_help, footer="help"),
         Action("cells", "V", "Glyphs of the world: choose by eye", APP, app.choose_cells),
+        Action("theme", "f10", "Theme: light, high contrast and others", APP, app.choose_theme),
         Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, app.redraw),
         Action("screenshot", "I,f12", _SCREENSHOT, APP, app.screenshot, shown_key="I"),
         Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, app.suspend),

@@ -53,6 +53,10 @@ class RowsView(Widget):
 
     ALLOW_SELECT = False
 
+    def redraw(self) -> None:
+        """Draw again: the app's glyphs or colours have changed."""
+        self.refresh()
+
     def render_lines(self, crop: Region) -> list[Strip]:
         """Return the rows of a region, bypassing Textual's cache, which would rebuild whole rows."""
         return _cut([self.render_line(y) for y in crop.line_range], crop, self.size.width, self.rich_style)
@@ -113,7 +117,8 @@ class PixelView(RowsView):
     @property
     def ground_rgb(self) -> tuple[int, int, int]:
         """Background colour of the widget."""
-        return self.background_colors[1].rgb
+        own, theme = self.background_colors[1].rgb, drawing_of(self.app).theme
+        return theme.rgb(own) if theme else own
 
     def set_picture(self, picture: Pixels) -> None:
         """Show an image of square pixels, two in a cell; only cells that differ are repainted."""
@@ -295,6 +300,11 @@ class LinesView(RowsView):
         """Drop the rows when colours change."""
         super().notify_style_update()
         self._text_strips = [None] * len(self._lines)
+
+    def redraw(self) -> None:
+        """Draw again: the app's colours have changed."""
+        self._text_strips = [None] * len(self._lines)
+        self.refresh()
 
     def render_line(self, y: int) -> Strip:
         """Return one row."""

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from textual import constants
 from textual.app import App
 
 from tuisim.app.graphics.picture import Graphics
-from tuisim.app.render.cells import MONO, PALETTE_16, PALETTE_256, TRUECOLOR
+from tuisim.app.render.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR
 from tuisim.app.terminal.browser import in_browser
-from tuisim.app.terminal.probe import best_cells
+from tuisim.app.terminal.probe import best_cells, colors_without_asking
+from tuisim.app.terminal.themes import ThemeColors
 from tuisim.config.options import AUTO, CELLS, CellSet
 from tuisim.config.preferences import keep, preference
 
@@ -36,6 +39,8 @@ class Drawing:
     """How pixels are drawn; None to draw cells."""
     most_colors: int = TRUECOLOR
     """The user's limit."""
+    theme: ThemeColors | None = None
+    """The colours in place of the app's own ones; None for those."""
     is_slow: Callable[[], bool] = lambda: False
     """Whether the link to the terminal is too slow for fine cells now."""
     is_idle: Callable[[], bool] = lambda: True
@@ -51,6 +56,19 @@ class Drawing:
         keep(_KEPT, None if chosen == AUTO else chosen)
 
 
+def choose_colors(colors: str) -> int:
+    """Set the colour depth of the terminal; `auto` leaves the choice to Textual. Return the most colours to use."""
+    if colors == "auto":
+        colors = colors_without_asking(os.environ.get("TERM", ""))
+    system = {"truecolor": "truecolor", "256": "256", "16": "standard", "8": "standard"}.get(colors)
+    if system:
+        # Textual reads the environment when it is imported, before the settings are known.
+        constants.COLOR_SYSTEM = system  # type: ignore[misc]
+    if colors == "none":
+        os.environ["NO_COLOR"] = "1"
+    return PALETTE_8 if colors == "8" else TRUECOLOR
+
+
 def drawing_for(given: str | None) -> Drawing:
     """Return how an app that starts draws pictures.
 
@@ -60,6 +78,9 @@ def drawing_for(given: str | None) -> Drawing:
     kept = preference(_KEPT)
     chosen = given or (kept if isinstance(kept, str) and kept in CELLS else AUTO)
     best = CellSet.QUADRANT if in_browser() else best_cells(ask=chosen == AUTO)
+    if given is None and best is CellSet.ASCII:
+        # Chosen on another terminal.
+        chosen = AUTO
     return Drawing(best if chosen == AUTO else CellSet(chosen), chosen, best)
 
 

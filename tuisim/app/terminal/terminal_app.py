@@ -31,6 +31,7 @@ from textual.drivers.linux_driver import LinuxDriver
 from textual.filter import LineFilter
 from textual.geometry import Size
 from textual.screen import Screen
+from textual.theme import Theme
 
 from tuisim.app import background
 from tuisim.app.action import ActionProvider, Palette
@@ -40,12 +41,15 @@ from tuisim.app.graphics import kitty
 from tuisim.app.graphics.choice import graphics_of
 from tuisim.app.terminal.answers import AnswerParser, TerminalAnswered
 from tuisim.app.terminal.browser import in_browser, offer
-from tuisim.app.terminal.cell_view import PixelView
+from tuisim.app.terminal.cell_view import PixelView, RowsView
 from tuisim.app.terminal.drawing import Drawing, color_depth, drawing_of
 from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
 from tuisim.app.terminal.queries import QUESTIONS, TerminalFacts, cell_size_px
 from tuisim.app.terminal.screenshot import save_screenshot, screen_cells
+from tuisim.app.terminal.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors
+from tuisim.charts.traces import TRACE_COLORS
 from tuisim.config.options import AUTO, NO_PIXELS, CellSet, Protocol
+from tuisim.config.preferences import keep, preference
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
 
@@ -130,6 +134,30 @@ class TerminalApp(App[None]):
         """Size of a terminal that is too small, else None."""
         self._waiting_keys: deque[events.Key] = deque()
         """Keys for a screen that is being opened."""
+        for theme in (HIGH_CONTRAST, LIGHT):
+            self.register_theme(theme)
+        for name in UNUSED_THEMES:
+            self.unregister_theme(name)
+        if (kept := preference("theme")) in self.available_themes:
+            self.theme = str(kept)
+        self._take_theme()
+
+    def on_mount(self) -> None:
+        self.theme_changed_signal.subscribe(self, self._theme_changed)
+
+    def _take_theme(self) -> None:
+        is_own = self.theme == OWN_THEME
+        self.drawing.theme = None if is_own else ThemeColors(self.current_theme, TRACE_COLORS)
+
+    def _theme_changed(self, theme: Theme) -> None:
+        """Draw everything in the colours of another theme, and keep the choice."""
+        self._take_theme()
+        with suppress(OSError):
+            keep("theme", None if theme.name == OWN_THEME else theme.name)
+        for screen in self.screen_stack:
+            for view in screen.query(RowsView):
+                view.redraw()
+        self.call_later(self.action_redraw)
 
     async def on_event(self, event: events.Event) -> None:
         """Lay out for the minimum size at least; ignore clicks on cells outside the terminal."""
@@ -225,7 +253,9 @@ class TerminalApp(App[None]):
 
     def get_line_filters(self) -> Sequence[LineFilter]:
         """Return the filters for everything that is drawn."""
-        return [*super().get_line_filters(), _HARMLESS]
+        # Before the filter for terminals without colours, which leaves no colour to be replaced.
+        theme = [self.drawing.theme] if self.drawing.theme else []
+        return [*theme, *super().get_line_filters(), _HARMLESS]
 
     def on_ready(self) -> None:
         if self.is_headless:

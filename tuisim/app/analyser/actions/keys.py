@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 
-from tuisim.app.action import Action, KeyHelp, key_groups
+from tuisim.app.action import Action, KeyHelp, key_groups, theme_list
 from tuisim.app.analyser.actions import chart, files, log, panes
 from tuisim.app.analyser.screen import LogScreen
 
@@ -37,6 +37,10 @@ _START = (
 
 def _help(screen: LogScreen) -> None:
     screen.app.push_screen(KeyHelp("Help: the analyser", _START, key_groups(screen.ACTIONS.values())))
+
+
+def _choose_theme(screen: LogScreen) -> None:
+    screen.app.push_screen(theme_list())
 
 
 def _redraw(screen: LogScreen) -> None:
@@ -118,6 +122,7 @@ ACTIONS: Mapping[str, LogAction] = {
         Action("differences", "D", "Go to where two runs differ", LOG, log.differences, _log),
         Action("world", "w", "Show or hide the world", PANE, panes.world, _log),
         Action("help", "question_mark", "Help: all keys", APP, _help, footer="help"),
+        Action("theme", "f10", "Theme: light, high contrast and others", APP, _choose_theme),
         Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, _redraw),
         Action("screenshot", "I,f12", "Save a screenshot: SVG and PNG (also F12)", APP, _screenshot, shown_key="I"),
         Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, _suspend),
