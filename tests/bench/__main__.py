@@ -14,7 +14,7 @@ from tests.bench.cells import cells
 from tests.bench.crowded import crowded
 from tests.bench.debugging import debugging
 from tests.bench.figures import QUICK, THOROUGH, Effort, Figure, as_json, as_table
-from tests.bench.frames import chart, frames
+from tests.bench.frames import chart, frames, pictures
 from tests.bench.listing import listing
 from tests.bench.logs import logs
 from tests.bench.recording import recording
@@ -40,6 +40,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "frames": frames,
     "cells": cells,
     "chart": chart,
+    "pictures": pictures,
     "back": back,
     "recording": recording,
     "variables": variables,

@@ -33,10 +33,14 @@ class Terminal:
     """
 
     def __init__(
-        self, words: Sequence[str], command: Sequence[str] = (sys.executable, "-m", "tuisim"), **environment: str
+        self,
+        words: Sequence[str],
+        command: Sequence[str] = (sys.executable, "-m", "tuisim"),
+        size: tuple[int, int] = (COLUMNS, ROWS),
+        **environment: str,
     ) -> None:
         self._fd, inside = pty.openpty()
-        fcntl.ioctl(inside, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
+        fcntl.ioctl(inside, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
         self._process = subprocess.Popen(
             [*command, *words],
             stdin=inside,

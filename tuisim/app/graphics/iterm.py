@@ -7,8 +7,11 @@ from __future__ import annotations
 
 from base64 import b64encode
 from io import BytesIO
+from typing import TYPE_CHECKING
 
-from tuisim.app.render.mat import Pixels
+if TYPE_CHECKING:
+    from tuisim.app.render.mat import Pixels
+
 
 _COMPRESSION = 1
 """Of PNG: a tenth of the time of the default, for a few per cent more bytes."""

@@ -10,8 +10,11 @@ from __future__ import annotations
 import zlib
 from base64 import b64encode
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
-from tuisim.app.render.mat import Pixels
+if TYPE_CHECKING:
+    from tuisim.app.render.mat import Pixels
+
 
 TERMINALS: Mapping[str, str] = {
     "kitty": "https://sw.kovidgoyal.net/kitty/graphics-protocol/#unicode-placeholders (since 0.28)",

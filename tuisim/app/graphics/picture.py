@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import count, groupby
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from tuisim.app.graphics import iterm, kitty, sixel
-from tuisim.app.render.mat import Pixels
 from tuisim.config.options import Protocol
+
+if TYPE_CHECKING:
+    from tuisim.app.render.mat import Pixels
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,12 +193,16 @@ class TilePicture:
             codes, old = self._send(tile)
             parts.append(codes)
             stale += old
-        for cell in cells:
+        cursor, pen = (-1, -1), 0
+        for cell in sorted(cells, key=lambda one: (one.row, one.col)):
             top, left = cell.row // _TILE_ROWS * _TILE_ROWS, cell.col // _TILE_COLS * _TILE_COLS
             _, image = self._tiles[top, left]
-            color = f"{image >> 16};{image >> 8 & 255};{image & 255}"
-            parts.append(f"\x1b[{cell.row + down + 1};{cell.col + right + 1}H\x1b[38;2;{color}m")
+            if (cell.row, cell.col) != cursor:
+                parts.append(f"\x1b[{cell.row + down + 1};{cell.col + right + 1}H")
+            if image != pen:
+                parts.append(f"\x1b[38;2;{image >> 16};{image >> 8 & 255};{image & 255}m")
             parts.append(kitty.placeholder(cell.col - left, cell.row - top))
+            cursor, pen = (cell.row, cell.col + 1), image
         parts.append("\x1b[0m")
         parts += [self._passed_on(kitty.delete(image)) for image in stale]
         return "".join(parts)

@@ -5,10 +5,14 @@ Reference: DEC, VT330/VT340 Programmer Reference Manual, volume 2 (Graphics Prog
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.app.render.mat import Pixels
+if TYPE_CHECKING:
+    from tuisim.app.render.mat import Pixels
+
 
 BAND_PX = 6
 """A character stands for this many pixels, one below the other."""
