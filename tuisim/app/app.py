@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
 import time
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -22,6 +20,7 @@ from tuisim.app.actions import time_travel
 from tuisim.app.actions.keys import ACTIONS, working
 from tuisim.app.background import is_leaving
 from tuisim.app.branch import branch_message
+from tuisim.app.brick_hint import BrickHint
 from tuisim.app.debugger import AppDebugger
 from tuisim.app.editor.document import Document
 from tuisim.app.feed import Feed, PastView, Series, sample_series
@@ -45,7 +44,6 @@ from tuisim.core.spec import RunSpec
 from tuisim.errors import TuisimError
 from tuisim.protocol import End, Ended
 from tuisim.runs.process import warm_up
-from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.source import Program
 
@@ -551,39 +549,3 @@ def run_app(settings: AppSettings) -> int:
     lab = LabApp(settings, replace(drawing_for(settings.cells), most_colors=most_colors))
     lab.run()
     return lab.return_code or 0
-
-
-_BUTTONS = re.compile(r"^[^#\n]*\bev3dev2(\.|\s+import\s.*\b)button\b", re.MULTILINE)
-"""The hint to open the brick panel when a program uses the brick."""
-
-
-def looks_at_buttons(program: str) -> bool:
-    """Return whether the text of a program uses the brick's buttons."""
-    return bool(_BUTTONS.search(program))
-
-
-class BrickHint:
-    """Suggests the brick panel, once.
-
-    Args:
-        hint: Called with what the program does.
-    """
-
-    def __init__(self, hint: Callable[[str], None]) -> None:
-        self._hint = hint
-        self._given = False
-
-    def started(self, program: str) -> None:
-        """Check whether the text of a started program uses the brick's buttons."""
-        if looks_at_buttons(program):
-            self._give("reads the brick's buttons")
-
-    def shown(self, rows: Iterable[OutputRow]) -> None:
-        """Check the rows that the program has written."""
-        if not self._given and any(row.stream in (Stream.DISPLAY, Stream.CONSOLE) for row in rows):
-            self._give("uses the brick's display")
-
-    def _give(self, what: str) -> None:
-        if not self._given:
-            self._given = True
-            self._hint(what)

@@ -16,8 +16,7 @@ from tuisim.core.outline import RobotOutline, outline_of
 from tuisim.core.sensors.ultrasonic import rays_mm
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec, RobotSpec, RunSpec
 from tuisim.core.tick_record import FLAG_PEN_DOWN
-from tuisim.runs.arrays import FloatArray
-from tuisim.runs.frames import world_points_mm
+from tuisim.runs.arrays import FloatArray, world_points_mm
 
 if TYPE_CHECKING:
     from PIL.Image import Image

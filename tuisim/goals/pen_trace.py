@@ -10,7 +10,6 @@ from tuisim.goals import picture
 from tuisim.goals.evidence import Evidence, Moment, Span
 from tuisim.goals.found import Found, share_words
 from tuisim.goals.spec import Draw
-from tuisim.runs.frames import world_points_mm
 
 if TYPE_CHECKING:
     import numpy as np
@@ -54,6 +53,8 @@ def _strokes(records: Array, pen: PenSpec, condition: Draw) -> tuple[Array, Arra
     down = (records["flags"] & FLAG_PEN_DOWN) != 0
     if not down.any():
         return np.empty((0, 2)), np.empty(0, np.int64)
+    from tuisim.runs.arrays import world_points_mm
+
     at = np.column_stack(world_points_mm(records, pen.x_mm, pen.y_mm))
     # A robot that was moved by hand draws no line.
     joined = down[1:] & down[:-1] & (np.diff(records["actions"].astype("i4")) == 0)

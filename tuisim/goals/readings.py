@@ -9,7 +9,7 @@ from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
 from tuisim.goals.evidence import Evidence, Moment, Span
 from tuisim.goals.found import Found, share_words
 from tuisim.goals.spec import Follow
-from tuisim.runs.frames import quiet_color_columns, world_points_mm
+from tuisim.runs.frames import quiet_color_columns
 
 if TYPE_CHECKING:
     import numpy as np
@@ -53,6 +53,8 @@ def _light_at_percent(records: Array, x_mm: float, y_mm: float, evidence: Eviden
     import numpy as np
 
     mat = evidence.mat
+    from tuisim.runs.arrays import world_points_mm
+
     world_x_mm, world_y_mm = world_points_mm(records, x_mm, y_mm)
     col, row = np.floor(world_x_mm), np.floor(FIELD_HEIGHT_MM - world_y_mm)
     inside = (col >= 0) & (col < mat.width_px) & (row >= 0) & (row < mat.height_px)

@@ -146,23 +146,6 @@ def tick_times_s(records: Array, spec: RunSpec) -> Array:
     return times
 
 
-def world_points_mm(records: Array, x_mm: float, y_mm: float) -> tuple[Array, Array]:
-    """Return x and y in the world of a point of the robot at every tick, each of shape (n,).
-
-    Args:
-        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
-        x_mm: To the right of the midpoint between the wheels.
-        y_mm: Forward of it.
-    """
-    import numpy as np
-
-    # As `core.geometry.world_point`, for all ticks at once.
-    turn = np.radians(records["heading_deg"] - 90.0)
-    with np.errstate(invalid="ignore"):  # a damaged record may have no valid heading
-        cos, sin = np.cos(turn), np.sin(turn)
-    return records["x_mm"] + cos * x_mm - sin * y_mm, records["y_mm"] + sin * x_mm + cos * y_mm
-
-
 def sensor_columns(records: Array, spec: RunSpec, actions: Sequence[UserAction], field: Field) -> dict[str, Array]:
     """Return the columns of every mounted sensor, in the order of the telemetry frame.
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.app.app_help import notices, ready, settings, until
-from tuisim.app.app import LabApp, looks_at_buttons
+from tuisim.app.app import LabApp
+from tuisim.app.brick_hint import looks_at_buttons
 from tuisim.app.snapshot import RunPhase
 
 DRAWS = "from ev3dev2.display import Display\nDisplay().update()\n"
