@@ -10,7 +10,16 @@ from textual import events
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.app.layout.arrangement import Preset, arrange, is_single, is_tall, size_class, wanted_panels, with_room
+from tuisim.app.layout.arrangement import (
+    Preset,
+    arrange,
+    core_panels,
+    is_single,
+    is_tall,
+    size_class,
+    wanted_panels,
+    with_room,
+)
 from tuisim.app.layout.borders import BorderMover
 from tuisim.app.layout.kept import KeptLayout, load_borders, load_layout, save_borders, save_layout
 from tuisim.app.panels import PANELS, NextRunPanel, Panel, TerminalSize
@@ -128,7 +137,7 @@ class PanelArea(BorderMover):
         """Return the panel after the one with the focus; where there is room for one only, show it."""
         if self.is_single:
             usual = wanted_panels(self.preset, self._asked, self.size.width, self.size.height)
-            panels = [panel for panel in PANELS if panel in {*usual[0], *usual[1], self.front}]
+            panels = list(dict.fromkeys([*usual[0], *usual[1], self.front]))
             self.front = panels[(panels.index(self.front) + by) % len(panels)]
             self.lay_out()
             return self.front
@@ -153,7 +162,7 @@ class PanelArea(BorderMover):
         unchanged = self.preset == preset and self._asked in ({}, self._given) and not self.moved
         self.preset = Preset.STANDARD if unchanged else preset
         self._asked, self._chosen = dict(self._given) if self.preset == Preset.STANDARD else {}, {}
-        self.alone, self._roomy, self.front = "", None, "world"
+        self.alone, self._roomy, self.front = "", None, (*core_panels(self.preset), "world")[0]
         self._load_borders()
         self.lay_out()
         self._keep_panels()

@@ -23,15 +23,15 @@ def test_the_message_fits_in_every_size() -> None:
 @pytest.mark.parametrize(
     ("size", "expected"),
     [
-        (Size(20, 5), "Too small: tuisim needs 60×18, this terminal has 20×5."),
+        (Size(20, 5), "Too small: tuisim needs 40×12, this terminal has 20×5."),
         (
-            Size(59, 40),
-            "Too small: tuisim needs 60×18 or more, and this terminal has 59×40. Enlarge it, or press q to quit.",
+            Size(39, 40),
+            "Too small: tuisim needs 40×12 or more, and this terminal has 39×40. Enlarge it, or press q to quit.",
         ),
-        (Size(12, 3), "Too small: needs 60×18"),
+        (Size(12, 3), "Too small: needs 40×12"),
         (Size(9, 1), "Too small"),
     ],
-    ids=["20x5", "59x40", "12x3", "9x1"],
+    ids=["20x5", "39x40", "12x3", "9x1"],
 )
 def test_the_message_says_as_much_as_fits(size: Size, expected: str) -> None:
     assert " ".join(message_lines(size)) == expected
@@ -73,7 +73,7 @@ def test_a_small_terminal_says_so_and_grows(terminal: Terminal) -> None:
     terminal.until(lambda text: "─ World" in text and "R run" in text.splitlines()[-1])
     terminal.keys("b")
     terminal.until(lambda text: "─ Mats" in text)
-    terminal.resize(40, 12)
+    terminal.resize(39, 12)
     terminal.until(lambda text: "Too small" in text and "Mats" not in text)
     terminal.resize(80, 24)
     terminal.until(lambda text: "─ Mats" in text)

@@ -33,7 +33,7 @@ def choose_preset(workspace: Workspace, preset: Preset) -> None:
     area = workspace.panel_area
     shown = area.choose_preset(preset)
     if not area.shown(area.focused_panel()):
-        area.focus_world()
+        workspace.app.call_after_refresh(area.attend, area.front)
     key = workspace.app.ACTIONS[f"layout-{preset}"].key_label
     again = "" if shown == Preset.STANDARD else f" ({key} again: standard)"
     workspace.app.say(f"Layout: {shown}{again}")

@@ -113,7 +113,7 @@ def _layouts() -> list[LabAction]:
         ),
         Action("borders", "f4", "Move the borders of the focused panel", PANEL, app.move_borders),
         Action("reset-borders", "shift+f4", "Borders back to the sizes of the layout", PANEL, app.reset_borders),
-        Action("panel-next", "f2", "Next panel", PANEL, partial(app.next_panel, by=1), footer="next panel"),
+        Action("panel-next", "f2", "Next panel", PANEL, partial(app.next_panel, by=1), footer="panel"),
         Action("panel-before", "shift+f2", "Previous panel", PANEL, partial(app.next_panel, by=-1)),
     ]
 

@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 _POSE = ("x_mm", "y_mm", "heading_deg")
 _PLAIN, _DIM = Style(color="#d8dee6"), Style(color="#7f8fa1")
 _HERE = Style(color="#ffffff", bgcolor="#263545", bold=True)
+_BESIDE_COLS = 60
+"""In a narrower terminal the chart gets the whole width, until the key of the world is pressed."""
 NO_POSES = "This log has no robot positions"
 
 
@@ -182,7 +184,7 @@ class WorldPane(Vertical):
         self._model, self._shown = model, None
         self._worlds.clear()
         self._requested.clear()
-        self.display = self.is_on and has_poses(model.opened)
+        self.display = self.is_on and has_poses(model.opened) and self.screen.size.width >= _BESIDE_COLS
         self.show(model)
 
     def show(self, model: Model) -> None:

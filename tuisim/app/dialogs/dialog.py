@@ -16,6 +16,9 @@ from textual.widgets import Static
 
 Result = TypeVar("Result")
 
+_HEIGHTS: list[tuple[int, str]] | None = [(0, "-low"), (18, "-high")]
+"""Classes of a dialog by the rows of the terminal."""
+
 
 def name_and_title(name: str, title: str, name_cells: int) -> Table:
     """Return a line of a list: a name, and a title that wraps beside it."""
@@ -86,6 +89,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
 
     TITLE_TEXT: str = ""
     HINT: str = "Escape closes"
+    VERTICAL_BREAKPOINTS = _HEIGHTS
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Close", show=False)]
 
     def compose(self) -> ComposeResult:

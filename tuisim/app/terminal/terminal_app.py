@@ -71,7 +71,7 @@ def _blank(match: re.Match[str]) -> str:
     return " " * cell_len(match[0])
 
 
-MINIMUM = Size(60, 18)
+MINIMUM = Size(40, 12)
 """Minimum size of the terminal: panels and dialogs are unreadable below it."""
 
 
