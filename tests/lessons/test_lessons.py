@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 
 import pytest
 
+from tuisim.batch.pool import run_many
 from tuisim.cli import COMMANDS
 from tuisim.commands.learn import learn
 from tuisim.config.program_file import programs
 from tuisim.lessons.catalogue import shipped_paths
 from tuisim.lessons.files import load_lesson
-from tuisim.lessons.spec import Question, Run
-from tuisim.lessons.trial import faults
+from tuisim.lessons.spec import Lesson, Question, Run
+from tuisim.lessons.trial import faults, task_of
 
 LESSONS = {name: load_lesson(path) for name, path in shipped_paths().items()}
 
@@ -34,6 +36,48 @@ def test_lesson_is_complete(name: str) -> None:
         assert wrong or choices or name == "first-run", f"{step.name}: no wrong answer"
         assert step.hints, f"{step.name}: no hint"
         assert len(step.text) < 700, f"{step.name}: too long for a small terminal"
+
+
+def _end(lesson: Lesson, text: str, field: str, seed: int = 0) -> float:
+    """A field of the result of a program in the world of a lesson."""
+    (result,) = run_many([task_of(lesson, text, seed)], jobs=1)
+    return float(getattr(result, field))
+
+
+MEASURED: dict[str, Callable[[Lesson], float]] = {
+    "first-run where": lambda lesson: _end(lesson, lesson.program, "x_mm"),
+    "sensor-eyes percent": lambda lesson: _read(lesson, LIGHT),
+    "log-period period": lambda lesson: _end(lesson, lesson.program, "time_s") / (_rows(lesson) - 1),
+    "log-period distance": lambda lesson: 0.11 * 0.5 * 1050 / 360 * 3.14159 * 56,
+    "exact-moves rotation": lambda lesson: _end(lesson, lesson.program, "x_mm") - 500,
+    "exact-moves quarter": lambda lesson: 180 / 4 / 56,
+    "noise white": lambda lesson: _read(lesson, f"tank_drive.on_for_rotations(-30, -30, 160 / 175.93)\n{LIGHT}"),
+    "export rows": lambda lesson: _rows(lesson),
+    "dead-reckoning true-y": lambda lesson: _end(lesson, lesson.program, "y_mm", seed=1),
+    "pid-line error": lambda lesson: _read(
+        lesson, lesson.steps[0].answer.replace("    turn = KP", "    print(f'Light: {error + TARGET}')\n    turn = KP")
+    ),
+}
+LIGHT = "print('Light: ' + str(colorLeft.reflected_light_intensity_pc))\n"
+
+
+def _read(lesson: Lesson, text: str) -> float:
+    (result,) = run_many([task_of(lesson, text, 0)], jobs=1)
+    return result.variables["Light"].last
+
+
+def _rows(lesson: Lesson) -> float:
+    (result,) = run_many([task_of(lesson, lesson.program, 0)], jobs=1)
+    return result.variables["Colour"].count
+
+
+@pytest.mark.parametrize("name", MEASURED)
+def test_answer_is_what_a_student_measures(name: str) -> None:
+    lesson, _, step_name = name.partition(" ")
+    (step,) = [step for step in LESSONS[lesson].steps if step.name == step_name]
+    assert isinstance(step.check, Question)
+    assert isinstance(step.check.answer, int | float)
+    assert MEASURED[name](LESSONS[lesson]) == pytest.approx(step.check.answer, abs=step.check.within)
 
 
 def test_names_are_not_those_of_commands_or_examples() -> None:

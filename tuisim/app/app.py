@@ -259,6 +259,8 @@ class LabApp(PanelMessages):
             return False
         if not self.document.apply():
             return False
+        if self.lesson.lesson:
+            self.document.save_own()
         try:
             self.run_controller.start(self.debugger.texts, paused)
         except TuisimError as error:

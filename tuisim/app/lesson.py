@@ -121,6 +121,9 @@ class AppLesson:
     def _load(self, lesson: Lesson, anew: bool = False) -> None:
         path = stored.prepare_program(lesson, anew)
         self._loader.open_task(str(path), lesson.settings, goals_of(lesson))
+        # What the last run has shown belongs to another lesson.
+        self._run_controller.close()
+        self._app.run_changed()
 
     def _enter(self, lesson: Lesson) -> None:
         self.lesson = lesson
@@ -174,6 +177,13 @@ class AppLesson:
         if self.lesson is None or self.lesson.name not in names:
             return ""
         return next(iter(names[names.index(self.lesson.name) + 1 :]), "")
+
+    def _next_title(self) -> str:
+        try:
+            return load_lesson(find_lesson(self.next_name, self.folder)).title if self.next_name else ""
+        except ConfigError:
+            # The menu reports it.
+            return ""
 
     # What the student asks for
 
@@ -353,7 +363,7 @@ class AppLesson:
             good_runs=good,
             is_elsewhere=self._is_elsewhere,
             done=self._done,
-            next_name=self.next_name,
+            next_title=self._next_title(),
         )
 
 

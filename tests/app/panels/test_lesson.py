@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from textual.pilot import Pilot
-from textual.widgets import Input
+from textual.widgets import Input, OptionList
 
 from tests.app.app_help import notices, ready, settings, until
 from tuisim.analysis.source import NOTES_FILE, Note, write_notes
@@ -172,11 +172,17 @@ async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: "1. Think" in shown(app))
-        app.lesson.open("first-run")
+        app.lesson.skip_step()
+        await run_over(pilot, app)
+        await pilot.press("M")
+        await until(pilot, lambda: isinstance(app.focused, OptionList))
+        await pilot.press("home", "down", "down", "enter")
         await until(pilot, lambda: "The first run" in shown(app))
         assert app.run_controller.next_run.spec.world.background == "Grey_bands"
         assert app.run_controller.program is not None
         assert app.run_controller.program.name == "first-run.py"
+        # The run belonged to the other lesson.
+        assert app.run_controller.timeline.recording is None
 
 
 @pytest.mark.usefixtures("home")
@@ -287,6 +293,43 @@ async def test_typing_ends_when_the_program_is_run_from_the_editor(tmp_path: Pat
         await pilot.press("ctrl+r")
         await until(pilot, lambda: app.panel_area.code is not None and not app.panel_area.code.typing)
         assert app.panel_area.shown("lesson")
+
+
+@pytest.mark.usefixtures("home")
+async def test_program_is_saved_when_it_runs(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await pilot.press("d")
+        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
+        await pilot.press("y", "=", "2", "enter", "ctrl+r")
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        assert not app.document.dirty
+        assert program_path(app.lesson.lesson).read_text() == f"y=2\n{PROGRAM}"  # type: ignore[arg-type]
+
+
+@pytest.mark.usefixtures("home")
+async def test_other_panels_do_not_replace_the_lesson(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        for key, panel in (("i", "instrumentation"), ("A", "arrays"), ("G", "debug"), ("X", "positioning")):
+            await pilot.press(key)
+            await until(pilot, lambda panel=panel: app.panel_area.shown(panel))  # type: ignore[misc]
+            assert app.panel_area.shown("lesson"), panel
+            await pilot.press("escape")
+
+
+@pytest.mark.usefixtures("home")
+async def test_page_keys_scroll_the_text_while_the_world_has_the_focus(tmp_path: Path) -> None:
+    settings_ = opened(tmp_path)
+    assert settings_.lesson is not None
+    long = replace(settings_.lesson, intro="\n\n".join(f"Line {number}" for number in range(40)))
+    async with LabApp(replace(settings_, lesson=long)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: "Line 0" in shown(app))
+        await pilot.press("pagedown")
+        await until(pilot, lambda: "Line 0\n" not in shown(app))
+        await pilot.press("pageup")
+        await until(pilot, lambda: "Line 0\n" in shown(app))
 
 
 @pytest.mark.usefixtures("home")

@@ -26,12 +26,20 @@ def answer(workspace: Workspace) -> None:
         return
     forms = [(f"{number}", choice) for number, choice in enumerate(step.check.choices, start=1)]
     place = "The number of your choice" if forms else "Your answer"
-    workspace.app.push_screen(LinePrompt(step.check.ask, lesson.answer, forms=forms, placeholder=place))
+    workspace.app.push_screen(
+        LinePrompt(step.title, lesson.answer, forms=forms, placeholder=place, text=step.check.ask)
+    )
 
 
 def hint(workspace: Workspace) -> None:
     """Show the next hint of the step."""
     workspace.lesson.hint()
+
+
+def scroll(workspace: Workspace, by: int) -> None:
+    """Scroll the text of the lesson by rows."""
+    if panel := workspace.panel_area.lesson:
+        panel.action_scroll_text(by)
 
 
 def menu(workspace: Workspace) -> None:
@@ -46,11 +54,11 @@ def menu(workspace: Workspace) -> None:
         here.append((_OVER, "Start over", f"All steps again: {lesson.lesson.title}"))
     progress = load_progress()
     lessons = [
-        (f"{_OPEN}{one.name}", one.title, progress.get(one.name, LessonProgress()).words(one))
-        for one in lesson.lessons()
+        (f"{_OPEN}{one.name}", f"{number:2} {one.title}", progress.get(one.name, LessonProgress()).words(one))
+        for number, one in enumerate(lesson.lessons(), start=1)
     ]
     current = f"{_OPEN}{_wanted(workspace)}"
-    groups = [Group("Lessons", lessons), Group("This lesson", here)]
+    groups = [Group("This lesson", here), Group("All lessons", lessons)]
     workspace.app.push_screen(Chooser("Lessons", groups, current), partial(_chosen, workspace))
 
 

@@ -183,6 +183,7 @@ class LinePrompt(Dialog[bool]):
         forms: The accepted forms.
         words: Possible completions of the current word; tab accepts one.
         placeholder: Text of the empty field.
+        text: What stands above the field; empty for nothing.
     """
 
     HINT = "Enter applies · Escape closes"
@@ -195,8 +196,10 @@ class LinePrompt(Dialog[bool]):
         forms: Sequence[Form] = (),
         words: Sequence[str] = (),
         placeholder: str = "",
+        text: str = "",
     ) -> None:
         super().__init__()
+        self._text = text
         self._placeholder = placeholder
         self._words = words
         self.TITLE_TEXT = title.replace("[", "\\[")
@@ -205,6 +208,8 @@ class LinePrompt(Dialog[bool]):
         self._forms = forms
 
     def content(self) -> ComposeResult:
+        if self._text:
+            yield Static(self._text, markup=False, classes="start")
         yield _Line(self._value, self._words, self._placeholder)
         yield Static(id="message", classes="wrong", markup=False)
         yield form_list(self._forms)

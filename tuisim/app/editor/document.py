@@ -305,6 +305,24 @@ class Document:
 
         self._app.push_screen(ProgramDialog("program", str(Path.cwd() / self._name), self._write), saved)
 
+    def save_own(self) -> None:
+        """Save the text to its file without a question, if it is a file of the student's own."""
+        path = Path(self._path)
+        if self.dirty and self._path and self._is_file and not is_protected(path):
+            try:
+                self._write(path)
+            except TuisimError as error:
+                self._app.complain(error)
+                return
+            self._noted_saved(path)
+
+    def _noted_saved(self, path: Path) -> None:
+        drop_draft(self._path)
+        self._saved, self._is_file = self._text, True
+        self._path, self._name = str(path), path.name
+        self._loader.saved(path)
+        self.show()
+
     def _write(self, path: Path) -> None:
         if path.suffix != ".py":
             raise ConfigError("is not a valid program name", "it ends in .py", file=str(path))
@@ -314,15 +332,11 @@ class Document:
 
     def _saved_to(self, path: Path, then: Callable[[], None]) -> None:
         """Note that the text was saved to a file, and report whether it can run."""
-        drop_draft(self._path)
-        self._saved, self._is_file = self._text, True
         moved = str(path) != self._path
-        self._path, self._name = str(path), path.name
-        self.show()
+        self._noted_saved(path)
         mistake = self._mistake()
         if not self._run_controller.in_run and not self._is_applied and (moved or not mistake):
             self._apply_text()
-        self._loader.saved(path)
         if mistake:
             self._app.complain(TuisimError(f"{self._name} is saved, but cannot run: {mistake.message}"))
         else:

@@ -256,6 +256,8 @@ def wanted_panels(preset: Preset, asked: Mapping[str, bool], width: int, height:
     columns = max(0, width // _COLUMN_COLS - len(plan.core) + 1)
     usual = plan.core + plan.beside[:columns] or tuple(panel for panel in _SHOWN if size in PANELS[panel].sizes)
     latest = [panel for panel, on in reversed(list(asked.items())) if on]
+    # A panel that a lesson asks for does not replace the lesson.
+    latest.sort(key=lambda panel: panel != "lesson")
     wanted = latest + [panel for panel in usual if panel not in asked]
     fill = [panel for panel in plan.fill if panel not in asked and panel not in wanted]
     if preset == Preset.STANDARD and not is_tall(width, height):

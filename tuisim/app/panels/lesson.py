@@ -72,7 +72,7 @@ class LessonPanel(LinesPanel, can_focus=True):
         title = f"{_TITLE} ↓{below}" if below else _TITLE
         if title != self.border_title:
             self.border_title = title
-        words = "↑↓ text · ←→ steps · M menu" if self.has_focus else "E ↑↓ reads on" if below else ""
+        words = "↑↓ text · ←→ steps · M menu" if self.has_focus else "page ↓ reads on" if below else ""
         if words != self.border_subtitle:
             self.border_subtitle = words
 

@@ -48,8 +48,8 @@ class LessonView:
     """Whether the last run did not begin at the lesson's start."""
     done: str = ""
     """Title of the step that has just been done; empty for none."""
-    next_name: str = ""
-    """The next lesson; empty if this is the last."""
+    next_title: str = ""
+    """Title of the next lesson; empty if this is the last."""
 
     @property
     def last_page(self) -> int:
@@ -168,7 +168,7 @@ def _to_do(view: LessonView, step: Step) -> str:
     match step.check:
         case Run(times=times, seeds=seeds):
             count = f" {view.good_runs} of {times} runs{' with other seeds' if seeds else ''}." if times > 1 else ""
-            words = f"R runs the program.{count}"
+            words = f"d edits the program, R runs it.{count}"
         case Question(choices=choices):
             words = "Q types the number of your choice." if choices else "Q types your answer."
         case Watch(expression=expression):
@@ -198,7 +198,9 @@ def _end(view: LessonView, width: int) -> Iterator[Line]:
     yield []
     yield from _wrapped(f"On a real robot: {view.lesson.why}", width, _PLAIN)
     yield []
-    following = f"M opens the next lesson: {view.next_name}." if view.next_name else "This was the last lesson."
+    following = (
+        f"M, then enter: the next lesson, {view.next_title}." if view.next_title else "This was the last lesson."
+    )
     yield from _wrapped(following, width, _HINT)
     yield []
     if skipped:
@@ -211,12 +213,9 @@ def _end(view: LessonView, width: int) -> Iterator[Line]:
 
 def _code(text: str, width: int) -> Iterator[Line]:
     """Yield a line of a program, cut into rows; the further ones are indented."""
-    rest = text
-    while True:
-        yield [(rest[:width], _CODE)]
-        if len(rest) <= width:
-            return
-        rest = " " * 6 + rest[width:]
+    body = text.lstrip()
+    indent = text[: len(text) - len(body)]
+    yield from _wrapped(body, width, _CODE, indent + "      ", indent) if body else [[]]
 
 
 def _wrapped(text: str, width: int, style: Style, indent: str = "", first: str = "") -> Iterator[Line]:
