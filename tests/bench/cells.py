@@ -9,12 +9,16 @@ from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
+from textual._compositor import LayoutUpdate
+from textual.geometry import Region
 
 from tests.bench.figures import QUICK, Effort, Figure
 from tuisim.app.render.cells import Cells, all_cells, changed_cells, changed_runs, fit_cells
 from tuisim.app.render.mat import Pixels, shrink, whole_field
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
 from tuisim.app.setup.mat import prepare_mat
+from tuisim.app.terminal.cell_view import CellStrip
+from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
 from tuisim.charts.glyphs import glyph_set
 from tuisim.charts.world_image import COLORED, CellPoints, Viewport, draw_robot
 from tuisim.config.build import build_run_spec
@@ -166,6 +170,27 @@ def frame_cpu_s(mat: Pixels, cell_set: CellSet, frames: int) -> float:
     return (time.process_time() - began) / frames
 
 
+def frame_bytes(mat: Pixels, cell_set: CellSet, frames: int) -> float:
+    """Return the bytes of a frame of the world in full colour while the robot drives a circle with its rays on."""
+    glyphs = glyph_set(cell_set)
+    view = whole_field(COLS * glyphs.cols, ROWS * glyphs.rows, CellPoints(glyphs.cols, glyphs.rows))
+    painter, buffer = ScenePainter(mat, GROUND, PenTrace()), FrameBuffer()
+    picture = painter.paint(view, _driving(0))
+    cells = fit_cells(picture, glyphs, all_cells(ROWS, COLS)).reshape(ROWS, COLS)
+    sent = [_sent(buffer, cells)]
+    for frame in range(1, frames + 1):
+        before, picture = picture, painter.paint(view, _driving(frame))
+        at = changed_cells(before, picture, glyphs)
+        cells[at] = fit_cells(picture, glyphs, at, cells[at])
+        sent.append(_sent(buffer, cells))
+    return sum(sent[1:]) / frames
+
+
+def _sent(buffer: FrameBuffer, cells: Cells) -> int:
+    update = LayoutUpdate([[CellStrip(row)] for row in cells.tolist()], Region(0, 0, COLS, ROWS))
+    return len((buffer.codes(update, TextMode()) or "").encode())
+
+
 def _driving(frame: int) -> SceneState:
     turn = frame * 0.03
     pose = Pose(1181 + 400 * math.cos(turn), 571 + 300 * math.sin(turn), math.degrees(turn) + 90)
@@ -193,6 +218,10 @@ def cells(effort: Effort) -> Iterator[Figure]:
         yield Figure(f"all mats, {cell_set}, of half blocks", drawn[cell_set] / drawn[CellSet.HALF], "", most=most)
         yield Figure(f"all mats, {cell_set}, of the best splits", drawn[cell_set] / best[cell_set], "", most=1.05)
     assert last is not None
+    half_bytes = frame_bytes(last, CellSet.HALF, 120)
+    for cell_set in SETS:
+        many = frame_bytes(last, cell_set, 120)
+        yield Figure(f"bytes of a frame, {cell_set}, of half blocks", many / half_bytes, "", most=1.6)
     for cell_set in SETS:
         cpu_s = min(frame_cpu_s(last, cell_set, 100) for _ in range(effort.repeats))
         yield Figure(f"drawing a frame, {cell_set}", 1e3 * cpu_s, "ms CPU")

@@ -106,8 +106,8 @@ class RobotColors:
     bumper: Rgb = (0, 135, 95)
     pressed: Rgb = (255, 0, 0)
     spot: Rgb = (135, 0, 95)
-    edge_px: float = 0.35
-    """Width of the edge in pixels."""
+    edge_cells: float = 0.35
+    """Width of the edge, as a share of a cell's width."""
     edge_mm: float = 12.0
     """Largest width of the edge."""
 
@@ -119,7 +119,7 @@ GREY = RobotColors(
 )  # fmt: skip
 """For a terminal without colours: dark body, white edge and marker, to stand out on any grey."""
 MONO = RobotColors(
-    edge=(0, 0, 0), body=(255, 255, 255), wheel=(0, 0, 0), sensor=(255, 255, 255), marker=(0, 0, 0), edge_px=0.7,
+    edge=(0, 0, 0), body=(255, 255, 255), wheel=(0, 0, 0), sensor=(255, 255, 255), marker=(0, 0, 0), edge_cells=0.35,
     edge_mm=100.0,
 )  # fmt: skip
 """For a terminal of two colours: a black arrow on white within a black edge."""
@@ -175,7 +175,8 @@ def draw_robot(
     cos, sin = math.cos(heading), math.sin(heading)
     side, ahead = east * sin - north * cos, east * cos + north * sin
     detail_mm = step_mm * view.cell.cols / detail_cols
-    edge_mm = min(colors.edge_px * detail_mm, colors.edge_mm)
+    # Fine pixels are too small for a part of one to be seen.
+    edge_mm = min(colors.edge_cells * detail_cols * detail_mm, colors.edge_mm)
     parts = _parts(outline, side, ahead, detail_mm, detail_cols, edge_mm)
     _mount(parts, outline, side, ahead, detail_mm, pressed)
     _blend(picture[top:bottom, left:right], parts.reshape(bottom - top, down, right - left, across), colors, opacity)

@@ -66,5 +66,7 @@ async def test_without_colours_nothing_but_text_is_sent(
 
     assert max(map(ord, sent)) <= most
     assert "World" in sent
+    # The panel with the focus has another frame.
+    assert {CellSet.ASCII: "====", CellSet.BRAILLE: "━━━━"}[cells] in sent
     styles = {code for codes in re.findall(r"\x1b\[([\d;]*)m", sent) for code in codes.split(";")}
     assert styles <= {"", "0", "1", "2", "3", "4", "7", "9"}

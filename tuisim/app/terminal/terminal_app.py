@@ -39,6 +39,7 @@ from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.graphics import kitty
 from tuisim.app.graphics.choice import graphics_of
+from tuisim.app.render.cells import PALETTE_256
 from tuisim.app.terminal.answers import AnswerParser, TerminalAnswered
 from tuisim.app.terminal.browser import in_browser, offer
 from tuisim.app.terminal.cell_view import PixelView, RowsView
@@ -144,6 +145,7 @@ class TerminalApp(App[None]):
 
     def on_mount(self) -> None:
         self.theme_changed_signal.subscribe(self, self._theme_changed)
+        self.set_class(color_depth(self) < PALETTE_256 or bool(self.no_color), "-few-colors")
 
     def _take_theme(self) -> None:
         is_own = self.theme == OWN_THEME
