@@ -12,6 +12,7 @@ import pytest
 import tuisim
 from tests.conftest import ROOT
 from tuisim.errors import ConfigError
+from tuisim.guide.catalogue import find_page
 
 LOGGER = """\
 tank_drive.on(SpeedPercent(50), SpeedPercent(50))
@@ -68,9 +69,9 @@ def test_import_loads_next_to_nothing() -> None:
     assert not {"numpy", "pandas", "PIL", "IPython", "tuisim.api", "tuisim.runs.handle"} & set(done.stdout.split())
 
 
-def test_the_readme_example_does_as_it_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_guides_example_does_as_it_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    blocks = (ROOT / "README.md").read_text(encoding="utf-8").split("```python\n")[1:]
+    blocks = find_page("notebooks").source.split("```python\n")[1:]
     (example,) = [block.partition("```")[0] for block in blocks if "simulate(" in block]
     names: dict[str, Any] = {}
     exec(example, names)

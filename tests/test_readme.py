@@ -1,4 +1,4 @@
-"""README names what there is: every command, switch, key and format, and where each kind of thing is added."""
+"""README and guide name what there is: every command, switch, key and format, and where each thing is added."""
 
 from __future__ import annotations
 
@@ -17,12 +17,15 @@ from tuisim.commands.log import SUBCOMMANDS
 from tuisim.config.options import OPTIONS
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import MOUNTS
+from tuisim.guide.catalogue import pages
+from tuisim.guide.tables import markdown_of
 from tuisim.logs.export import EXPORTERS
 from tuisim.movies.files import MOVIE_FORMATS
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-HOW_TO_ADD = README.partition("| to add | you need |")[2].partition("\n\n")[0].splitlines()[2:]
-QUOTED = set(re.findall(r"`([^`\n]+)`", README))
+GUIDE = "\n\n".join(markdown_of(page).replace("\\|", "|") for page in pages().values())
+HOW_TO_ADD = GUIDE.partition("| to add | you need |")[2].partition("\n\n")[0].splitlines()[2:]
+QUOTED = set(re.findall(r"`([^`\n]+)`", GUIDE))
 """Everything in backticks."""
 WORDS = {word for quoted in QUOTED for word in re.split(r"[ |,/…\\]+", quoted) if word}
 TABLES = {
@@ -40,7 +43,7 @@ TABLES = {
 
 def is_documented(name: str) -> bool:
     """Whether a name is in backticks; a key of several letters may also be in a list of keys."""
-    return name in QUOTED | WORDS or (len(name) > 1 and re.search(rf"[ |]{re.escape(name)}[ ,|]", README) is not None)
+    return name in QUOTED | WORDS or (len(name) > 1 and re.search(rf"[ |]{re.escape(name)}[ ,|]", GUIDE) is not None)
 
 
 @pytest.mark.parametrize("what", TABLES)
@@ -49,7 +52,7 @@ def test_everything_in_a_table_is_documented(what: str) -> None:
 
 
 def test_every_sensor_of_a_robot_file_is_documented() -> None:
-    found = {mount.key: re.search(rf"^{mount.key} =|\[{mount.key}[.\]]", README, re.MULTILINE) for mount in MOUNTS}
+    found = {mount.key: re.search(rf"^{mount.key} =|\[{mount.key}[.\]]", GUIDE, re.MULTILINE) for mount in MOUNTS}
     assert [key for key, place in found.items() if place is None] == []
 
 
@@ -67,7 +70,7 @@ def test_places_to_add_things_exist() -> None:
 
 def block(language: str, holding: str) -> str:
     """The one block of code in a language that holds a text."""
-    (found,) = [code for code in re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL) if holding in code]
+    (found,) = [code for code in re.findall(rf"```{language}\n(.*?)```", GUIDE, re.DOTALL) if holding in code]
     return str(found)
 
 

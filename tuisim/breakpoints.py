@@ -2,14 +2,15 @@
 
 | text | pauses when |
 | --- | --- |
-| `12` | line 12 is about to run |
+| `12` | line 12 is about to run (or the next line of code, if 12 is blank or a comment) |
 | `12 if x > 3` | … and the expression is true there |
-| `left.red% < 10`, `ultrasonic <= 200`, `gyro > 90`, `x_mm > 1000` | this becomes true, checked after each tick |
-| `right.color changes`, `left.color = Blue` | the value changes, or becomes the given colour |
+| `left.red% < 10`, `ultrasonic <= 200`, `gyro > 90` | this becomes true, checked after each tick |
+| `bumper_pressed > 0`, `x_mm > 1000` | the same for another sensor of the robot, or for its pose |
+| `left.color changes`, `left.color == Blue` | the value changes, or becomes the given colour |
 | `sample Colour < 50`, `sample Colour changes`, `sample Colour` | a printed sample matches |
 | `print matches REGEX` | a printed line matches |
-| `time 3.5` | this simulated time in seconds is reached |
-| `stall` | a running motor is blocked |
+| `time 3.5` | 3.5 simulated seconds have passed |
+| `stall` | an obstacle stalls a running motor |
 
 A leading `#` disables a breakpoint. A comparison triggers when it
 becomes true, not while it stays true.

@@ -46,6 +46,7 @@ COMMANDS: Mapping[str, Entry] = {
     "goals": Entry("commands.goals:goals", "Check whether runs meet the goals of a task"),
     "mark": Entry("commands.mark:mark", "Mark the programs of a class by the goals of a task"),
     "learn": Entry("commands.learn:learn", "Learn to program the robot: lessons in the app"),
+    "guide": Entry("commands.guide:guide", "Read the guide: tutorials, how-to pages, reference"),
     "log": Entry("commands.log:log", "Analyse logs: statistics, bands, events, signals"),
     "analyse": Entry("commands.app:analyse", "Explore logs in the app: table, chart, bands, notes"),
     "backgrounds": Entry("commands.listings:backgrounds", "List the mats"),

@@ -37,6 +37,7 @@ from tuisim.core.spec import (
 )
 from tuisim.errors import ConfigError, ObstacleError, RobotError
 from tuisim.goals.files import load_goals
+from tuisim.guide.catalogue import pages as guide_pages
 
 Write = Callable[[str, str], str]
 
@@ -397,8 +398,9 @@ def test_a_place_that_cannot_be_written_is_told_and_left_as_it_is(name: str, tmp
     assert [path.name for path in tmp_path.iterdir()] == ["folder.toml"]
 
 
-def test_the_files_of_the_readme_work_together(root: Path, tmp_path: Path) -> None:
-    blocks = (root / "README.md").read_text(encoding="utf-8").split("```toml\n# ")[1:]
+def test_the_files_of_the_guide_work_together(tmp_path: Path) -> None:
+    pages = (page.source for page in guide_pages().values())
+    blocks = [block for text in pages for block in text.split("```toml\n# ")[1:]]
     for block in blocks:
         name, _, text = block.partition("```")[0].partition("\n")
         (tmp_path / name).write_text(text)

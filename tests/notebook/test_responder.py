@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import pytest
 
-from tests.conftest import ROOT
 from tests.notebook.conftest import Cell, Kernel
+from tuisim.guide.catalogue import find_page
 
 TALK = """\
 %%sim_magic_preloaded -b Grey_bands -x 300 -RWL
@@ -79,8 +79,8 @@ def test_a_responder_sees_the_pixels_that_are_sent_to_it(cell: Cell) -> None:
     assert out.splitlines()[-1] == "[305]"
 
 
-def test_the_readme_example_does_as_it_says(cell: Cell) -> None:
-    blocks = (ROOT / "README.md").read_text(encoding="utf-8").split("```python\n")[1:]
+def test_the_guides_example_does_as_it_says(cell: Cell) -> None:
+    blocks = find_page("notebooks").source.split("```python notebook\n")[1:]
     responder, program = (text for block in blocks if "responder =" in (text := block.partition("```")[0])
                           or "pyState" in text)  # fmt: skip
     cell(responder)

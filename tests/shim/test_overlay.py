@@ -1,16 +1,14 @@
-"""README's table of what is put right in the library: each row is run, under both profiles."""
+"""The guide's table of what is put right in the library: each row is run, under both profiles."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import pytest
 
 from tests.shim.checking import Check, Table, differences
 from tests.shim.conftest import RunOn
-
-README = Path(__file__).resolve().parents[2] / "README.md"
+from tuisim.guide.catalogue import find_page
 
 SETUP = """
 import time
@@ -110,7 +108,7 @@ ROWS: dict[str, Row] = {
         "i.any(), i.check_buttons(['up'])", "TypeError", "eyes", "i = InfraredSensor()"
     ),
 }
-"""By the item's text in README."""
+"""By the item's text in the guide."""
 
 EXERCISED = {"ev3dev2.sound:Sound.set_volume", "ev3dev2.sound:Sound.get_volume", "ev3dev2.sound:Sound.channel"}
 """Items that only these tests exercise."""
@@ -136,10 +134,8 @@ def test_each_row(run_on: RunOn, profile: str, robot: str) -> None:
 
 
 def test_the_table_has_these_rows() -> None:
-    section = README.read_text(encoding="utf-8").partition("### What the robolab overlay changes")[2]
-    rows = [
-        line.split(" | ")[0].removeprefix("| ") for line in section.partition("\n### ")[0].splitlines() if " | " in line
-    ]
+    section = find_page("library-differences").source
+    rows = [line.split(" | ")[0].removeprefix("| ") for line in section.splitlines() if " | " in line]
     assert rows[2:] == list(ROWS)
 
 

@@ -51,7 +51,7 @@ SOURCES: Mapping[str, str] = {
     "halfway_heading": f"{_NEW}, so that arcs are round; {_OLD}: the heading before the turn",
     "ultrasonic_period_ticks": _OLD,
     "solid": "obstacles are solid on a real field, but not in the old simulator",
-    "mend_library": f"{_NEW}: see README; ev3: the library as it is",
+    "mend_library": f"{_NEW}: see `tuisim guide library-differences`; ev3: the library as it is",
     "starts_in_own_folder": "ev3dev starts a program in its own folder; a course starts it in the notebook's",
 }
 """The source of each key's numbers."""

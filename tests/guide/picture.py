@@ -1,0 +1,55 @@
+"""The picture of the app in README: `python -m tests.guide.picture` draws it anew."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import tempfile
+from pathlib import Path
+
+from textual.widgets._toast import Toast
+
+from tests.app.app_help import ready, until
+from tests.conftest import ROOT
+from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.snapshot import RunPhase
+from tuisim.app.terminal.screenshot import screen_cells
+from tuisim.charts.cell_image import svg_of_cells
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.source import Program
+
+PICTURE = ROOT / "docs" / "tuisim.svg"
+SIZE = (120, 40)
+
+
+async def drawn() -> str:
+    """Return the app as SVG: the example of the grey bands has ended, and two seconds before its end are in view."""
+    text = (ROOT / "programs" / "log_greys.py").read_text(encoding="utf-8")
+    program = Program(name="log_greys.py", text=text, prelude="preloaded", path="log_greys.py")
+    spec = build_run_spec(Settings(background="Grey_bands"))
+    started = AppSettings(spec=spec, program=program, speed=0.0, panels_on=frozenset({"chart"}))
+    async with LabApp(started).run_test(size=SIZE) as pilot:
+        app = await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.situation().has_run and app.situation().state is RunPhase.ENDED)
+        await pilot.press("less_than_sign", "less_than_sign")
+        await until(pilot, lambda: app.situation().looks_back)
+        app.clear_notifications()
+        await until(pilot, lambda: not app.screen.query(Toast))
+        before = ""
+        while before != (now := svg_of_cells(screen_cells(app), "tuisim")):
+            before = now
+            await pilot.pause(0.5)
+        return now
+
+
+def main() -> None:
+    """Write the picture."""
+    os.environ |= {"TUISIM_HOME": tempfile.mkdtemp(), "COLORTERM": "truecolor"}
+    PICTURE.parent.mkdir(exist_ok=True)
+    Path(PICTURE).write_text(asyncio.run(drawn()), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,136 @@
+"""Every block of code in README and guide is run, every command in their text exists, every link leads somewhere."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+import pytest
+
+from tests.conftest import ROOT, Command
+from tests.guide.documents import DOCUMENTS, Block, blocks, commands_in_text, program
+from tuisim.app import app as lab_app
+from tuisim.cli import COMMANDS
+from tuisim.commands import app as app_command
+from tuisim.guide.catalogue import pages
+from tuisim.guide.command_tables import command_names
+
+
+def _class(where: Path) -> None:
+    (where / "class").mkdir()
+    program("log_greys.py", where / "class")
+    (where / "goals.toml").write_text((ROOT / "programs" / "log_greys_goals.toml").read_text(encoding="utf-8"))
+
+
+PREPARED: dict[str, Callable[[Path], None]] = {
+    "marking": _class,
+    "experiments": lambda where: program("square.py", where),
+    "world-files": lambda where: program("follow_line.py", where),
+}
+"""What the reader of a page has already."""
+RUN_ELSEWHERE = {
+    "sh run": ".ci/run",
+    "sh test": ".ci/run",
+    "sh cluster": "tests/batch/test_cluster.py",
+    "python notebook": "tests/notebook/test_responder.py",
+    "toml": "tests/config/test_config_files.py",
+}
+"""Where blocks are run that need a fresh environment, several processes, a notebook or the other files of the guide."""
+SLOW = {"README", "experiments"}
+"""Documents whose blocks take more than two seconds."""
+WITH_BLOCKS = [
+    pytest.param(name, marks=pytest.mark.slow if name in SLOW else ())
+    for name in DOCUMENTS
+    if any(one.kind in ("sh", "sh app", "python") for one in blocks(name))
+]
+
+
+@pytest.fixture
+def opened(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """What the app is opened with, in place of the app."""
+    found: list[Any] = []
+
+    def run_app(settings: Any) -> int:
+        found.append(settings)
+        return 0
+
+    monkeypatch.setattr(lab_app, "run_app", run_app)
+    monkeypatch.setattr(app_command, "has_terminal", lambda: True)
+    return found
+
+
+@pytest.mark.parametrize("name", WITH_BLOCKS)
+def test_each_block_runs(name: str, tmp_path: Path, here: Command, home: Path, opened: list[Any]) -> None:
+    if prepare := PREPARED.get(name):
+        prepare(tmp_path)
+    names: dict[str, Any] = {}
+    for block in blocks(name):
+        match block.kind:
+            case "sh" | "sh app":
+                _run_commands(block, here)
+            case "python" if block.file:
+                (tmp_path / block.file).write_text(block.code)
+            case "python":
+                exec(block.code, names)
+    assert len(opened) == sum(block.kind == "sh app" for block in blocks(name))
+
+
+def _run_commands(block: Block, here: Command) -> None:
+    for words in block.commands():
+        assert words[0] == "tuisim", words
+        done = here(*words[1:])
+        assert done.returncode == 0, (words, done.stderr)
+
+
+def test_blocks_that_are_not_run_here_are_run_elsewhere() -> None:
+    kinds = {block.kind for name in DOCUMENTS for block in blocks(name)} - {"", "sh", "sh app", "python"}
+    assert kinds == set(RUN_ELSEWHERE)
+    assert [path for path in RUN_ELSEWHERE.values() if not (ROOT / path).exists()] == []
+
+
+def test_blocks_without_a_kind_are_drawings() -> None:
+    plain = [block.code for name in DOCUMENTS for block in blocks(name) if block.kind == ""]
+    assert ["tuisim" in code.split() for code in plain] == [False] * len(plain)
+
+
+def _faults(span: str) -> list[str]:
+    """What is wrong with a command in a text; words in capitals stand for something."""
+    try:
+        words = shlex.split(span.replace("…", ""))[1:]
+    except ValueError:
+        return [span]
+    known = command_names()
+    name = next((found for count in (2, 1) if (found := " ".join(words[:count])) in known), "")
+    if not name and words and re.fullmatch(r"[a-z]+", words[0]) and not (ROOT / "programs" / f"{words[0]}.py").exists():
+        return [span]
+    command = known[name or "open"]
+    flags = {flag for param in command.params for flag in (param.opts if isinstance(param, click.Option) else ())}
+    if isinstance(command, click.Group):
+        return []
+    ours = words[: words.index("--")] if "--" in words else words
+    unknown = [
+        word for word in ours if word.startswith("-") and word != "-" and word not in flags | {"--help", "--version"}
+    ]
+    return [span for word in unknown if word.startswith("--") or not {f"-{letter}" for letter in word[1:]} <= flags]
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_each_command_in_the_text_exists(name: str) -> None:
+    assert [fault for span in commands_in_text(name) for fault in _faults(span)] == []
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_each_link_leads_to_a_page(name: str) -> None:
+    links = re.findall(r"\]\(([^)]+)\)", DOCUMENTS[name])
+    folder = ROOT if name == "README" else ROOT / "tuisim" / "guide" / "pages"
+    assert [link for link in links if "://" not in link and not (folder / link).exists()] == []
+    topics = re.findall(r"`tuisim guide ([a-z-]+)`", DOCUMENTS[name])
+    assert [topic for topic in topics if topic not in pages()] == []
+
+
+def test_no_page_bears_a_commands_name() -> None:
+    assert [name for name in pages() if name in COMMANDS] == []

@@ -1,0 +1,114 @@
+"""The pages: contents, tables from the code, HTML, and the command that shows them."""
+
+from __future__ import annotations
+
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import ROOT, Command
+from tuisim.app.actions.keys import ACTIONS
+from tuisim.cli import COMMANDS
+from tuisim.config.options import OPTIONS
+from tuisim.core.profile import PROFILES
+from tuisim.guide.catalogue import Part, pages
+from tuisim.guide.tables import TABLES, table, tables_in
+from tuisim.runs.frames import SAMPLE_COLUMNS
+
+WORDS_OF = {
+    "keys": [action.key_label for action in ACTIONS.values()],
+    "commands": [f"tuisim {name}" for name in COMMANDS],
+    "options": [flag for option in OPTIONS for flag in option.flags],
+    "profile-rules": list(PROFILES),
+    "samples": list(SAMPLE_COLUMNS),
+    "breakpoints": ["stall", "time 3.5"],
+}
+"""What a table must say."""
+
+
+def test_every_file_is_a_page_of_the_contents() -> None:
+    files = {path.stem for path in (ROOT / "tuisim" / "guide" / "pages").iterdir()}
+    assert files == set(pages())
+    assert {page.part for page in pages().values()} == set(Part)
+
+
+def test_every_table_is_in_a_page() -> None:
+    assert {name for page in pages().values() for name in tables_in(page)} == set(TABLES)
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_table_has_a_cell_for_each_column(name: str) -> None:
+    made = table(name)
+    assert made.rows
+    assert {len(row) for row in made.rows} == {len(made.columns)}
+
+
+@pytest.mark.parametrize("name", WORDS_OF)
+def test_a_table_says_what_the_code_says(name: str) -> None:
+    text = table(name).markdown()
+    missing = [word for word in WORDS_OF[name] if not re.search(rf"`{re.escape(word).replace('|', '.+')}[` ]", text)]
+    assert missing == []
+
+
+class _Links(HTMLParser):
+    """What a page of HTML loads or leads to."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.loads: list[str] = []
+        self.leads: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Keep the addresses of a tag."""
+        for name, value in attrs:
+            if name in ("src", "data", "srcset", "action") or (name == "href" and tag == "link") or tag == "script":
+                self.loads.append(str(value))
+            elif name == "href":
+                self.leads.append(str(value))
+
+
+def test_html_loads_nothing_and_is_the_same_twice(tmp_path: Path, here: Command) -> None:
+    assert here("guide", "--html", "one").returncode == 0
+    assert here("guide", "--html", "two").returncode == 0
+    written = {path.name: path.read_bytes() for path in (tmp_path / "one").iterdir()}
+    assert written == {path.name: path.read_bytes() for path in (tmp_path / "two").iterdir()}
+    assert set(written) == {"index.html", *(f"{name}.html" for name in pages())}
+    for name, content in written.items():
+        found = _Links()
+        found.feed(content.decode())
+        assert (found.loads, b"@import" in content, b"url(" in content) == ([], False, False), name
+        assert [to for to in found.leads if "://" not in to and to not in written] == [], name
+        assert b"<!-- table" not in content, name
+
+
+@pytest.mark.parametrize("name", pages())
+def test_the_shell_prints_a_page(name: str, here: Command) -> None:
+    done = here("guide", name)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert pages()[name].title in done.stdout.splitlines()[0]
+    assert "\x1b" not in done.stdout
+    assert max(map(len, done.stdout.splitlines())) <= 100
+
+
+def test_the_shell_lists_the_contents_and_searches(here: Command) -> None:
+    listed = here("guide").stdout
+    assert [name for name in pages() if name not in listed] == []
+    assert here("guide", "--search", "wheel diameter").stdout.split()[1] == "world-files"
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        pytest.param(["keyz"], 2, "guide: no such page 'keyz' (did you mean keys? See `tuisim guide`)", id="no page"),
+        pytest.param(["keys", "--search", "x"], 2, "exclude each other", id="two at once"),
+        pytest.param(["--html", "a_file"], 2, "cannot write a_file", id="a file for a folder"),
+        pytest.param(["--search", "xyzzy"], 1, "No page has these words: xyzzy", id="nothing found"),
+    ],
+)
+def test_what_cannot_be_shown_is_told(words: list[str], code: int, said: str, tmp_path: Path, here: Command) -> None:
+    (tmp_path / "a_file").write_text("")
+    done = here("guide", *words)
+    assert done.returncode == code
+    assert said in done.stderr + done.stdout

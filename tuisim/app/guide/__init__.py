@@ -1,0 +1,1 @@
+"""The guide in the app: its screen, and the tables of keys."""

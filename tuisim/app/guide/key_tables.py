@@ -1,0 +1,48 @@
+"""Reference tables of the keys and the panels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from importlib import import_module
+from typing import Any
+
+from tuisim.app.action import Action
+from tuisim.app.editor.area import EDITOR_KEYS
+from tuisim.app.panels import PANELS
+from tuisim.guide.tables import Table, code
+
+EVERYWHERE = (("ctrl+p", "Command palette"), ("tab", "Next panel or field"), ("escape", "Leave a field"))
+"""Keys that are no lines of the app's table."""
+
+
+def _keys(actions: Iterable[Action[Any, Any]]) -> list[tuple[str, ...]]:
+    return [(code(action.key_label), action.title, action.group) for action in actions]
+
+
+def _actions(module: str) -> Mapping[str, Action[Any, Any]]:
+    # Both tables name the key that opens this guide.
+    found: Mapping[str, Action[Any, Any]] = import_module(module).ACTIONS
+    return found
+
+
+def app_keys() -> Table:
+    """Return the keys of the app."""
+    everywhere = [(code(key), does, "Everywhere") for key, does in EVERYWHERE]
+    return Table(("key", "does", "group"), [*_keys(_actions("tuisim.app.actions.keys").values()), *everywhere])
+
+
+def analyser_keys() -> Table:
+    """Return the keys of the analyser."""
+    return Table(("key", "does", "group"), _keys(_actions("tuisim.app.analyser.actions.keys").values()))
+
+
+def editor_keys() -> Table:
+    """Return the keys of the code panel."""
+    return Table(("key", "does"), [(" ".join(map(code, keys.split())), does) for keys, does in EDITOR_KEYS])
+
+
+def panels() -> Table:
+    """Return the panels, their keys and from which size of terminal they are shown at the start."""
+    rows = [(code(one.key), one.title, f"from a {one.sizes[0]} terminal" if one.sizes else "when you open it")
+            for one in PANELS.values()]  # fmt: skip
+    return Table(("key", "panel", "shown"), rows)

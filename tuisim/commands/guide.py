@@ -1,0 +1,84 @@
+"""`tuisim guide`: pages of the guide in the shell, search, and the guide as HTML."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from tuisim.commands.echo import echo
+from tuisim.config.command_line import Value, argument, command, option
+from tuisim.errors import ConfigError, counted
+
+if TYPE_CHECKING:
+    from tuisim.charts.text_runs import Line
+
+_MOST_COLUMNS = 100
+_MOST_RESULTS = 8
+
+
+def _names() -> Sequence[str]:
+    from tuisim.guide.catalogue import pages
+
+    return list(pages())
+
+
+@command(
+    argument("topic", "[TOPIC]", _names, required=False),
+    option("--search", "words", metavar="WORDS", type=Value(), help="List the pages that answer words or a question."),
+    option("--html", metavar="FOLDER", type=Value(), help="Write all pages as HTML files."),
+)
+def guide(topic: str | None, words: str | None, html: str | None) -> int:
+    """Read the guide: the contents, or the page on a topic.
+
+    In the app, the key ? opens the same pages.
+    """
+    from tuisim.guide.catalogue import find_page
+    from tuisim.guide.text import contents_lines, page_lines
+
+    if sum(one is not None for one in (topic, words, html)) > 1:
+        raise ConfigError("TOPIC, --search and --html exclude each other", "give one of them", key="guide")
+    if html is not None:
+        return _write(Path(html).expanduser())
+    if words is not None:
+        return _search(words)
+    width = _width()
+    _show(page_lines(find_page(topic), width) if topic is not None else contents_lines(width))
+    return 0
+
+
+def _width() -> int:
+    return min(_MOST_COLUMNS, shutil.get_terminal_size().columns) if sys.stdout.isatty() else _MOST_COLUMNS
+
+
+def _show(lines: list[Line]) -> None:
+    from tuisim.guide.text import written
+
+    colored = sys.stdout.isatty() and "NO_COLOR" not in os.environ
+    click.echo_via_pager(written(lines, colored=colored), color=colored)
+
+
+def _search(words: str) -> int:
+    from tuisim.guide.search import search
+    from tuisim.guide.text import NO_WORDS, result_lines
+
+    found = search(words)[:_MOST_RESULTS]
+    if not found:
+        echo(f"{NO_WORDS}: {words}. `tuisim guide` lists all pages.")
+        return 1
+    _show(result_lines(found, _width()))
+    return 0
+
+
+def _write(folder: Path) -> int:
+    from tuisim import __version__
+    from tuisim.guide.html import INDEX, write_html
+
+    written = write_html(folder, __version__)
+    echo(f"{counted(len(written), 'file')} in {folder}; open {folder / INDEX}")
+    return 0

@@ -1,0 +1,87 @@
+"""The pages of the guide, in their order.
+
+To add a page: write `pages/NAME.md`, and add its name to `CONTENTS`. A page begins with TOML between two lines `+++`:
+`about`, a sentence for the contents, and `words`, further words by which the search finds it.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cache
+from pathlib import Path
+
+from tuisim.errors import ConfigError, nearest
+
+_PAGES = Path(__file__).resolve().parent / "pages"
+_PARTS = re.compile(r"\A\+\+\+\n(?P<head>.*?)\n\+\+\+\n\n# (?P<title>[^\n]+)\n(?P<text>.*)\Z", re.DOTALL)
+
+
+class Part(StrEnum):
+    """A part of the guide: what its pages are for."""
+
+    TUTORIAL = "Tutorials"
+    HOW_TO = "How to …"
+    REFERENCE = "Reference"
+    EXPLANATION = "Explanations"
+    PROJECT = "The project"
+
+
+CONTENTS: Mapping[Part, tuple[str, ...]] = {
+    Part.TUTORIAL: ("first-steps", "measuring-bands"),
+    Part.HOW_TO: (
+        "writing-programs", "lessons", "stepping", "going-back", "analysing-logs", "exporting-data",
+        "pictures-and-movies", "notebooks", "in-a-browser", "working-over-ssh", "own-mats", "marking", "experiments",
+        "when-it-goes-wrong",
+    ),
+    Part.REFERENCE: (
+        "keys", "commands", "options", "breakpoints", "profile-rules", "data-columns", "world-files", "goal-files",
+        "the-brick", "library-differences",
+    ),
+    Part.EXPLANATION: ("virtual-time", "how-sensors-see", "motion-and-drift", "the-real-robot"),
+    Part.PROJECT: ("contributing", "architecture", "security"),
+}  # fmt: skip
+"""The names of all pages, by part."""
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """A page of the guide."""
+
+    name: str
+    part: Part
+    title: str
+    about: str
+    """A sentence for the contents."""
+    words: str
+    """Further words for the search."""
+    source: str
+    """Markdown below the title, with the marks of tables."""
+
+
+@cache
+def pages() -> Mapping[str, Page]:
+    """Return all pages by name, in their order."""
+    return {name: _read(name, part) for part, names in CONTENTS.items() for name in names}
+
+
+def _read(name: str, part: Part) -> Page:
+    found = _PARTS.match((_PAGES / f"{name}.md").read_text(encoding="utf-8"))
+    assert found is not None, name
+    head = tomllib.loads(found["head"])
+    return Page(name, part, found["title"], head["about"], head["words"], found["text"].strip("\n"))
+
+
+def find_page(name: str) -> Page:
+    """Return a page by its name.
+
+    Raises:
+        ConfigError: there is no such page.
+    """
+    known = pages()
+    if name not in known:
+        raise ConfigError(f"no such page {name!r}", f"{nearest(name, known)} See `tuisim guide`", key="guide")
+    return known[name]

@@ -1,0 +1,116 @@
+"""Reference tables of options, profiles, breakpoints and data."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from inspect import getdoc
+
+from tuisim import breakpoints as rules
+from tuisim.config.options import OPTIONS
+from tuisim.config.profiles import SOURCES
+from tuisim.core.profile import MS, PROFILES, ProfileSpec
+from tuisim.core.sensors import mounted
+from tuisim.core.spec import RobotSpec
+from tuisim.guide.tables import Table, code
+from tuisim.logs.export import EXPORTERS
+from tuisim.logs.units import unit_of
+from tuisim.runs.frames import MOTION_COLUMNS, SAMPLE_COLUMNS
+
+_MEANINGS = {
+    "index": "time since the first row of the run (`Timedelta`)",
+    "variable": "the name in the printed line",
+    "value": "the number in the printed line",
+    "time": "simulated seconds: of a sample, when the line was printed, or the time given in the line",
+    "run": "1, 2, … in the order of the programs",
+    "x_mm": "the robot's position to the right",
+    "y_mm": "the robot's position upwards",
+    "heading_deg": "the robot's heading: the direction it looks in, counter-clockwise from the x axis",
+    "left_position_deg": "how far the left wheel has turned",
+    "right_position_deg": "how far the right wheel has turned",
+    "left_speed_dps": "speed of the left wheel",
+    "right_speed_dps": "speed of the right wheel",
+    "ultrasonic_mm": "distance that the ultrasonic sensor measures",
+    "gyro_deg": "angle that the gyro measures, clockwise",
+    "gyro_rate_dps": "rate of turn that the gyro measures",
+    "line": "the source line that printed the sample, or that spent the time of the tick",
+}
+_COLOR = "{part} light that the {sensor} colour sensor sees, 0 to 255"
+
+
+def _meaning(name: str) -> str:
+    if name in _MEANINGS:
+        return _MEANINGS[name]
+    sensor, _, part = name.rpartition("_")
+    return _COLOR.format(sensor=sensor, part=part)
+
+
+def _columns(names: tuple[str, ...]) -> Table:
+    rows = [(code(name), _meaning(name), "s" if name == "time" else unit_of(name).words) for name in names]
+    return Table(("column", "contents", "unit"), rows)
+
+
+def samples() -> Table:
+    """Return the columns of samples."""
+    return _columns(SAMPLE_COLUMNS)
+
+
+def telemetry() -> Table:
+    """Return the columns of the telemetry of the default robot."""
+    sensors = [name for kind, sensor in mounted(RobotSpec()) for name in kind.columns(sensor)]
+    return _columns(("time", *MOTION_COLUMNS, *sensors, "line"))
+
+
+def formats() -> Table:
+    """Return the formats of exported data."""
+    rows = [
+        (code(suffix), one.contents, "in the file" if not one.companion else f"in `NAME{suffix}.json` beside the file")
+        for suffix, one in EXPORTERS.items()
+    ]
+    return Table(("suffix", "keeps", "units, seed, program and world"), rows)
+
+
+def options() -> Table:
+    """Return the shared options."""
+    rows = [
+        (" ".join(code(flag) for flag in one.flags), code(one.metavar), one.help.rstrip("."), one.group)
+        for one in OPTIONS
+    ]
+    return Table(("option", "value", "sets", "group"), rows)
+
+
+def profile_rules() -> Table:
+    """Return every rule of a profile, its value in each profile, and its source."""
+    keys = [field.name for field in fields(ProfileSpec) if field.name not in ("name", "title")]
+    rows = [
+        (code(key.removesuffix("_ns")), *(_value(key, profile) for profile in PROFILES.values()), SOURCES.get(key, ""))
+        for key in keys
+    ]
+    return Table(("rule", *map(code, PROFILES), "source"), rows)
+
+
+def _value(key: str, profile: ProfileSpec) -> str:
+    value = getattr(profile, key)
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value / MS:g} ms" if key.endswith("_ns") else str(value)
+
+
+def breakpoints() -> Table:
+    """Return the forms of a breakpoint: the table in the description of their module."""
+    lines = [line for line in (getdoc(rules) or "").split("\n") if line.startswith("|")]
+    cells = [tuple(cell.strip() for cell in line.strip("|").split(" | ")) for line in lines]
+    return Table(cells[0], cells[2:])
+
+
+def quantities() -> Table:
+    """Return the values that a breakpoint can compare, for the default robot."""
+    return Table(("value", "of"), [(code(name), _owner(name)) for name in rules.quantities(RobotSpec())])
+
+
+def _owner(name: str) -> str:
+    sensor, dot, part = name.partition(".")
+    if name in _MEANINGS:
+        return _MEANINGS[name]
+    if sensor in ("left", "right"):
+        return f"the {sensor} colour sensor"
+    return f"the sensor {sensor}, {part} of change" if dot else f"the reading of the sensor {sensor}"

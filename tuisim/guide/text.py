@@ -1,0 +1,57 @@
+"""Pages as text for a terminal."""
+
+from __future__ import annotations
+
+import re
+
+from rich.color import ColorSystem
+
+from tuisim.charts.text_runs import Line
+from tuisim.guide.catalogue import CONTENTS, Page, pages
+from tuisim.guide.search import Found
+from tuisim.guide.tables import markdown_of
+from tuisim.lessons.markdown import markdown_lines
+
+_LINK = re.compile(r"\[([^\]]+)\]\(([\w-]+)\.md\)")
+NO_WORDS = "No page has these words"
+
+
+def linked_names(page: Page) -> list[str]:
+    """Return the names of the pages that a page links to, in their order."""
+    return list(dict.fromkeys(found[2] for found in _LINK.finditer(page.source)))
+
+
+def page_lines(page: Page, width: int) -> list[Line]:
+    """Return a page as lines of at most a number of columns; a link shows the name of its page."""
+    return markdown_lines(_LINK.sub(_named, markdown_of(page)), width)
+
+
+def _named(link: re.Match[str]) -> str:
+    text, name = link[1], link[2]
+    plain = text.replace("`", "").lower().replace(" ", "-")
+    return f"**{text}**" if plain == name else f"**{text}** (page `{name}`)"
+
+
+def contents_lines(width: int) -> list[Line]:
+    """Return the contents: the pages by part."""
+    text = ["# The guide", "`tuisim guide TOPIC` shows a page, `tuisim guide --search WORDS` finds one."]
+    for part, names in CONTENTS.items():
+        text += [f"## {part}", "\n".join(f"- `{name}` {pages()[name].title}" for name in names)]
+    return markdown_lines("\n\n".join(text), width)
+
+
+def result_lines(found: list[Found], width: int) -> list[Line]:
+    """Return what a search has found, the best page first."""
+    items = [
+        f"- `{one.name}` **{pages()[one.name].title}**{f': {one.heading}' if one.heading else ''}. "
+        f"{pages()[one.name].about}"
+        for one in found
+    ]
+    return markdown_lines("\n".join(items), width)
+
+
+def written(lines: list[Line], *, colored: bool) -> str:
+    """Return lines as one text, with the control sequences of a terminal if it is coloured."""
+    system = ColorSystem.TRUECOLOR if colored else None
+    return "\n".join("".join(style.render(text, color_system=system) if colored else text for text, style in line)
+                     for line in lines) + "\n"  # fmt: skip
