@@ -74,3 +74,13 @@ async def test_the_palette_offers_every_preset() -> None:
         await until(pilot, lambda: "Layout to analyse" in screen_text(app))
         await pilot.press("enter")
         await until(pilot, lambda: app.panel_area.preset == Preset.ANALYSE)
+
+
+@in_each_size
+def test_the_world_stays_with_every_panel_asked_for(size: tuple[int, int]) -> None:
+    width, height = size[0], size[1] - 1
+    wanted, fill = wanted_panels(Preset.STANDARD, dict.fromkeys(PANELS, True), width, height)
+    box = arrange(wanted, width, height, fill).boxes["world"]
+    # Two rows of panels below it leave it narrower than its panel in a low terminal.
+    least = 2 / 3 if height >= 39 else 0.45
+    assert mat_cells(box) > least * (box.width - 2) * (box.height - 3)

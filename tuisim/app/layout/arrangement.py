@@ -37,6 +37,8 @@ _LEAST_TEXT, _MOST_TEXT = 40, 58
 _MAX_WASTE = 0.3
 """A panel with more empty space beside its mat counts as a poor form."""
 _POOR = 0.7
+_LEAST_FILLED = 0.6
+"""A form other than the first of a preset is not chosen if the mat fills less of the world's panel."""
 
 
 class Preset(StrEnum):
@@ -256,9 +258,10 @@ def wanted_panels(preset: Preset, asked: Mapping[str, bool], width: int, height:
     columns = max(0, width // _COLUMN_COLS - len(plan.core) + 1)
     usual = plan.core + plan.beside[:columns] or tuple(panel for panel in _SHOWN if size in PANELS[panel].sizes)
     latest = [panel for panel, on in reversed(list(asked.items())) if on]
-    # A panel that a lesson asks for does not replace the lesson.
-    latest.sort(key=lambda panel: panel != "lesson")
-    wanted = latest + [panel for panel in usual if panel not in asked]
+    rest = [panel for panel in usual if panel not in asked]
+    # A lesson and the world keep their places, however many panels are asked for.
+    places = {"lesson": 0, "world": 1}
+    wanted = sorted(latest + rest, key=lambda panel: places.get(panel, 2))
     fill = [panel for panel in plan.fill if panel not in asked and panel not in wanted]
     if preset == Preset.STANDARD and not is_tall(width, height):
         # The strip below a wide world gets no fuller: its panels would be too narrow.
@@ -286,11 +289,16 @@ def mat_cells(box: PanelBox) -> float:
     return min(width, 2 * height * FIELD_WIDTH_MM / FIELD_HEIGHT_MM) ** 2 * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / 2
 
 
+def _fills(layout: PanelLayout, share: float) -> bool:
+    """Return whether the mat fills this share of the world's panel."""
+    box = layout.boxes.get("world")
+    return box is None or mat_cells(box) >= share * (box.width - EDGES) * (box.height - EDGES)
+
+
 def _score(layout: PanelLayout, wanted: int, crowded: bool) -> tuple[int, float]:
     box = layout.boxes.get("world")
     cells = mat_cells(box) if box else 0.0
-    inside = (box.width - EDGES) * (box.height - EDGES) if box else 1
-    return wanted, cells * (_POOR if cells < (1 - _MAX_WASTE) * inside else 1.0) * (_POOR**2 if crowded else 1.0)
+    return wanted, cells * (1.0 if _fills(layout, 1 - _MAX_WASTE) else _POOR) * (_POOR**2 if crowded else 1.0)
 
 
 def arrange(
@@ -340,6 +348,8 @@ def _scored(
         node = form(kept, width, height)
         layout = PanelLayout(wanted=panels)
         place(node, PanelBox(0, 0, width, height), {}, layout)
+        if form is not _PLANS[preset].forms[0] and not _fills(layout, _LEAST_FILLED):
+            continue
         crowded = not _PLANS[preset].compact and fair_rows(node, width) > height
         yield _score(layout, sum(panel in kept for panel in panels), crowded), node
 
