@@ -18,7 +18,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, NAME_QUERY, facts_in
+from tuisim.app.graphics import kitty
+from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, NAME_QUERY, QUESTIONS, TerminalFacts, facts_in
 from tuisim.config.options import AUTO, CellSet
 
 ANSWER_S = 0.4
@@ -121,6 +122,63 @@ def best_cells(*, ask: bool = True) -> CellSet:
         return CellSet.QUADRANT
 
 
+SILENT = ("", "dumb", "unknown", "linux")
+"""Kinds of terminals that are not asked: they may show the questions as text."""
+_ROUND_TRIPS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Answers:
+    """What a terminal has answered to every question."""
+
+    facts: TerminalFacts
+    octant_cols: int | None
+    """By how many columns an octant moved the cursor; None if it did not answer."""
+    latency_s: float | None
+    """The shortest time that an answer took; None if there was none."""
+
+
+def ask_everything(fd: int) -> Answers:
+    """Ask a terminal everything that the app asks, and measure how long it takes to answer.
+
+    Args:
+        fd: The terminal, open for reading and writing.
+
+    Raises:
+        OSError, termios.error: it is no terminal, or gone.
+    """
+    before = termios.tcgetattr(fd)
+    try:
+        tty.setcbreak(fd, termios.TCSANOW)
+        position = _POSITION.search(_ask(fd, WIDTH_QUERY, _POSITION.search, fd))
+        _write(_CLEAR, fd)
+        latency_s = _latency_s(fd)
+        if latency_s is None:
+            return Answers(TerminalFacts(), int(position[1]) - 1 if position else None, None)
+        text = _ask(fd, QUESTIONS, _has_attributes, fd)
+        facts = facts_in(text.decode("latin-1"))
+        if facts.asks_for_kitty:
+            text += _ask(fd, kitty.QUERY, lambda answer: facts_in(answer.decode("latin-1")).has_kitty_graphics, fd)
+        return Answers(facts_in(text.decode("latin-1")), int(position[1]) - 1 if position else None, latency_s)
+    finally:
+        # Answers that come late are not typed into the shell.
+        termios.tcsetattr(fd, termios.TCSAFLUSH, before)
+
+
+def _latency_s(fd: int) -> float | None:
+    found = []
+    for _ in range(_ROUND_TRIPS):
+        begun = time.monotonic()
+        if not facts_in(_ask(fd, ATTRIBUTES_QUERY, _has_attributes, fd).decode("latin-1")).attributes:
+            break
+        found.append(time.monotonic() - begun)
+    return min(found, default=None)
+
+
+def _has_attributes(answer: bytes) -> bool:
+    return bool(facts_in(answer.decode("latin-1")).attributes)
+
+
 def _asked() -> CellSet:
     """Ask the terminal of the standard input and output.
 
@@ -136,14 +194,14 @@ def _asked() -> CellSet:
         cols = int(found[1]) - 1 if (found := _POSITION.search(position)) else None
         if cols != 1:
             return cells_of("", cols)
-        answers = _ask(fd, NAME_QUERY + ATTRIBUTES_QUERY, lambda answer: facts_in(answer.decode("latin-1")).attributes)
+        answers = _ask(fd, NAME_QUERY + ATTRIBUTES_QUERY, _has_attributes)
         return cells_of(facts_in(answers.decode("latin-1")).name, cols)
     finally:
         termios.tcsetattr(fd, termios.TCSANOW, before)
 
 
-def _ask(fd: int, query: str, is_answered: Callable[[bytes], object]) -> bytes:
-    _write(query)
+def _ask(fd: int, query: str, is_answered: Callable[[bytes], object], output: int | None = None) -> bytes:
+    _write(query, output)
     answer, give_up = b"", time.monotonic() + ANSWER_S
     while not is_answered(answer) and (left := give_up - time.monotonic()) > 0:
         if select.select([fd], [], [], left)[0]:
@@ -154,6 +212,6 @@ def _ask(fd: int, query: str, is_answered: Callable[[bytes], object]) -> bytes:
     return answer
 
 
-def _write(text: str) -> None:
+def _write(text: str, output: int | None = None) -> None:
     with suppress(OSError):
-        os.write(sys.stdout.fileno(), text.encode())
+        os.write(sys.stdout.fileno() if output is None else output, text.encode())

@@ -45,6 +45,7 @@ from tuisim.app.terminal.browser import in_browser, offer
 from tuisim.app.terminal.cell_view import PixelView, RowsView
 from tuisim.app.terminal.drawing import Drawing, color_depth, drawing_of
 from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
+from tuisim.app.terminal.probe import SILENT
 from tuisim.app.terminal.queries import QUESTIONS, TerminalFacts, cell_size_px
 from tuisim.app.terminal.screenshot import save_screenshot, screen_cells
 from tuisim.app.terminal.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors
@@ -388,9 +389,6 @@ class ResilientOutput:
 # The driver makes its parser itself.
 linux_driver.XTermParser = AnswerParser  # type: ignore[attr-defined]
 
-_SILENT = ("dumb", "linux")
-"""Kinds of terminal that are not asked: they may show the questions as text, and draw no pixels."""
-
 
 class TerminalDriver(LinuxDriver):
     """Textual's driver with an output that survives the loss of its terminal, and asks what the terminal can do."""
@@ -404,7 +402,7 @@ class TerminalDriver(LinuxDriver):
     def start_application_mode(self) -> None:
         """Take the terminal over, and ask what it can do."""
         super().start_application_mode()  # type: ignore[no-untyped-call]
-        if os.environ.get("TERM", "dumb") not in _SILENT:
+        if os.environ.get("TERM", "") not in SILENT:
             self.write(QUESTIONS)
             self.flush()
 

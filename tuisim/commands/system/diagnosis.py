@@ -1,0 +1,201 @@
+"""What the surroundings of tuisim mean for its use: for each of them, whether it is all right, and else what to do.
+
+Pure: `doctor` looks at the machine, and these functions judge what it found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+
+from tuisim.config.options import CellSet
+
+SMALLEST, COMFORTABLE = (60, 18), (80, 24)
+"""Columns and rows that the app needs, and those that it is designed for."""
+SLOW_S = 0.15
+"""An answer of the terminal that takes longer is felt."""
+LARGE_STORE_MB = 2000
+OLDEST_PYTHON = (3, 11)
+
+
+class State(StrEnum):
+    """How good a finding is."""
+
+    OK = "ok"
+    ADVICE = "advice"
+    """Usable; something could be better."""
+    PROBLEM = "problem"
+    """It prevents the use."""
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One line of the report."""
+
+    name: str
+    value: str
+    state: State = State.OK
+    advice: str = ""
+    """What to do about it."""
+
+
+def terminal_finding(name: str, term: str, *, is_remote: bool) -> Finding:
+    """Judge the terminal.
+
+    Args:
+        name: What it calls itself; empty if it does not tell.
+        term: The variable TERM.
+        is_remote: Whether it is reached by SSH.
+    """
+    value = f"{name or 'no name'} (TERM={term or 'not set'}{', over SSH' if is_remote else ''})"
+    if term in ("", "dumb", "unknown"):
+        return Finding("terminal", value, State.ADVICE, "The terminal is unknown: export TERM=xterm-256color")
+    return Finding("terminal", value)
+
+
+def no_terminal_finding() -> Finding:
+    """Judge that there is no terminal."""
+    advice = "The app needs a terminal; `tuisim run`, `batch`, `log` and notebooks do not"
+    return Finding("terminal", "none", State.ADVICE, advice)
+
+
+def colors_finding(depth: str, *, is_remote: bool) -> Finding:
+    """Judge the number of colours, one of `COLOR_DEPTHS` other than `auto`."""
+    if depth == "truecolor":
+        return Finding("colours", "truecolor (16 million)")
+    value = {"none": "none", "8": "8", "16": "16", "256": "256"}[depth]
+    sent = "; SSH does not send this variable by itself" if is_remote else ""
+    advice = f"If the terminal shows more, as most do: export COLORTERM=truecolor{sent}"
+    return Finding("colours", value, State.ADVICE, advice)
+
+
+_POINTS = {
+    CellSet.HALF: "1 × 2 points in a cell",
+    CellSet.QUADRANT: "2 × 2 points in a cell",
+    CellSet.SEXTANT: "2 × 3 points in a cell",
+    CellSet.OCTANT: "2 × 4 points in a cell",
+    CellSet.BRAILLE: "2 × 4 dots in a cell",
+    CellSet.ASCII: "letters and signs",
+}
+
+
+def cells_finding(cells: CellSet) -> Finding:
+    """Judge the finest glyphs that the terminal is known to show."""
+    value = f"{cells} ({_POINTS[cells]})"
+    if cells is CellSet.ASCII:
+        return Finding("cells", value, State.ADVICE, "Finer glyphs need UTF-8: export LANG=C.UTF-8")
+    if cells in (CellSet.HALF, CellSet.QUADRANT):
+        return Finding("cells", value, State.OK, "Press V in the app to see whether the font shows finer ones")
+    return Finding("cells", value)
+
+
+def graphics_finding(protocol: str) -> Finding:
+    """Judge the protocol for real pixels; empty if there is none."""
+    return Finding("graphics", protocol or "none: the world is drawn with glyphs")
+
+
+def size_finding(cols: int, rows: int) -> Finding:
+    """Judge the size of the terminal in cells."""
+    value = f"{cols} × {rows}"
+    for least, word in ((SMALLEST, "at least"), (COMFORTABLE, "better")):
+        if cols < least[0] or rows < least[1]:
+            return Finding("size", value, State.ADVICE, f"Enlarge the window to {word} {least[0]} × {least[1]}")
+    return Finding("size", value)
+
+
+def locale_finding(variable: str, encoding: str) -> Finding:
+    """Judge the locale.
+
+    Args:
+        variable: The variable that decides it with its value, such as `LANG=C.UTF-8`; empty if none is set.
+        encoding: The encoding that Python uses.
+    """
+    value = f"{variable or 'not set'} ({encoding})"
+    if encoding.lower().replace("-", "") != "utf8" or (variable and "utf" not in variable.lower()):
+        return Finding("locale", value, State.ADVICE, "Use UTF-8: export LANG=C.UTF-8")
+    return Finding("locale", value)
+
+
+def latency_finding(latency_s: float | None) -> Finding:
+    """Judge how long the terminal takes to answer; None if it does not answer."""
+    if latency_s is None:
+        advice = "It does not answer, so tuisim cannot know what it shows: choose with --cells and --pixels"
+        return Finding("latency", "no answer", State.ADVICE, advice)
+    value = f"{1000 * latency_s:.0f} ms" if latency_s >= 0.01 else f"{1000 * latency_s:.1f} ms"
+    if latency_s > SLOW_S:
+        return Finding("latency", value, State.ADVICE, "Slow link: --fps 5, --cells half and --pixels none send less")
+    return Finding("latency", value)
+
+
+def python_finding(version: tuple[int, ...], path: str) -> Finding:
+    """Judge the version of Python."""
+    value = f"{'.'.join(map(str, version))} ({path})"
+    if version < OLDEST_PYTHON:
+        return Finding("Python", value, State.PROBLEM, "Install tuisim with Python 3.11 or later")
+    return Finding("Python", value)
+
+
+def system_finding(system: str, release: str) -> Finding:
+    """Judge the operating system, such as Linux."""
+    value = f"{system} {release}"
+    if system == "Linux":
+        return Finding("system", value)
+    if system == "Darwin":
+        return Finding("system", value, State.ADVICE, "macOS is untested: please report what does not work")
+    return Finding("system", value, State.PROBLEM, "tuisim needs Linux; on Windows use WSL")
+
+
+def home_finding(folder: str, why_not: str) -> Finding:
+    """Judge the folder of runs, drafts and preferences.
+
+    Args:
+        folder: Its path.
+        why_not: Why it cannot be written; empty if it can.
+    """
+    if why_not:
+        advice = "Runs cannot be stored: correct the permissions, or export TUISIM_HOME=FOLDER"
+        return Finding("home folder", f"{folder}: {why_not}", State.PROBLEM, advice)
+    return Finding("home folder", f"{folder} (writable)")
+
+
+def store_finding(count: int, size_bytes: int, free_bytes: int) -> Finding:
+    """Judge the stored runs: their number, their size and what is left on the disk."""
+    value = f"{count} runs, {size_bytes / 1e6:.1f} MB; {free_bytes / 1e9:.1f} GB free"
+    if free_bytes < 100e6:
+        return Finding("store", value, State.ADVICE, "The disk is almost full: tuisim runs rm --older-than 30d")
+    if size_bytes > LARGE_STORE_MB * 1e6:
+        return Finding("store", value, State.ADVICE, "Large: tuisim runs rm --older-than 30d")
+    return Finding("store", value)
+
+
+def assets_finding(why_not: str) -> Finding:
+    """Judge whether the mats and the examples are there; `why_not` is empty if they are."""
+    if why_not:
+        return Finding("mats", why_not, State.PROBLEM, "Install tuisim again, or correct TUISIM_ASSETS")
+    return Finding("mats", "found")
+
+
+def dependency_findings(requirements: Iterable[tuple[str, str, str]]) -> list[Finding]:
+    """Judge the packages that tuisim needs: one finding for those that are all right, one for each other.
+
+    Args:
+        requirements: For each its name, the version that is required exactly or an empty text, and the installed
+            version or an empty text.
+    """
+    found = [_dependency(*one) for one in requirements]
+    good = ", ".join(f"{one.name} {one.value}" for one in found if one.state is State.OK)
+    return [Finding("packages", good or "none"), *(one for one in found if one.state is not State.OK)]
+
+
+def _dependency(name: str, pinned: str, installed: str) -> Finding:
+    if not installed:
+        return Finding(name, "missing", State.PROBLEM, "Install tuisim again: pip install --force-reinstall tuisim")
+    if pinned and installed != pinned:
+        return Finding(name, installed, State.PROBLEM, f"Needs {pinned}: pip install {name}=={pinned}")
+    return Finding(name, installed)
+
+
+def prevents_use(findings: Iterable[Finding]) -> bool:
+    """Return whether any finding prevents the use of tuisim."""
+    return any(finding.state is State.PROBLEM for finding in findings)

@@ -1,0 +1,229 @@
+"""`tuisim doctor`: what the terminal and the machine offer, and what to do where they offer too little."""
+
+from __future__ import annotations
+
+import locale
+import os
+import platform
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from textwrap import wrap
+
+from tuisim import __version__
+from tuisim.commands.echo import echo, echo_json
+from tuisim.commands.system import diagnosis
+from tuisim.commands.system.diagnosis import Finding, State, prevents_use
+from tuisim.config.command_line import AS_JSON, command, option
+from tuisim.config.folders import backgrounds_folder, home_folder, programs_folder
+from tuisim.errors import ConfigError, TuisimError
+
+EXIT_PREVENTED = 1
+_WIDTH = 78
+_MARKS = {State.OK: "ok", State.ADVICE: "!", State.PROBLEM: "FAIL"}
+_EXACTLY = re.compile(r"([A-Za-z0-9._-]+)\s*(?:==([^;,\s]+))?")
+
+
+@command(
+    AS_JSON,
+    option("--reset", is_flag=True, help="Restore a terminal that a killed app has left unusable."),
+    help="""Check the terminal and the machine, for use and for bug reports.
+
+    Each line tells what was found and, after ->, what to do about it. The exit code is 0 unless something prevents the
+    use of tuisim.
+
+    If a killed app has left the terminal without an echo or with a hidden cursor, type `tuisim doctor --reset` and
+    press ctrl+j, even if you cannot see what you type.
+    """,
+)
+def doctor(as_json: bool, reset: bool) -> int:
+    """Print the report, or restore the terminal.
+
+    Raises:
+        ConfigError: there is no terminal to restore.
+    """
+    if reset:
+        _restore()
+        return 0
+    findings = [*_terminal_findings(os.environ), *_machine_findings()]
+    prevented = prevents_use(findings)
+    if as_json:
+        echo_json({"tuisim": __version__, "usable": not prevented, "findings": [asdict(one) for one in findings]})
+    else:
+        _print(findings)
+    return EXIT_PREVENTED if prevented else 0
+
+
+def _print(findings: list[Finding]) -> None:
+    echo(f"tuisim {__version__}")
+    widest = max(len(one.name) for one in findings)
+    for one in findings:
+        first, *rest = wrap(one.value, _WIDTH - widest - 8, break_on_hyphens=False) or [""]
+        echo(f"{_MARKS[one.state]:4}  {one.name:{widest}}  {first}")
+        advice = wrap(one.advice, _WIDTH - widest - 11, break_on_hyphens=False)
+        for line in (*rest, *(f"{'  ' if at else '->'} {text}" for at, text in enumerate(advice))):
+            echo(f"{'':{widest + 8}}{line}")
+    echo("Something prevents the use of tuisim: see FAIL." if prevents_use(findings) else "tuisim can be used.")
+
+
+@contextmanager
+def _terminal() -> Iterator[int | None]:
+    """Open the terminal that this process belongs to, also if its output is redirected; None if there is none."""
+    try:
+        fd = os.open("/dev/tty", os.O_RDWR | os.O_NOCTTY)
+    except OSError:
+        yield None
+        return
+    try:
+        # A job in the background would be stopped when it changes the terminal.
+        yield fd if os.tcgetpgrp(fd) == os.getpgrp() else None
+    finally:
+        os.close(fd)
+
+
+def _restore() -> None:
+    # On demand: this and the report are all that the command needs of the app.
+    from tuisim.app.terminal.restore import restore_terminal
+
+    with _terminal() as fd:
+        if fd is None:
+            raise ConfigError("there is no terminal to restore", key="--reset")
+        restore_terminal(fd, os.environ.get("TERM", ""))
+    echo("The terminal has been restored.")
+
+
+def _terminal_findings(environment: Mapping[str, str]) -> list[Finding]:
+    is_remote = "SSH_CONNECTION" in environment or "SSH_TTY" in environment
+    with _terminal() as fd:
+        if fd is None:
+            return [diagnosis.no_terminal_finding(), _locale_finding(environment)]
+        return _asked_findings(fd, environment, is_remote)
+
+
+def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) -> list[Finding]:
+    import termios
+
+    from tuisim.app.graphics.choice import graphics_of
+    from tuisim.app.terminal.probe import (
+        SILENT,
+        Answers,
+        ask_everything,
+        cells_of,
+        cells_without_asking,
+        first_environment,
+    )
+    from tuisim.app.terminal.queries import TerminalFacts, cell_size_px
+    from tuisim.config.options import AUTO
+
+    term = environment.get("TERM", "")
+    answers = Answers(TerminalFacts(), None, None)
+    if term not in SILENT:
+        try:
+            answers = ask_everything(fd)
+        except (OSError, termios.error):
+            return [diagnosis.no_terminal_finding(), _locale_finding(environment)]
+    cells = cells_without_asking({**first_environment(), "TERM": term})
+    graphics = graphics_of(answers.facts, AUTO, cell_size_px(fd))
+    size = os.get_terminal_size(fd)
+    return [
+        diagnosis.terminal_finding(answers.facts.name, term, is_remote=is_remote),
+        diagnosis.size_finding(size.columns, size.lines),
+        diagnosis.colors_finding(_colors(environment), is_remote=is_remote),
+        diagnosis.cells_finding(cells or cells_of(answers.facts.name, answers.octant_cols)),
+        diagnosis.graphics_finding(graphics.protocol if graphics else ""),
+        diagnosis.latency_finding(answers.latency_s),
+        _locale_finding(environment),
+    ]
+
+
+def _colors(environment: Mapping[str, str]) -> str:
+    """Return the number of colours that the app would draw with, one of `COLOR_DEPTHS`."""
+    from rich.console import Console
+
+    from tuisim.app.terminal.probe import colors_without_asking
+    from tuisim.config.options import AUTO
+
+    known = colors_without_asking(environment.get("TERM", ""))
+    if known != AUTO or environment.get("NO_COLOR"):
+        return "none" if environment.get("NO_COLOR") else known
+    system = Console(force_terminal=True, _environ=environment).color_system
+    return {"truecolor": "truecolor", "256": "256", "standard": "16", "windows": "16"}.get(system or "", "none")
+
+
+def _locale_finding(environment: Mapping[str, str]) -> Finding:
+    names = (name for name in ("LC_ALL", "LC_CTYPE", "LANG") if environment.get(name))
+    variable = next((f"{name}={environment[name]}" for name in names), "")
+    return diagnosis.locale_finding(variable, locale.getencoding())
+
+
+def _machine_findings() -> list[Finding]:
+    home = home_folder()
+    why_not = _why_not_writable(home)
+    found = [
+        diagnosis.system_finding(platform.system(), platform.release()),
+        diagnosis.python_finding(sys.version_info[:3], sys.executable),
+        diagnosis.home_finding(str(home), why_not),
+        diagnosis.assets_finding(_why_no_assets()),
+    ]
+    if not why_not:
+        found.append(diagnosis.store_finding(*_store(home)))
+    return found + diagnosis.dependency_findings(_requirements())
+
+
+def _why_not_writable(folder: Path) -> str:
+    """Return why no file can be written in a folder, or a folder there; empty if it can."""
+    place = folder
+    while not place.exists() and place != place.parent:
+        place = place.parent
+    try:
+        with tempfile.TemporaryFile(dir=place):
+            return ""
+    except OSError as error:
+        return f"cannot be written ({error.strerror or error})"
+
+
+def _why_no_assets() -> str:
+    try:
+        backgrounds_folder()
+        programs_folder()
+    except TuisimError as error:
+        return str(error)
+    return ""
+
+
+def _store(home: Path) -> tuple[int, int, int]:
+    """Return the number of stored runs, their size and the free space on the disk in bytes."""
+    from tuisim.runs.store import bytes_in
+
+    try:
+        runs = [entry for entry in (home / "runs").iterdir() if entry.is_dir()]
+    except OSError:
+        runs = []
+    place = next(parent for parent in (home, *home.parents) if parent.exists())
+    return len(runs), sum(map(bytes_in, runs)), shutil.disk_usage(place).free
+
+
+def _requirements() -> list[tuple[str, str, str]]:
+    """Return the name of each package that tuisim needs, the version that it must have, and the one that it has."""
+    from importlib.metadata import PackageNotFoundError, requires
+
+    try:
+        lines = requires("tuisim") or []
+    except PackageNotFoundError:
+        return [("tuisim", "", "")]
+    found = [match for line in lines if "extra ==" not in line and (match := _EXACTLY.match(line))]
+    return [(match[1], match[2] or "", _version(match[1])) for match in found]
+
+
+def _version(name: str) -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return ""
