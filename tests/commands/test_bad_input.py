@@ -54,7 +54,7 @@ BAD = {
     "missing program in the app": ("nope.py", "nope.py: there is no such program"),
     "wrong switch in the app": ("-x abc", "-x: must be a number"),
     "frames": ("prog.py --fps 0", "--fps: must be a whole number from 1 to 60"),
-    "colours": ("prog.py --colors 17", "--colors: no such value '17' (one of auto, truecolor, 256, 16, none)"),
+    "colours": ("prog.py --colors 17", "--colors: no such value '17' (one of auto, truecolor, 256, 16, 8, none)"),
     "unknown run": ("runs show 99999", "99999"),
     "which run": ("runs show", "show: no run given"),
     "unknown action": ("runs shwo 1", "no such command 'shwo' (did you mean show?)"),
