@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Command
-from tuisim.lessons.progress import LessonProgress, StepState, save_progress
+from tuisim.app.app import AppSettings
+from tuisim.core.geometry import Pose
+from tuisim.lessons.progress import LessonProgress, StepState, program_path, save_progress
 from tuisim.lessons.skeleton import SKELETON
 
 FAULTY = {
@@ -87,6 +89,61 @@ def test_author_is_told_what_is_wrong(change: tuple[str, str], fault: str, here:
     (tmp_path / "mine.md").write_text(SKELETON.replace(*change))
     done = here("learn", "check", "mine.md")
     assert (done.returncode, fault in done.stdout) == (1, True), done.stdout
+
+
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch) -> list[AppSettings]:
+    """The settings of the apps that were started, in a terminal."""
+    found: list[AppSettings] = []
+    monkeypatch.setattr("tuisim.commands.app.has_terminal", lambda: True)
+
+    def run_app(settings: AppSettings) -> int:
+        found.append(settings)
+        return 0
+
+    monkeypatch.setattr("tuisim.app.app.run_app", run_app)
+    return found
+
+
+def test_in_a_terminal_the_app_opens_the_lesson(here: Command, own: Path, started: list[AppSettings]) -> None:
+    assert here("learn", "half", "--folder", own).returncode == 0
+    (settings,) = started
+    assert settings.lesson is not None
+    assert (settings.lesson.name, settings.lessons_folder) == ("half", str(own))
+    assert settings.spec.world.start == Pose(500, 500, 0)
+    assert settings.program is not None
+    assert settings.program.path == str(program_path(settings.lesson))
+    assert settings.panels_on >= {"lesson", "code"}
+
+
+def opened_at(second: int, done: bool = False) -> LessonProgress:
+    """Progress on `half`, which was last opened at a second."""
+    progress = LessonProgress(opened_at=f"2026-01-01T00:00:0{second}+00:00")
+    return (
+        progress.with_step("turns", state=StepState.DONE).with_step("drive", state=StepState.DONE) if done else progress
+    )
+
+
+NEXT = {
+    "the first": ({}, "first-run"),
+    "the last one opened": ({"half": opened_at(2), "first-run": opened_at(1)}, "half"),
+    "the last one is done": ({"half": opened_at(2, done=True)}, "first-run"),
+}
+
+
+@pytest.mark.parametrize(("progress", "name"), NEXT.values(), ids=NEXT)
+def test_without_a_name_the_next_lesson_opens(
+    progress: dict[str, LessonProgress], name: str, here: Command, own: Path, started: list[AppSettings]
+) -> None:
+    for lesson, one in progress.items():
+        save_progress(lesson, one)
+    here("learn", "--folder", own)
+    assert [settings.lesson.name for settings in started if settings.lesson] == [name]
+
+
+def test_text_is_printed_in_a_terminal_if_asked_for(here: Command, started: list[AppSettings]) -> None:
+    assert "1. Run the program" in here("learn", "first-run", "--text").stdout
+    assert started == []
 
 
 BAD = {

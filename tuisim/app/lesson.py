@@ -152,6 +152,9 @@ class AppLesson:
         self._events, self._judgements, self._is_elsewhere = [], (), False
         recording = self._run_controller.timeline.recording
         self._before = recording.run_id if recording else ""
+        if self.step is not None and isinstance(self.step.check, Show):
+            # The student is to open it.
+            self._panel_area.request({self.step.check.panel: False})
         self.show()
         self._app.situation_changed()
 

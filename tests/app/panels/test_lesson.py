@@ -15,9 +15,11 @@ from textual.widgets import Input, OptionList
 from tests.app.app_help import notices, ready, settings, until
 from tuisim.analysis.source import NOTES_FILE, Note, write_notes
 from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.dialogs.chooser import Chooser
+from tuisim.app.dialogs.question import LinePrompt
 from tuisim.app.lesson import goals_of
 from tuisim.app.panels import PANELS
-from tuisim.app.render.lesson import LessonView, draw_lesson
+from tuisim.app.render.lesson import LessonPicture, LessonView, draw_lesson
 from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import settings_of
@@ -92,7 +94,7 @@ def shown(app: LabApp) -> str:
 
 async def type_answer(pilot: Pilot[Any], app: LabApp, text: str) -> None:
     await pilot.press("Q")
-    await until(pilot, lambda: isinstance(app.focused, Input))
+    await until(pilot, lambda: isinstance(app.screen, LinePrompt) and app.screen.is_ready)
     await pilot.press(*text, "enter")
 
 
@@ -124,6 +126,17 @@ async def test_a_lesson_from_its_first_step_to_its_model_answer(tmp_path: Path) 
         await until(pilot, lambda: "✓ The lesson is done." in shown(app))
         assert "A model answer:\nx = 1\n" in shown(app)
         assert states() == dict.fromkeys(("number", "drive", "do"), "done")
+
+
+@pytest.mark.usefixtures("home")
+async def test_lesson_that_found_no_room_is_drawn_later(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: "1. Think" in shown(app))
+        assert app.panel_area.lesson is not None
+        app.panel_area.lesson._picture = LessonPicture([])
+        app.lesson.show()
+        assert "1. Think" in shown(app)
 
 
 @pytest.mark.usefixtures("home")
@@ -174,9 +187,11 @@ async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
         await until(pilot, lambda: "1. Think" in shown(app))
         app.lesson.skip_step()
         await run_over(pilot, app)
+        await until(pilot, lambda: "✓ Drive" in shown(app))
         await pilot.press("M")
-        await until(pilot, lambda: isinstance(app.focused, OptionList))
-        await pilot.press("home", "down", "down", "enter")
+        await until(pilot, lambda: isinstance(app.screen, Chooser) and app.screen.is_ready)
+        app.screen.query_one(OptionList).highlighted = 4
+        await pilot.press("enter")
         await until(pilot, lambda: "The first run" in shown(app))
         assert app.run_controller.next_run.spec.world.background == "Grey_bands"
         assert app.run_controller.program is not None
@@ -281,6 +296,20 @@ async def test_step_is_done_by_doing_it(name: str, tmp_path: Path, monkeypatch: 
         app.lesson.skip_step()
         await until(pilot, lambda: "3. Do it" in shown(app))
         await do(pilot, app)
+        await until(pilot, lambda: states().get("do") == "done")
+
+
+@pytest.mark.usefixtures("home")
+async def test_panel_that_a_step_asks_for_is_not_open_already(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path, "show = 'instrumentation'")).run_test(size=LARGE) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.panel_area.shown("instrumentation"))
+        app.lesson.skip_step()
+        app.lesson.skip_step()
+        await until(pilot, lambda: not app.panel_area.shown("instrumentation"))
+        app.lesson.update()
+        assert app.lesson.step is not None
+        await pilot.press("i")
         await until(pilot, lambda: states().get("do") == "done")
 
 

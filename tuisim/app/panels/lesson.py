@@ -42,11 +42,13 @@ class LessonPanel(LinesPanel, can_focus=True):
         self._show_subtitle()
 
     def show(self, snapshot: Snapshot) -> None:
-        """Nothing here depends on the instant; the lesson comes with `show_lesson`."""
+        """Draw the lesson, which comes with `show_lesson`, if there was no room for it yet."""
+        if not self._picture.lines:
+            self._redraw()
 
     def show_lesson(self, view: LessonView) -> None:
         """Show a lesson; a new result or step begins at its first row."""
-        if view == self._content:
+        if view == self._content and self._picture.lines:
             return
         before, self._content = self._content, view
         if (view.lesson, view.at, view.judgements) != (before.lesson, before.at, before.judgements):
@@ -60,6 +62,9 @@ class LessonPanel(LinesPanel, can_focus=True):
     def _redraw(self) -> None:
         size = self._text.size
         if not size:
+            # The panel may have its size before its text has.
+            if self.size and self.is_attached:
+                self.call_after_refresh(self._redraw)
             return
         page = self._content.page if self._page is None else self._page
         self._picture = draw_lesson(self._content, page, self._first, size.width, size.height)
