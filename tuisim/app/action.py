@@ -11,18 +11,15 @@ from rich.style import Style
 from rich.table import Table
 from rich.text import Text
 from textual import events
-from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
-from textual.containers import VerticalScroll
 from textual.message import Message
 from textual.message_pump import MessagePump
 from textual.theme import ThemeProvider
 from textual.widget import Widget
-from textual.widgets import Static
 
 from tuisim.app.background import is_leaving
-from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
+from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.errors import TuisimError
 
 ACT = "act"
@@ -334,44 +331,9 @@ def _column(groups: list[_Group]) -> Table:
     return table
 
 
-class _KeyTable(Static):
-    """The table of keys, laid out for the available width."""
-
-    def __init__(self, groups: Mapping[str, Iterable[KeyWord]]) -> None:
-        super().__init__()
-        self._groups = {group: list(keys) for group, keys in groups.items()}
-
-    def on_resize(self, event: events.Resize) -> None:
-        self.update(key_table(self._groups, event.size.width))
-
-
 def key_groups(actions: Iterable[Action[Any, Any]]) -> dict[str, list[KeyWord]]:
     """Return the keys of actions by the name of their group."""
     groups: dict[str, list[KeyWord]] = {}
     for action in actions:
         groups.setdefault(action.group, []).append((action.key_label, action.title))
     return groups
-
-
-class KeyHelp(Dialog[None]):
-    """A help screen; `?` closes it as well.
-
-    Args:
-        title: Title of the dialog.
-        start: How to start.
-        groups: The keys by the name of their group.
-    """
-
-    HINT: str = "↑ ↓ scroll · Escape closes"
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("question_mark,q", "leave", "Close", show=False)]
-
-    def __init__(self, title: str, start: str, groups: Mapping[str, Iterable[KeyWord]]) -> None:
-        super().__init__()
-        self.TITLE_TEXT = title
-        self._start = start
-        self._groups = groups
-
-    def content(self) -> ComposeResult:
-        with VerticalScroll():
-            yield Static(self._start, classes="start", markup=False)
-            yield _KeyTable(self._groups)

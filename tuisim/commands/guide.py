@@ -59,8 +59,8 @@ def _width() -> int:
 def _show(lines: list[Line]) -> None:
     from tuisim.guide.text import written
 
-    colored = sys.stdout.isatty() and "NO_COLOR" not in os.environ
-    click.echo_via_pager(written(lines, colored=colored), color=colored)
+    styled = sys.stdout.isatty() and "NO_COLOR" not in os.environ
+    click.echo_via_pager(written(lines, styled=styled), color=styled)
 
 
 def _search(words: str) -> int:

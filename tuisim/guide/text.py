@@ -4,21 +4,27 @@ from __future__ import annotations
 
 import re
 
-from rich.color import ColorSystem
+from rich.style import Style
 
 from tuisim.charts.text_runs import Line
 from tuisim.guide.catalogue import CONTENTS, Page, pages
 from tuisim.guide.search import Found
 from tuisim.guide.tables import markdown_of
-from tuisim.lessons.markdown import markdown_lines
+from tuisim.lessons.markdown import PLAIN, markdown_lines
 
 _LINK = re.compile(r"\[([^\]]+)\]\(([\w-]+)\.md\)")
+_HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
 NO_WORDS = "No page has these words"
 
 
 def linked_names(page: Page) -> list[str]:
     """Return the names of the pages that a page links to, in their order."""
     return list(dict.fromkeys(found[2] for found in _LINK.finditer(page.source)))
+
+
+def headings_in(page: Page) -> list[str]:
+    """Return the headings of the sections of a page, as they are shown."""
+    return [heading.replace("`", "") for heading in _HEADING.findall(page.source)]
 
 
 def page_lines(page: Page, width: int) -> list[Line]:
@@ -50,8 +56,12 @@ def result_lines(found: list[Found], width: int) -> list[Line]:
     return markdown_lines("\n".join(items), width)
 
 
-def written(lines: list[Line], *, colored: bool) -> str:
-    """Return lines as one text, with the control sequences of a terminal if it is coloured."""
-    system = ColorSystem.TRUECOLOR if colored else None
-    return "\n".join("".join(style.render(text, color_system=system) if colored else text for text, style in line)
-                     for line in lines) + "\n"  # fmt: skip
+def written(lines: list[Line], *, styled: bool) -> str:
+    """Return lines as one text, with the control sequences of a terminal."""
+
+    def one(text: str, style: Style) -> str:
+        # No colours: the terminal may have any background.
+        bold = style.bold or style.color != PLAIN.color
+        return Style(bold=bold, italic=style.italic, underline=style.underline).render(text) if styled else text
+
+    return "\n".join("".join(one(*run) for run in line) for line in lines) + "\n"

@@ -18,10 +18,13 @@ _THEME = Theme(
         "markdown.strong": Style(color="#ffffff", bold=True),
         "markdown.item.bullet": Style(color="#87d7af"),
         "markdown.item.number": Style(color="#87d7af"),
+        "markdown.h2": Style(color="#5fafff", bold=True),
+        "markdown.h3": Style(bold=True),
         "markdown.link": Style(color="#87afff"),
     }
 )
-_PLAIN = Style(color="#d8dee6")
+PLAIN = Style(color="#d8dee6")
+"""The style of a text that is nothing special."""
 
 
 def markdown_lines(text: str, width: int) -> list[Line]:
@@ -38,7 +41,7 @@ def markdown_lines(text: str, width: int) -> list[Line]:
 def _run(text: str, style: Style | None) -> Run:
     # Without background colours, which differ from those of the panel.
     shown = (style or Style()) + Style(bgcolor="default") if style and style.bgcolor else style or Style()
-    return text, _PLAIN + shown
+    return text, PLAIN + shown
 
 
 def _stripped(line: Line) -> Line:

@@ -17,12 +17,14 @@ import tuisim.app
 from tests.app.app_help import LOGS, ready, screen_text, settings, until
 from tests.app.monkey import at_once, key_event
 from tuisim.analysis.source import LogRequest
-from tuisim.app.action import KeyHelp, Palette
+from tuisim.app.action import Palette
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.dialogs.question import Question
+from tuisim.app.guide.screen import GuideScreen
+from tuisim.app.guide.topics import KeyPage, Topic
 
 IN_THE_LAB = {
     "mat": "b enter enter",
@@ -50,7 +52,7 @@ async def test_a_key_too_many_leaves_the_lab_as_it_is(keys: str) -> None:
         await pilot.pause(0.1)
         await until(pilot, lambda: len(app.screen_stack) == 1)
         at_once(pilot, ["question_mark"])
-        await until(pilot, lambda: isinstance(app.screen, KeyHelp))
+        await until(pilot, lambda: isinstance(app.screen, GuideScreen))
 
 
 IN_THE_ANALYSER = {
@@ -70,7 +72,7 @@ async def test_a_key_too_many_leaves_the_analyser_as_it_is(keys: str) -> None:
         await pilot.pause(0.1)
         await until(pilot, lambda: app.screen is analyser)
         at_once(pilot, ["question_mark"])
-        await until(pilot, lambda: isinstance(app.screen, KeyHelp))
+        await until(pilot, lambda: isinstance(app.screen, GuideScreen))
 
 
 async def test_what_is_typed_while_a_dialog_opens_is_typed_into_it() -> None:
@@ -84,7 +86,7 @@ async def test_what_is_typed_while_a_dialog_opens_is_typed_into_it() -> None:
 async def test_a_closed_screen_draws_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[object] = []
     async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        app, dialog = await ready(pilot), KeyHelp("Help", "", {})
+        app, dialog = await ready(pilot), GuideScreen(KeyPage("Help", "", {}), Topic())
         await app.push_screen(dialog)
         await pilot.press("escape")
         monkeypatch.setattr(App, "_display", lambda app, screen, renderable: drawn.append(renderable))
@@ -150,7 +152,7 @@ async def test_a_click_on_what_has_just_been_removed_does_nothing() -> None:
     async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         text = Static("gone", id="gone")
-        await app.push_screen(KeyHelp("Help", "", {}))
+        await app.push_screen(GuideScreen(KeyPage("Help", "", {}), Topic()))
         await app.screen.mount(text)
         await until(pilot, lambda: text.region.area > 0)
         x, y = text.region.offset
@@ -175,7 +177,9 @@ async def test_no_palette_opens_above_a_dialog() -> None:
             await until(pilot, lambda: len(app.screen_stack) == 1, key)
 
 
-@pytest.mark.parametrize("above", [lambda: KeyHelp("Help", "", {}), Palette], ids=["help", "palette"])
+@pytest.mark.parametrize(
+    "above", [lambda: GuideScreen(KeyPage("Help", "", {}), Topic()), Palette], ids=["help", "palette"]
+)
 async def test_a_dialog_that_is_closed_before_it_is_built_takes_along_what_is_above(
     above: Callable[[], Screen[None]],
 ) -> None:

@@ -13,10 +13,11 @@ import pytest
 from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import LOGS, lab, notices, ready, screen_text, settings, until
-from tuisim.app.action import Action, KeyHelp, fitting
+from tuisim.app.action import Action, fitting
 from tuisim.app.actions.keys import ACTIONS, working
 from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
 from tuisim.app.app import LabApp
+from tuisim.app.guide.screen import GuideScreen
 from tuisim.app.panels import PANELS, TerminalSize
 from tuisim.app.panels.position import parse_field
 from tuisim.app.snapshot import RunPhase, Situation
@@ -88,12 +89,12 @@ async def test_help_has_as_many_columns_as_there_is_room_for() -> None:
 
         def top() -> str:
             """The row in which each column begins with the name of a group."""
-            return next((row for row in screen_text(app).split("\n") if re.search(r"│ +Program  ", row)), "")
+            return next((row for row in screen_text(app).split("\n") if re.search(r" {3}Program  ", row)), "")
 
         def has_columns(count: int) -> bool:
             return sum(f" {group}  " in top() for group in groups) == count
 
-        for columns, size in enumerate(SIZES, 1):
+        for columns, size in zip((1, 1, 2), SIZES, strict=True):
             await pilot.resize_terminal(*size)
             await pilot.press("question_mark")
             await until(pilot, partial(has_columns, columns), str(size))
@@ -204,16 +205,16 @@ async def test_pen_is_p_and_not_shift_p() -> None:
 
 
 async def test_help_lists_every_key() -> None:
-    async with LabApp(settings()).run_test(size=(100, 170)) as pilot:
+    async with LabApp(settings()).run_test(size=(130, 170)) as pilot:
         app = await ready(pilot)
         await pilot.press("question_mark")
-        assert isinstance(app.screen, KeyHelp)
+        assert isinstance(app.screen, GuideScreen)
         await pilot.pause()
         text = screen_text(app)
         for action in ACTIONS.values():
             assert action.id.startswith("nudge") or action.title in text
         await pilot.press("escape")
-        assert not isinstance(app.screen, KeyHelp)
+        assert not isinstance(app.screen, GuideScreen)
 
 
 async def test_bad_position_is_refused_with_a_reason() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tuisim.app.action import KeyHelp, key_groups, theme_list
+from tuisim.app.action import key_groups, theme_list
 from tuisim.app.layout.arrangement import Preset
 
 if TYPE_CHECKING:
@@ -74,16 +74,19 @@ _NUDGES = (
     ("a f", "Turn the robot 5° to the left, to the right; also ctrl + ← →"),
 )
 """The ten keys that move or turn the robot, in three rows."""
-_EVERYWHERE = (("ctrl+p", "Command palette"), ("tab", "Next panel or field"), ("Escape", "Leave a field"))
 
 
 def show_help(workspace: Workspace) -> None:
-    """Show every key of the app, of the editor, and those that work everywhere."""
+    """Open the guide: the page of the focused panel, or every key of the app and of the editor."""
     from tuisim.app.editor.area import EDITOR_KEYS
+    from tuisim.app.guide.key_tables import EVERYWHERE
+    from tuisim.app.guide.screen import GuideScreen
+    from tuisim.app.guide.topics import TOPICS, KeyPage, Topic
 
     groups = key_groups(action for action in workspace.app.ACTIONS.values() if not action.id.startswith("nudge-"))
     groups["Robot"] += _NUDGES
-    workspace.app.push_screen(KeyHelp("Help", _START, {**groups, "In the code": EDITOR_KEYS, "": _EVERYWHERE}))
+    keys = KeyPage("All keys", _START, {**groups, "In the code": EDITOR_KEYS, "": EVERYWHERE})
+    workspace.app.push_screen(GuideScreen(keys, TOPICS.get(workspace.panel_area.focused_panel(), Topic())))
 
 
 def choose_cells(workspace: Workspace) -> None:

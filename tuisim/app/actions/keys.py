@@ -208,7 +208,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("lesson-down", "pagedown", "Text of the lesson: down", LESSON, partial(lesson.scroll, by=8)),
         Action("enlarge", "plus", "Enlarge the focused panel, or restore it", PANEL, app.enlarge),
         *_nudges(),
-        Action("help", "question_mark", "Help: all keys", APP, app.show_help, footer="help"),
+        Action("help", "question_mark", "Guide: keys, pages, search", APP, app.show_help, footer="help"),
         Action("cells", "V", "Glyphs of the world: choose by eye", APP, app.choose_cells),
         Action("theme", "f10", "Theme: light, high contrast and others", APP, app.choose_theme),
         Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, app.redraw),

@@ -11,7 +11,7 @@ from tuisim.app.editor.area import EDITOR_KEYS
 from tuisim.app.panels import PANELS
 from tuisim.guide.tables import Table, code
 
-EVERYWHERE = (("ctrl+p", "Command palette"), ("tab", "Next panel or field"), ("escape", "Leave a field"))
+EVERYWHERE = (("ctrl+p", "Command palette"), ("tab", "Next panel or field"), ("Escape", "Leave a field"))
 """Keys that are no lines of the app's table."""
 
 

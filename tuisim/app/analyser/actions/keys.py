@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 
-from tuisim.app.action import Action, KeyHelp, key_groups, theme_list
+from tuisim.app.action import Action, key_groups, theme_list
 from tuisim.app.analyser.actions import chart, files, log, panes
 from tuisim.app.analyser.screen import LogScreen
 
@@ -36,7 +36,11 @@ _START = (
 
 
 def _help(screen: LogScreen) -> None:
-    screen.app.push_screen(KeyHelp("Help: the analyser", _START, key_groups(screen.ACTIONS.values())))
+    from tuisim.app.guide.screen import GuideScreen
+    from tuisim.app.guide.topics import KeyPage, Topic
+
+    keys = KeyPage("All keys of the analyser", _START, key_groups(screen.ACTIONS.values()))
+    screen.app.push_screen(GuideScreen(keys, Topic()))
 
 
 def _choose_theme(screen: LogScreen) -> None:
@@ -121,7 +125,7 @@ ACTIONS: Mapping[str, LogAction] = {
         Action("open-runs", "R", "Open other runs, several in one chart", LOG, log.runs, _log),
         Action("differences", "D", "Go to where two runs differ", LOG, log.differences, _log),
         Action("world", "w", "Show or hide the world", PANE, panes.world, _log),
-        Action("help", "question_mark", "Help: all keys", APP, _help, footer="help"),
+        Action("help", "question_mark", "Guide: all keys, and every page", APP, _help, footer="help"),
         Action("theme", "f10", "Theme: light, high contrast and others", APP, _choose_theme),
         Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, _redraw),
         Action("screenshot", "I,f12", "Save a screenshot: SVG and PNG (also F12)", APP, _screenshot, shown_key="I"),

@@ -1,0 +1,126 @@
+"""The guide in the app: the keys first, the page of the panel with the focus, contents, search; by keyboard alone."""
+
+from __future__ import annotations
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Tree
+
+from tests.app.app_help import lab, ready, screen_text, settings, until, until_shown
+from tests.guide.questions import QUESTIONS
+from tuisim.app.app import LabApp
+from tuisim.app.guide.screen import KEYS, GuideScreen
+from tuisim.app.guide.topics import TOPICS
+from tuisim.app.panels import PANELS
+from tuisim.guide.catalogue import pages
+from tuisim.guide.text import headings_in
+
+SMALL, MEDIUM = (80, 24), (120, 40)
+DOWN_TO_PAGE = ["down"] * 2
+"""From the keys past the first part to its first page."""
+
+
+def guide(pilot: Pilot[object]) -> GuideScreen:
+    screen = pilot.app.screen
+    assert isinstance(screen, GuideScreen)
+    return screen
+
+
+async def opened(pilot: Pilot[object], *keys: str) -> GuideScreen:
+    """Press keys and open the guide."""
+    app = await ready(pilot)
+    await pilot.press(*keys, "question_mark")
+    await until(pilot, lambda: isinstance(app.screen, GuideScreen) and app.screen.is_ready)
+    return guide(pilot)
+
+
+def test_every_panel_has_a_topic() -> None:
+    assert set(TOPICS) == set(PANELS)
+    assert {topic.page for topic in TOPICS.values()} - {""} <= set(pages())
+
+
+@pytest.mark.parametrize("size", [SMALL, MEDIUM], ids=["small", "medium"])
+async def test_the_keys_come_first_and_enter_opens_a_page(size: tuple[int, int]) -> None:
+    async with LabApp(settings()).run_test(size=size) as pilot:
+        screen = await opened(pilot)
+        assert screen.place == KEYS
+        await until_shown(pilot, "Run the program")
+        await pilot.press("tab", *DOWN_TO_PAGE, "enter")
+        await until(pilot, lambda: screen.place == ("first-steps", ""))
+        await until_shown(pilot, "This page takes you from the first start")
+        await pilot.press("escape")
+        await until(pilot, lambda: not isinstance(pilot.app.screen, GuideScreen))
+
+
+async def test_a_long_page_scrolls_and_starts_at_its_top_again() -> None:
+    async with LabApp(settings()).run_test(size=SMALL) as pilot:
+        await opened(pilot)
+        await until_shown(pilot, "Run the program")
+        await pilot.press("end")
+        await until_shown(pilot, "Command palette")
+        await pilot.press("tab", *DOWN_TO_PAGE, "enter")
+        await until_shown(pilot, "First steps")
+
+
+@pytest.mark.parametrize(
+    ("panel", "place", "words"),
+    [
+        pytest.param("G", "stepping", ("Debugging", "Step through a program"), id="debug"),
+        pytest.param("K", "the-brick", ("The brick",), id="brick"),
+        pytest.param("Z", "options", ("Options",), id="settings"),
+    ],
+)
+async def test_the_page_of_the_panel_with_the_focus(panel: str, place: str, words: tuple[str, ...]) -> None:
+    async with LabApp(settings("print(1)")).run_test(size=MEDIUM) as pilot:
+        screen = await opened(pilot, panel)
+        assert screen.place == (place, "")
+        for word in words:
+            await until_shown(pilot, word)
+
+
+@pytest.mark.parametrize("question", list(QUESTIONS)[::12])
+async def test_a_question_is_answered_by_its_page(question: str) -> None:
+    async with LabApp(settings()).run_test(size=SMALL) as pilot:
+        screen = await opened(pilot)
+        await pilot.press("slash", *("space" if letter == " " else letter for letter in question))
+        await until(pilot, lambda: screen.place[0] == QUESTIONS[question])
+        await pilot.press("enter", "enter")
+        await until(pilot, lambda: screen.focused is not None and screen.focused.id == "page")
+        assert screen.place[0] == QUESTIONS[question]
+
+
+async def test_escape_leaves_the_search_first() -> None:
+    async with LabApp(settings()).run_test(size=SMALL) as pilot:
+        screen = await opened(pilot)
+        await pilot.press("slash", "x", "y", "z", "z")
+        await until_shown(pilot, "No page has these words")
+        await pilot.press("escape")
+        assert lab(pilot).screen is screen
+        await until_shown(pilot, "Tutorials")
+        await pilot.press("escape")
+        await until(pilot, lambda: not isinstance(pilot.app.screen, GuideScreen))
+
+
+async def test_a_section_is_gone_to() -> None:
+    async with LabApp(settings()).run_test(size=SMALL) as pilot:
+        screen = await opened(pilot)
+        await pilot.press("tab", *DOWN_TO_PAGE, "space", "down", "down", "enter")
+        second = headings_in(pages()["first-steps"])[1]
+        await until(pilot, lambda: screen.place == ("first-steps", second))
+        await until(
+            pilot, lambda: screen_text(lab(pilot)).find(second) < screen_text(lab(pilot)).find("The world is in")
+        )
+        await until(pilot, lambda: "This page takes you" not in screen_text(lab(pilot)))
+
+
+@pytest.mark.parametrize(
+    "size", [(40, 12), (60, 18), SMALL, MEDIUM, (200, 60)], ids=lambda size: f"{size[0]}x{size[1]}"
+)
+async def test_no_title_is_cut_off(size: tuple[int, int]) -> None:
+    async with LabApp(settings()).run_test(size=size) as pilot:
+        screen = await opened(pilot)
+        await pilot.press("tab")
+        tree = screen.query_one(Tree)
+        await until(pilot, lambda: tree.has_focus and tree.size.width > 0)
+        titles = [*(page.title for page in pages().values()), "All keys"]
+        assert [title for title in titles if len(title) + 4 > tree.scrollable_content_region.width] == []

@@ -1,0 +1,256 @@
+"""The guide in the app: contents or search results at the left, a page at the right, the keys first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import ClassVar, TypeAlias
+
+from rich.console import Group
+from rich.text import Text
+from textual import events, on
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, VerticalScroll
+from textual.widgets import Input, Static, Tree
+from textual.widgets.tree import TreeNode
+
+from tuisim.app import background
+from tuisim.app.action import key_table
+from tuisim.app.dialogs.dialog import Dialog
+from tuisim.app.guide.topics import KeyPage, Topic
+from tuisim.charts.text_runs import Line
+from tuisim.guide.catalogue import CONTENTS, pages
+from tuisim.guide.search import Found, search
+from tuisim.guide.text import NO_WORDS, headings_in, linked_names, page_lines
+
+_SIDE_BY_SIDE, _PREVIEW = 100, 66
+"""Columns from which the contents stay beside a page that is being read, and from which a page is shown beside them."""
+_SEARCH_AGAIN_S = 0.15
+
+Place: TypeAlias = tuple[str, str]
+"""The name of a page, empty for the keys, and a heading in it, empty for its beginning."""
+KEYS: Place = ("", "")
+
+
+def _text_of(lines: list[Line]) -> Text:
+    text = Text(no_wrap=True)
+    for line in lines:
+        for part, style in line:
+            text.append(part, style)
+        text.append("\n")
+    return text
+
+
+class _Contents(Tree[Place | None]):
+    """The pages by part; below the page in view its sections and the pages that it leads to."""
+
+    def __init__(self) -> None:
+        super().__init__("", id="contents")
+        self.show_root, self.guide_depth, self.auto_expand = False, 2, False
+
+    def show_all(self, keys: str) -> None:
+        """Show the contents.
+
+        Args:
+            keys: Title of the page with the keys.
+        """
+        self.clear()
+        self.root.add_leaf(keys, KEYS)
+        for part, names in CONTENTS.items():
+            branch = self.root.add(Text(part, "bold #5fafff"), None, expand=True)
+            for name in names:
+                self._add_page(branch, name)
+
+    def _add_page(self, branch: TreeNode[Place | None], name: str) -> None:
+        page = pages()[name]
+        node = branch.add(page.title, (name, ""))
+        for heading in headings_in(page):
+            node.add_leaf(heading, (name, heading))
+        for other in linked_names(page):
+            node.add_leaf(f"→ {pages()[other].title}", (other, ""))
+
+    def show_found(self, found: list[Found]) -> None:
+        """Show the results of a search."""
+        self.clear()
+        for one in found:
+            node = self.root.add(pages()[one.name].title, (one.name, one.heading), expand=True)
+            if one.heading:
+                node.add_leaf(one.heading, (one.name, one.heading))
+        if not found:
+            self.root.add_leaf(NO_WORDS, None)
+
+    def go_to(self, place: Place) -> None:
+        """Move the cursor to a page, without opening it."""
+        node = next((node for node in self.walk() if node.data == place), None)
+        if node is not None:
+            self.move_cursor(node)
+
+    def walk(self) -> list[TreeNode[Place | None]]:
+        """Return every node below the root, those on top first."""
+        found, level = [], list(self.root.children)
+        while level:
+            found += level
+            level = [child for node in level for child in node.children]
+        return found
+
+
+class GuideScreen(Dialog[None]):
+    """The guide; `?` closes it as well.
+
+    Args:
+        keys: The page with every key.
+        topic: What is shown first.
+    """
+
+    TITLE_TEXT = "Guide"
+    HINT = "/ search · tab contents or page · enter open · Escape closes"
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("question_mark,q", "leave", "Close", show=False),
+        Binding("slash", "search", "Search", show=False),
+        Binding("tab,shift+tab", "other_side", "Contents or page", show=False),
+        Binding("left", "contents", "Contents", show=False),
+        Binding("right", "page", "Page", show=False),
+    ]
+
+    def __init__(self, keys: KeyPage, topic: Topic) -> None:
+        super().__init__()
+        self._keys, self._topic = keys, topic
+        self._shown: Place = (topic.page, "")
+        self._with_keys = bool(topic.page)
+        """Whether the keys of the topic stand above the page."""
+        self._width = 0
+        self._question = ""
+
+    def content(self) -> ComposeResult:
+        yield Input(placeholder="Search: words or a question", compact=True, id="search")
+        with Horizontal(id="both"):
+            yield _Contents()
+            with VerticalScroll(id="page"):
+                yield Static(id="text", markup=False)
+
+    def on_mount(self) -> None:
+        super().on_mount()
+        self._contents.show_all(self._keys.title)
+        self._page.focus()
+        self.call_after_refresh(self._contents.go_to, self._shown)
+
+    @property
+    def _contents(self) -> _Contents:
+        return self.query_one(_Contents)
+
+    @property
+    def _page(self) -> VerticalScroll:
+        return self.query_one("#page", VerticalScroll)
+
+    @property
+    def _search(self) -> Input:
+        return self.query_one("#search", Input)
+
+    @property
+    def place(self) -> Place:
+        """The page in view, and the section that was gone to."""
+        return self._shown
+
+    def on_resize(self, event: events.Resize) -> None:
+        self._arrange(self._page.has_focus)
+        self.call_after_refresh(self._draw)
+
+    def on_descendant_focus(self, event: events.DescendantFocus) -> None:
+        self._arrange(event.widget is self._page)
+        self.call_after_refresh(self._draw)
+
+    def _arrange(self, reading: bool) -> None:
+        """Leave out one of the two sides where there is no room for both."""
+        columns = self.app.size.width
+        self._contents.display = columns >= _SIDE_BY_SIDE or not reading
+        self._page.display = columns >= _PREVIEW or reading
+
+    def _draw(self) -> None:
+        """Draw the page again if it has another width."""
+        if self.is_mounted and self._page.scrollable_content_region.width != self._width:
+            self._show(self._shown, with_keys=self._with_keys)
+
+    def _show(self, place: Place, *, with_keys: bool = False) -> None:
+        self._shown, self._with_keys = place, with_keys
+        self._width = width = self._page.scrollable_content_region.width
+        if not width:
+            return
+        name, heading = place
+        text = self.query_one("#text", Static)
+        if not name:
+            text.update(Group(Text(self._keys.start), Text(), key_table(self._keys.groups, width)))
+            self._page.scroll_home(animate=False)
+            return
+        lines = page_lines(pages()[name], width)
+        drawn = _text_of(lines)
+        groups = {group: self._keys.groups[group] for group in self._topic.groups if with_keys}
+        text.update(Group(key_table(groups, width), drawn) if groups else drawn)
+        rows = [number for number, line in enumerate(lines) if heading == "".join(part for part, _ in line).strip()]
+        row = rows[0] if heading and rows else 0
+        self.call_after_refresh(self._page.scroll_to, y=row, animate=False)
+
+    @on(Tree.NodeHighlighted)
+    def _preview(self, event: Tree.NodeHighlighted[Place | None]) -> None:
+        if event.node.data is not None and self._contents.has_focus:
+            self._show(event.node.data)
+
+    @on(Tree.NodeSelected)
+    def _open(self, event: Tree.NodeSelected[Place | None]) -> None:
+        if event.node.data is None:
+            event.node.toggle()
+            return
+        self._show(event.node.data)
+        self.action_page()
+
+    @on(Input.Changed)
+    def _type(self, event: Input.Changed) -> None:
+        self._question = event.value
+        self.set_timer(_SEARCH_AGAIN_S, partial(self._ask, event.value))
+
+    def _ask(self, question: str) -> None:
+        if question != self._question:
+            return
+        if not question.strip():
+            self._contents.show_all(self._keys.title)
+            return
+        # The first search loads every command, for its page.
+        work: Callable[[], list[Found]] = partial(search, question)
+        background.run(self, work, partial(self._answer, question), group="search", exclusive=True)
+
+    def _answer(self, question: str, found: list[Found]) -> None:
+        if question != self._question or self.is_closed:
+            return
+        self._contents.show_found(found)
+        if found:
+            self._contents.cursor_line = 0
+            self._show((found[0].name, found[0].heading))
+
+    @on(Input.Submitted)
+    def _to_results(self) -> None:
+        self.action_contents()
+
+    def action_search(self) -> None:
+        self._search.focus()
+
+    def action_contents(self) -> None:
+        self._arrange(reading=False)
+        self._contents.focus()
+
+    def action_page(self) -> None:
+        self._arrange(reading=True)
+        self._page.focus()
+
+    def action_other_side(self) -> None:
+        if self._contents.has_focus:
+            self.action_page()
+        else:
+            self.action_contents()
+
+    def action_leave(self) -> None:
+        """Leave the search, else the guide."""
+        if self._search.has_focus and self._search.value:
+            self._search.value = ""
+            self.action_contents()
+        else:
+            self.dismiss(None)
