@@ -28,7 +28,7 @@ from tuisim.core.comparison import COMPARE, comparison_form, comparison_in, fini
 from tuisim.core.sensors import mounted
 from tuisim.core.sensors.color import COLOR_NAMES, ColorReading
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, RobotSpec, UltrasonicSpec
-from tuisim.errors import ConfigError
+from tuisim.errors import ConfigError, see_page
 
 CHANGES, SEEN = "changes", "is seen"
 """Relations without a number: the value has changed; a sample was printed, with any value."""
@@ -177,7 +177,7 @@ def quantities(robot: RobotSpec) -> tuple[str, ...]:
     return (*names, *POSE_NAMES, *WHEEL_NAMES)
 
 
-def _refuse(text: str, why: str, hint: str = ALLOWED) -> ConfigError:
+def _refuse(text: str, why: str, hint: str = f"{ALLOWED}; {see_page('breakpoints')}") -> ConfigError:
     return ConfigError(f"{text!r}: {why}", hint, key="break")
 
 

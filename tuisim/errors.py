@@ -45,6 +45,11 @@ def nearest(name: str, allowed: Iterable[str]) -> str:
     return did_you_mean(close) or f"one of {', '.join(names)}"
 
 
+def see_page(topic: str) -> str:
+    """Return the hint that names a page of the guide."""
+    return f"see `tuisim guide {topic}`"
+
+
 def did_you_mean(close: Sequence[str]) -> str:
     """Return the hint that names what the user may have meant; empty if there is nothing."""
     return f"did you mean {' or '.join(close)}?" if close else ""

@@ -23,7 +23,10 @@ def goal(*lines: str) -> str:
 
 
 BAD = {
-    "no goals": ("seed = 1\n", "line 1: goal: there are no goals (begin each with a line [[goal]])"),
+    "no goals": (
+        "seed = 1\n",
+        "line 1: goal: there are no goals (begin each with a line [[goal]]; see `tuisim guide goal-files`)",
+    ),
     "goals are no tables": ("goal = 'a'", "line 1: goal: must be a list, got 'a'"),
     "goal is no table": ("seed = 1\ngoal = ['a']", "line 2: goal[1]: must be a table of keys and values, got 'a'"),
     "no name": ("\n[[goal]]\nfinish = true", "line 2: goal[1].name: is missing"),

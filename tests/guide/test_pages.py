@@ -52,6 +52,31 @@ def test_a_table_says_what_the_code_says(name: str) -> None:
     assert missing == []
 
 
+@pytest.mark.parametrize(
+    ("words", "topic"),
+    [
+        pytest.param(["run", "log_greys", "--break", "wen hot"], "breakpoints", id="a breakpoint"),
+        pytest.param(["run", "magic.py"], "writing-programs", id="a magic line"),
+        pytest.param(["goals", "check", "empty.toml"], "goal-files", id="goals"),
+        pytest.param(["batch", "log_greys", "--set", "noise"], "experiments", id="a parameter"),
+        pytest.param(["mark", str(ROOT / "programs" / "log_greys_goals.toml"), "nobody"], "marking", id="a class"),
+    ],
+)
+def test_an_error_names_the_page_that_helps(words: list[str], topic: str, tmp_path: Path, here: Command) -> None:
+    (tmp_path / "magic.py").write_text("# %%sim_magic_preload\nprint(1)\n")
+    (tmp_path / "empty.toml").write_text('title = "none"\n')
+    (tmp_path / "nobody").mkdir()
+    done = here(*words)
+    assert (done.returncode, f"see `tuisim guide {topic}`" in done.stderr) == (2, True), done.stderr
+
+
+def test_the_pages_that_errors_name_exist() -> None:
+    sources = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "tuisim").rglob("*.py"))
+    named = set(re.findall(r"see_page\(['\"]([\w-]+)", sources)) | set(re.findall(r"`tuisim guide ([a-z-]+)`", sources))
+    assert len(named) > 4
+    assert named <= set(pages())
+
+
 class _Links(HTMLParser):
     """What a page of HTML loads or leads to."""
 

@@ -16,7 +16,7 @@ from random import Random
 
 from tuisim.batch.task import Value
 from tuisim.config.options import MAX_SEED
-from tuisim.errors import ConfigError, nearest
+from tuisim.errors import ConfigError, nearest, see_page
 
 MAX_VALUES = 1_000_000
 """Most values of one parameter, and most runs of a batch."""
@@ -172,7 +172,8 @@ def parse_set(text: str, key: str = "--set") -> tuple[str, Choice]:
     name, equals, values = text.partition("=")
     name = name.strip()
     if not equals or not name:
-        raise ConfigError(f"must be NAME=VALUES, got {text!r}", "such as noise.motor=0,20,50", key=key)
+        hint = f"such as noise.motor=0,20,50; {see_page('experiments')}"
+        raise ConfigError(f"must be NAME=VALUES, got {text!r}", hint, key=key)
     return name, parse_values(values, f"{key} {name}")
 
 

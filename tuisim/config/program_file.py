@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from tuisim.config.files import close_beside, read_bytes
 from tuisim.config.folders import programs_folder
 from tuisim.config.shared_options import parse_words
-from tuisim.errors import ConfigError, did_you_mean, nearest
+from tuisim.errors import ConfigError, did_you_mean, nearest, see_page
 from tuisim.source import PRELUDE_TEXTS, PRELUDES, Program, decode_source, source_lines
 
 MAX_PROGRAM_BYTES = 4 << 20
@@ -123,7 +123,8 @@ def find_magic(text: str, name: str) -> Magic | None:
             continue
         where = f"{name}, line {number}"
         if match["name"] not in PRELUDES:
-            raise ConfigError(f"no such magic %%{match['name']}", nearest(match["name"], PRELUDES), file=where)
+            hint = f"{nearest(match['name'], PRELUDES)} {see_page('writing-programs')}"
+            raise ConfigError(f"no such magic %%{match['name']}", hint, file=where)
         try:
             options = parse_words(shlex.split(match["words"]))
         except ConfigError as error:

@@ -13,7 +13,7 @@ from tuisim.config import files
 from tuisim.config.files import Location
 from tuisim.config.folders import programs_folder
 from tuisim.config.worlds import WorldFile, means_world, world_from_table
-from tuisim.errors import ConfigError, nearest
+from tuisim.errors import ConfigError, nearest, see_page
 from tuisim.goals.key_lines import line_of_key
 from tuisim.goals.picture import PictureTable, draw_from_table
 from tuisim.goals.spec import (
@@ -150,7 +150,7 @@ def _found(path: Path) -> Path:
 def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile:
     at = Location(str(path))
     if not data.get("goal"):
-        raise at.at("goal").wrong("there are no goals", "begin each with a line [[goal]]")
+        raise at.at("goal").wrong("there are no goals", f"begin each with a line [[goal]]; {see_page('goal-files')}")
     goals = goals_from_list(data["goal"], at.at("goal"), path.parent)
     title = files.convert(data["title"], str, at.at("title")) if "title" in data else ""
     return GoalsFile(path, title, goals, world.settings, world.program)
@@ -178,7 +178,7 @@ def _goal(data: object, at: Location, folder: Path) -> Goal:
         _condition(kind, found[key], at.at(key), folder) for key, kind in CONDITIONS.items() if key in found
     )
     if not conditions:
-        raise at.wrong("has no condition", f"one of {', '.join(CONDITIONS)}")
+        raise at.wrong("has no condition", f"one of {', '.join(CONDITIONS)}; {see_page('goal-files')}")
     condition = conditions[0] if len(conditions) == 1 else Together(conditions)
     if "points" in found:
         values["points"] = files.convert(found["points"], Points, at.at("points"))

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tuisim.config.program_file import ProgramSource, read_program
-from tuisim.errors import ConfigError, listed, printable
+from tuisim.errors import ConfigError, listed, printable, see_page
 
 MAIN = "main.py"
 SUFFIX = ".py"
@@ -72,7 +72,8 @@ def find_students(words: Sequence[str], program: str = "", excluded: Collection[
         else:
             raise ConfigError("there is no such file or folder", "name a folder of students' programs", file=word)
     if not students:
-        raise ConfigError("has no programs", "a file NAME.py or a folder for each student", file=listed(words))
+        hint = f"a file NAME.py or a folder for each student; {see_page('marking')}"
+        raise ConfigError("has no programs", hint, file=listed(words))
     return Found(tuple(_named(students)), tuple(ignored))
 
 
