@@ -22,7 +22,7 @@ from tuisim.config.options import CellSet
 @pytest.fixture(autouse=True)
 def known_terminal(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(preferences, "preferences_file", lambda: tmp_path / "preferences.json")
-    monkeypatch.setattr(drawings, "best_cells", lambda ask: CellSet.SEXTANT)
+    monkeypatch.setattr(drawings, "best_cells", lambda **_: CellSet.SEXTANT)
 
 
 def glyphs(view: PixelView) -> set[str]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -12,7 +14,8 @@ from tests.app.app_help import LOGS, ready, settings
 from tests.app.wires import on_wire, until_quiet, wire_of
 from tuisim.app.app import LabApp
 from tuisim.app.render.cells import MONO
-from tuisim.app.terminal.drawing import Drawing, color_depth
+from tuisim.app.terminal import probe
+from tuisim.app.terminal.drawing import Drawing, color_depth, drawing_for
 from tuisim.app.terminal.plain import as_ascii
 from tuisim.app.terminal.probe import colors_without_asking
 from tuisim.config.options import CellSet
@@ -47,6 +50,33 @@ def test_each_sign_keeps_its_width(text: str, plain: str) -> None:
 )
 def test_colours_of_a_kind_of_terminal(terminal: str, colors: str) -> None:
     assert colors_without_asking(terminal) == colors
+
+
+@pytest.mark.parametrize("terminal", ["vt52", "xterm-256color"])
+def test_terminfo_knows_which_terminals_have_no_colours(terminal: str) -> None:
+    code = f"from tuisim.app.terminal.probe import terminfo_has_colors; print(terminfo_has_colors({terminal!r}))"
+    # curses reads one entry a process.
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+
+    assert done.stdout.strip() == str(terminal == "xterm-256color")
+
+
+@pytest.mark.parametrize(
+    ("environment", "cells"),
+    [
+        pytest.param({"TERM": "vt220", "LANG": "C.UTF-8"}, CellSet.BRAILLE, id="utf-8"),
+        pytest.param({"TERM": "vt220", "LANG": "C"}, CellSet.ASCII, id="ascii"),
+        pytest.param({"TERM": "linux", "LANG": "C.UTF-8"}, CellSet.ASCII, id="no braille in its font"),
+    ],
+)
+def test_without_colours_no_blocks_are_taken(
+    environment: dict[str, str], cells: CellSet, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(probe, "first_environment", lambda: environment)
+    monkeypatch.setenv("TERM", environment["TERM"])
+    monkeypatch.setenv("NO_COLOR", "1")
+
+    assert drawing_for("auto").cells is cells
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+from dataclasses import replace
 from typing import ClassVar
 
 from textual.binding import Binding, BindingType
@@ -12,8 +13,9 @@ from tuisim.analysis.source import LogRequest
 from tuisim.app.action import key_bindings
 from tuisim.app.analyser.actions.keys import ACTIONS
 from tuisim.app.analyser.screen import LogScreen
-from tuisim.app.terminal.drawing import Drawing, drawing_for
+from tuisim.app.terminal.drawing import Drawing, choose_colors, drawing_for
 from tuisim.app.terminal.terminal_app import TerminalApp
+from tuisim.config.options import AUTO
 from tuisim.errors import TuisimError
 
 
@@ -75,7 +77,8 @@ def run_analyser(request: LogRequest) -> int:
     """
     # Modules imported by now stay until the end: exclude them from garbage collection.
     gc.freeze()
-    app = AnalyserApp(request, drawing_for(None))
+    most_colors = choose_colors(AUTO)
+    app = AnalyserApp(request, replace(drawing_for(None), most_colors=most_colors))
     app.run()
     if app.failure is not None:
         raise app.failure

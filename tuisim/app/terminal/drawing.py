@@ -77,8 +77,13 @@ def drawing_for(given: str | None) -> Drawing:
     """
     kept = preference(_KEPT)
     chosen = given or (kept if isinstance(kept, str) and kept in CELLS else AUTO)
-    best = CellSet.QUADRANT if in_browser() else best_cells(ask=chosen == AUTO)
-    if given is None and best is CellSet.ASCII:
+    # As Textual decides it.
+    has_colors = "NO_COLOR" not in os.environ
+    if in_browser():
+        best = CellSet.QUADRANT if has_colors else CellSet.BRAILLE
+    else:
+        best = best_cells(ask=chosen == AUTO, has_colors=has_colors)
+    if given is None and (best is CellSet.ASCII or (not has_colors and chosen in BLOCKS)):
         # Chosen on another terminal.
         chosen = AUTO
     return Drawing(best if chosen == AUTO else CellSet(chosen), chosen, best)

@@ -6,6 +6,7 @@ a box. So fine glyphs are taken only from terminals that are known to draw them 
 
 from __future__ import annotations
 
+import curses
 import os
 import re
 import select
@@ -74,25 +75,42 @@ def cells_of(name: str, octant_cols: int | None) -> CellSet:
     return CellSet.SEXTANT if version >= known.sextants else CellSet.QUADRANT
 
 
-def cells_without_asking(environment: Mapping[str, str]) -> CellSet | None:
+def cells_without_asking(environment: Mapping[str, str], *, has_colors: bool = True) -> CellSet | None:
     """Return the set that the environment decides; None if the terminal has to be asked.
 
     Args:
         environment: As it was when the process started: Python changes the locale C to UTF-8.
+        has_colors: Whether colours are used: without them only braille and signs show greys.
     """
     terminal = environment.get("TERM", "")
     if terminal in _PLAIN or not _may_be_utf8(environment):
         return CellSet.ASCII
-    # The fonts of the Linux console have the characters of code page 437.
-    return CellSet.HALF if terminal == "linux" else None
+    if terminal == "linux":
+        # The fonts of the Linux console have the characters of code page 437, which has no braille.
+        return CellSet.HALF if has_colors else CellSet.ASCII
+    return None if has_colors else CellSet.BRAILLE
 
 
 def colors_without_asking(terminal: str) -> str:
     """Return the colours that a kind of terminal, as in TERM, is known to have; `auto` if Textual knows better."""
     if terminal in _PLAIN or terminal.startswith(("vt1", "vt2", "vt3")):
         return "none"
-    # The Linux console has eight colours for backgrounds.
-    return "8" if terminal in ("linux", "ansi") else AUTO
+    if terminal in ("linux", "ansi"):
+        # The Linux console has eight colours for backgrounds.
+        return "8"
+    return AUTO if terminfo_has_colors(terminal) else "none"
+
+
+def terminfo_has_colors(terminal: str) -> bool:
+    """Return whether terminfo gives a kind of terminal colours; True for a kind that it does not know.
+
+    curses reads one entry a process: the first kind that is asked for decides.
+    """
+    try:
+        curses.setupterm(terminal, sys.__stdout__.fileno() if sys.__stdout__ else -1)
+        return curses.tigetnum("colors") > 0
+    except (OSError, ValueError, curses.error):
+        return True
 
 
 def _may_be_utf8(environment: Mapping[str, str]) -> bool:
@@ -111,9 +129,10 @@ def first_environment() -> Mapping[str, str]:
     return {name: value for name, _, value in pairs}
 
 
-def best_cells(*, ask: bool = True) -> CellSet:
+def best_cells(*, ask: bool = True, has_colors: bool = True) -> CellSet:
     """Return the finest set that this terminal is known to show; `ask` it if the environment does not decide."""
-    decided = cells_without_asking({**first_environment(), "TERM": os.environ.get("TERM", "")})
+    environment = {**first_environment(), "TERM": os.environ.get("TERM", "")}
+    decided = cells_without_asking(environment, has_colors=has_colors)
     if decided is not None or not ask:
         return decided or CellSet.QUADRANT
     try:
