@@ -326,7 +326,7 @@ class AppLesson:
             return False
         self._leave_step(step, StepState.DONE)
         over = self.step is None
-        self._app.say(f"✓ {step.title}" + (". The lesson is done" if over else ""))
+        self._app.say(f"✓ {step.title}" + (" · the lesson is done" if over else ""))
         return True
 
     def _leave_step(self, step: Step, state: StepState) -> None:
