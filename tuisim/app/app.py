@@ -17,6 +17,7 @@ from textual.widgets import Input
 
 from tuisim.app.action import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings
 from tuisim.app.actions import time_travel
+from tuisim.app.actions.app import welcome
 from tuisim.app.actions.keys import ACTIONS, working
 from tuisim.app.background import is_leaving
 from tuisim.app.branch import branch_message
@@ -84,6 +85,8 @@ class AppSettings:
     """The lesson to open; program, settings and goals are its own."""
     lessons_folder: str | None = None
     """The folder of own lessons, if one was named."""
+    welcomes: bool = False
+    """Show the welcome, if this is the first start: nothing was named to be opened."""
     replay: StoredRun | None = None
     """A stored run to show; spec and program are its own."""
     panels_on: frozenset[str] = field(default_factory=frozenset)
@@ -203,6 +206,8 @@ class LabApp(PanelMessages):
         # Breakpoints apply, and are saved, whether or not a panel shows the program.
         self.debugger.program_changed(self.run_controller.program)
         self.lesson.begin()
+        if self.settings.welcomes:
+            welcome(self.workspace)
         self._set_frame_gap(1 / self.settings.fps)
         self.set_interval(_REST_GAP_S, self._seldom)
         self.set_interval(PERIOD_S, self.check_files)

@@ -133,6 +133,14 @@ class PanelArea(BorderMover):
         self._chosen[panel] = show
         self._keep_panels()
 
+    def open(self, panel: str) -> None:
+        """Show a panel for now, without keeping this for the next start."""
+        if self.is_single:
+            self.front = panel
+            self.lay_out()
+        elif not self.shown(panel):
+            self.request({panel: True})
+
     def next_panel(self, by: int) -> str:
         """Return the panel after the one with the focus; where there is room for one only, show it."""
         if self.is_single:

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from tuisim.runs.run_folder import StoredRun
 
 VERSION = "%(prog)s %(version)s"
+_WORLD = frozenset({"background", "robot", "obstacles"})
+"""Settings of somebody who knows what to open."""
 
 
 OPENED: Sequence[click.Parameter] = (
@@ -50,6 +52,8 @@ class Opened:
     prepared: Prepared
     goals: GoalsFile | None
     replay: StoredRun | None
+    is_empty: bool = False
+    """Whether nothing was named: no program, no world, no mat."""
 
 
 def read_opened(arguments: Arguments) -> Opened | None:
@@ -70,7 +74,8 @@ def read_opened(arguments: Arguments) -> Opened | None:
         replay, prepared = prepare_replay(arguments.run, arguments.words, arguments)
         return Opened(prepared, goals, replay)
     prepared = prepare_app(_words(arguments, goals), arguments)
-    return Opened(prepared, goals or _goals_in(prepared.world, prepared.settings.mats), None)
+    is_empty = not arguments.words and not arguments.world and goals is None and _WORLD.isdisjoint(arguments.settings)
+    return Opened(prepared, goals or _goals_in(prepared.world, prepared.settings.mats), None, is_empty)
 
 
 @click.version_option(__version__, prog_name="tuisim", message=VERSION, hidden=True)
@@ -110,6 +115,7 @@ def open_app(**given: Any) -> int:
         goals=goals,
         panels_on=frozenset(settings.panels_on) | ({"goals"} if goals else set()),
         panels_off=frozenset(settings.panels_off),
+        welcomes=opened.is_empty,
         autorun=settings.autorun,
         quiet=settings.quiet,
         rays=settings.rays,

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from tuisim.app.action import key_groups, theme_list
+from tuisim.app.actions import files, lesson
 from tuisim.app.layout.arrangement import Preset
+from tuisim.config.folders import programs_folder
+from tuisim.config.preferences import keep, preference
 
 if TYPE_CHECKING:
     from tuisim.app.workspace import Workspace
+
+
+_WELCOMED = "welcomed"
+"""Name of the preference."""
 
 
 def toggle(workspace: Workspace, panel: str) -> None:
@@ -60,6 +68,33 @@ def reset_borders(workspace: Workspace) -> None:
     """Give every panel the size that the layout gives it."""
     workspace.panel_area.action_reset_borders()
     workspace.panel_area.borders_changed()
+
+
+EXAMPLE = "log_greys.py"
+"""The program that the welcome offers."""
+
+
+def welcome(workspace: Workspace) -> None:
+    """Show the welcome unless it has been answered before, on this or an earlier start."""
+    from tuisim.app.dialogs.welcome import Begin, Welcome
+
+    if preference(_WELCOMED):
+        return
+
+    def chosen(what: Begin | None) -> None:
+        # Without a home folder it appears again, which is no reason to fail.
+        with suppress(OSError):
+            keep(_WELCOMED, True)
+        match what:
+            case Begin.EXAMPLE:
+                files.open_path(workspace, str(programs_folder() / EXAMPLE))
+                workspace.app.start_run()
+            case Begin.LEARN:
+                lesson.menu(workspace)
+            case Begin.OPEN:
+                files.open_program(workspace)
+
+    workspace.app.push_screen(Welcome(), chosen)
 
 
 _START = (

@@ -38,7 +38,12 @@ def open_program(workspace: Workspace) -> None:
 
 def open_path(workspace: Workspace, path: str) -> None:
     """Open a program, a world or goals; if the open program has unsaved changes, a dialog asks first."""
-    workspace.document.when_safe(partial(workspace.loader.open_file, path))
+
+    def opened() -> None:
+        workspace.loader.open_file(path)
+        workspace.document.open_at_mistake()
+
+    workspace.document.when_safe(opened)
 
 
 def save_robot(workspace: Workspace) -> None:

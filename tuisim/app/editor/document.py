@@ -59,6 +59,8 @@ class Document:
         self._name = self._path = self._text = self._saved = self._applied = ""
         """File name; path; text as edited; as in the file; as it was when `_program` was made from it."""
         self._form = Form()
+        self._seeks_error = False
+        """Whether the code panel is to move to the marked error as soon as it is there."""
         self._is_file = False
         """Whether the text came from the file, so that saving there needs no question."""
         self._draft_pending = self._asking = False
@@ -77,8 +79,19 @@ class Document:
     def begin(self) -> None:
         """Show what is open, and offer to restore a draft of a new program."""
         self.introduce()
+        self.open_at_mistake()
         if self._program is None and (draft := find_draft("")):
             self._offer(draft)
+
+    def open_at_mistake(self) -> None:
+        """Show the line of a syntax error in the program that has been opened, if there is one."""
+        if self._program is None or not (mistake := self._mistake()):
+            return
+        self._error_line = mistake.line
+        self._seeks_error = True
+        self._panel_area.open("code")
+        self.show()
+        self._app.complain(TuisimError(f"{self._name}: {mistake.message}", "d edits the program there"))
 
     def introduce(self) -> None:
         """Show the open program, which may have changed."""
@@ -128,6 +141,10 @@ class Document:
             self.run_changed()
             if self._error_line and not code.error_line:
                 code.mark_run_error(self._error_line)
+            if self._seeks_error:
+                self._seeks_error = False
+                # A new panel has no size yet.
+                self._app.call_after_refresh(code.go_to_error)
         if controls := self._panel_area.controls:
             controls.program = self._name
 

@@ -174,6 +174,12 @@ class Code(Vertical):
         if line:
             self._area.scroll_to_line(line)
 
+    def go_to_error(self) -> None:
+        """Move the cursor, and the view, to the line that is marked as an error, if there is one."""
+        if self.error_line:
+            self._area.focus()
+            self._area.move_to_code(self.error_line)
+
     def show(self, snapshot: Snapshot) -> None:
         """Highlight the line during which time passes."""
         in_run = snapshot.state not in (RunPhase.IDLE, RunPhase.ENDED) or snapshot.past
@@ -218,8 +224,8 @@ class Code(Vertical):
             self.post_message(self.Wanted(ProgramCommand.NONE))
             return
         self._area.focus()
-        if at_error and self.error_line:
-            self._area.move_to_code(self.error_line)
+        if at_error:
+            self.go_to_error()
         self._type(True)
 
     def stop_typing(self) -> None:

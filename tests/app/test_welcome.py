@@ -1,0 +1,85 @@
+"""The first start: a welcome, once; and a program with a syntax error, which opens at its line."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from tests.app.app_help import notices, ready, screen_text, settings, until, until_shown
+from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.dialogs.chooser import Chooser
+from tuisim.app.dialogs.welcome import Welcome
+from tuisim.app.snapshot import IN_RUN, RunPhase
+from tuisim.commands import app as command
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+
+FIRST = AppSettings(spec=build_run_spec(Settings()), settings=Settings(), welcomes=True)
+WRONG = "".join(f"x{number} = {number}\n" for number in range(60)) + "print((1)\n"
+
+
+def is_closed(app: LabApp) -> bool:
+    return not isinstance(app.screen, Welcome)
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=str)
+async def test_the_welcome_appears_once(size: tuple[int, int], home: Path) -> None:
+    for is_first in (True, False):
+        async with LabApp(FIRST).run_test(size=size) as pilot:
+            app = await ready(pilot)
+            assert isinstance(app.screen, Welcome) is is_first
+            if is_first:
+                assert "3 Open a file" in screen_text(app)
+                await pilot.press("escape")
+                await until(pilot, partial(is_closed, app))
+
+
+CHOICES: dict[str, tuple[list[str], Any]] = {
+    "example by number": (["1"], lambda app: app.run_controller.state in {*IN_RUN, RunPhase.ENDED}),
+    "example by enter": (["enter"], lambda app: app.run_controller.state in {*IN_RUN, RunPhase.ENDED}),
+    "learn": (["down", "enter"], lambda app: isinstance(app.screen, Chooser) and "Lessons" in app.screen.TITLE_TEXT),
+    "open": (["3"], lambda app: isinstance(app.screen, Chooser) and "Lessons" not in app.screen.TITLE_TEXT),
+}
+
+
+@pytest.mark.parametrize(("keys", "is_done"), CHOICES.values(), ids=CHOICES)
+async def test_each_choice_of_the_welcome_begins(keys: list[str], is_done: Any, home: Path) -> None:
+    async with LabApp(FIRST).run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        await pilot.press(*keys)
+        await until(pilot, lambda: is_done(pilot.app))
+
+
+NAMED: dict[str, tuple[dict[str, Any], bool]] = {
+    "nothing": ({}, True),
+    "glyphs": ({"settings": {"cells": "half"}}, True),
+    "program": ({"words": ("log_greys",)}, False),
+    "mat": ({"settings": {"background": "Loop"}}, False),
+}
+
+
+@pytest.mark.parametrize(("given", "is_empty"), NAMED.values(), ids=NAMED)
+def test_the_welcome_is_for_those_who_name_nothing(given: dict[str, Any], is_empty: bool) -> None:
+    none: dict[str, Any] = {"words": (), "world": None, "goals": None, "run": None, "settings": {}}
+    opened = command.read_opened(SimpleNamespace(**{**none, **given}))
+    assert opened is not None
+    assert opened.is_empty is is_empty
+
+
+@pytest.mark.parametrize("size", [(80, 24), (120, 40), (59, 14)], ids=str)
+async def test_a_program_with_a_syntax_error_opens_at_its_line(size: tuple[int, int]) -> None:
+    async with LabApp(settings(WRONG)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        await until_shown(pilot, "print((1)")
+        assert app.panel_area.code is not None
+        assert app.panel_area.code.error_line == 61
+        assert any("line 61" in text for text in notices(app))
+
+
+async def test_a_right_program_opens_as_before() -> None:
+    async with LabApp(settings("print('A: 1')\n")).run_test(size=(80, 24)) as pilot:
+        assert notices(await ready(pilot)) == []

@@ -1,0 +1,68 @@
+"""The welcome at the first start: three ways to begin."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.widgets import OptionList, Static
+from textual.widgets.option_list import Option
+
+from tuisim.app.dialogs.dialog import Dialog, name_and_title
+
+
+class Begin(StrEnum):
+    """What to begin with."""
+
+    EXAMPLE = "example"
+    LEARN = "learn"
+    OPEN = "open"
+
+
+_TEXT = (
+    "This is a robot lab. A program drives the robot over a printed mat, and all that its sensors see is shown, drawn "
+    "and logged. How do you want to begin?"
+)
+_CHOICES = {
+    Begin.EXAMPLE: ("Run the example", "It drives over grey bands and logs them"),
+    Begin.LEARN: ("Learn", "Lessons, from the first run to a line follower"),
+    Begin.OPEN: ("Open a file", "A program of your own, or one of the examples"),
+}
+_LATER = "Later: o opens a file, M the lessons, ? shows all keys, q quits."
+_NAME_CELLS = 18
+
+
+class Welcome(Dialog[Begin]):
+    """Returns what to begin with; None on Escape."""
+
+    TITLE_TEXT: str = "Welcome to tuisim"
+    HINT: str = "1 2 3, or ↑ ↓ and Enter · Escape closes"
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding(str(number), f"begin('{what}')", _CHOICES[what][0], show=False)
+        for number, what in enumerate(Begin, start=1)
+    ]
+
+    def content(self) -> ComposeResult:
+        yield Static(_TEXT, classes="start", markup=False)
+        yield OptionList(
+            *(
+                Option(name_and_title(f"{number} {name}", title, _NAME_CELLS), id=what)
+                for number, (what, (name, title)) in enumerate(_CHOICES.items(), start=1)
+            ),
+            markup=False,
+        )
+        yield Static()
+        yield Static(_LATER, markup=False)
+
+    def on_mount(self) -> None:
+        self.query_one(OptionList).focus()
+
+    @on(OptionList.OptionSelected)
+    def _chosen(self, event: OptionList.OptionSelected) -> None:
+        self.dismiss(Begin(event.option.id or ""))
+
+    def action_begin(self, what: str) -> None:
+        self.dismiss(Begin(what))
