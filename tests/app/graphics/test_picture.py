@@ -68,6 +68,14 @@ def test_a_picture_of_another_size_is_sent_whole(protocol: Protocol) -> None:
     assert np.array_equal(terminal.pixels[13 : 13 + len(points), 12 : 12 + points.shape[1]], _seen(points, protocol))
 
 
+@pytest.mark.parametrize("protocol", Protocol)
+@pytest.mark.parametrize("shape", [(0, 60, 3), (26, 0, 3)], ids=["no rows", "no columns"])
+def test_a_picture_may_have_no_cells(protocol: Protocol, shape: tuple[int, ...]) -> None:
+    picture = TilePicture(Graphics(protocol, CELL_PX))
+    picture.put(np.zeros(shape, np.uint8))
+    assert not picture.put(np.zeros(shape, np.uint8))
+
+
 def test_kitty_keeps_two_images_of_a_tile_at_most() -> None:
     picture = TilePicture(Graphics(Protocol.KITTY, CELL_PX))
     terminal = PixelTerminal(ROWS + 2, COLS + 3, CELL_PX)

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import fcntl
+import os
+import struct
+import termios
+
 import pytest
 from textual import events
 from textual.message import Message
@@ -9,7 +14,7 @@ from textual.message import Message
 from tuisim.app.graphics.choice import graphics_of
 from tuisim.app.graphics.picture import Graphics
 from tuisim.app.terminal.answers import AnswerParser, TerminalAnswered
-from tuisim.app.terminal.queries import TerminalFacts
+from tuisim.app.terminal.queries import TerminalFacts, cell_size_px
 from tuisim.config.options import AUTO, NO_PIXELS, Protocol
 
 XTERM = "\x1bP>|XTerm(379)\x1b\\\x1b[6;14;7t\x1b[?63;1;2;4;6;9;15;22c"
@@ -43,6 +48,7 @@ CHOICES = {
     "no pictures": (PLAIN, None),
     "only the kernel knows the size": ("\x1bP>|XTerm(379)\x1b\\\x1b[?63;4c", Graphics(Protocol.SIXEL, (9, 18))),
     "no answer": ("", None),
+    "size of a cell as small as a pixel": ("\x1b[6;1;1t\x1b[?63;4c", Graphics(Protocol.SIXEL, (9, 18))),
     "size that cannot be": ("\x1b[6;0;7t\x1b[?63;4c", Graphics(Protocol.SIXEL, (9, 18))),
 }
 
@@ -55,6 +61,21 @@ def test_the_answers_decide_how_pixels_are_drawn(answers: str, expected: Graphic
 def test_the_user_may_know_better() -> None:
     assert graphics_of(TerminalFacts(), Protocol.SIXEL, None) == Graphics(Protocol.SIXEL, (8, 16))
     assert graphics_of(_facts(XTERM), NO_PIXELS, None) is None
+
+
+@pytest.mark.parametrize(
+    ("size_px", "expected"),
+    [((960, 640), (8, 16)), ((120, 40), None), ((0, 0), None), ((65535, 65535), None)],
+    ids=["pixels", "cells", "nothing", "too large"],
+)
+def test_the_kernel_may_tell_nonsense(size_px: tuple[int, int], expected: tuple[int, int] | None) -> None:
+    main, other = os.openpty()
+    try:
+        fcntl.ioctl(other, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 120, *size_px))
+        assert cell_size_px(other) == expected
+    finally:
+        os.close(main)
+        os.close(other)
 
 
 def test_sixel_needs_the_size_of_a_cell() -> None:

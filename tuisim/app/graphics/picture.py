@@ -112,7 +112,7 @@ class TilePicture:
             self._points = points
             return [(row, 0, cols) for row in range(rows)]
         differs = (points != self._points).reshape(rows, height, cols, width * 3).any(axis=(1, 3))
-        if self.graphics.protocol is Protocol.KITTY:
+        if self.graphics.protocol is Protocol.KITTY and differs.any():
             differs = _whole_tiles(differs)
         self._versions[differs] = self._changes
         self._points = points

@@ -29,7 +29,8 @@ ANSWER = re.compile(
 _SIXEL = "4"
 """Number of sixel graphics among the attributes of a terminal."""
 _PROGRAM = re.compile(r"[A-Za-z0-9]+")
-_MOST_CELL_PX = 300
+_LEAST_CELL_PX, _MOST_CELL_PX = (2, 4), (300, 300)
+"""Width and height; terminals have told sizes of 1 pixel, and none at all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,8 +72,11 @@ class TerminalFacts:
         if found["attributes"] is not None:
             return replace(self, attributes=frozenset(found["attributes"].split(";")))
         width, height = int(found["width"]), int(found["height"])
-        is_possible = 0 < width <= _MOST_CELL_PX and 0 < height <= _MOST_CELL_PX
-        return replace(self, cell_px=(width, height)) if is_possible else self
+        return replace(self, cell_px=(width, height)) if _is_possible((width, height)) else self
+
+
+def _is_possible(cell_px: tuple[int, int]) -> bool:
+    return all(least <= px <= most for least, px, most in zip(_LEAST_CELL_PX, cell_px, _MOST_CELL_PX, strict=True))
 
 
 def facts_in(text: str) -> TerminalFacts:
@@ -84,9 +88,10 @@ def facts_in(text: str) -> TerminalFacts:
 
 
 def cell_size_px(fd: int) -> tuple[int, int] | None:
-    """Return width and height of a cell as the kernel knows them, also over SSH; None if it does not."""
+    """Return width and height of a cell as the kernel knows them, also over SSH; None if it does not, or tells nonsense."""
     try:
         rows, cols, width, height = struct.unpack("HHHH", fcntl.ioctl(fd, termios.TIOCGWINSZ, bytes(8)))
     except OSError:
         return None
-    return (width // cols, height // rows) if rows and cols and width >= cols and height >= rows else None
+    cell_px = (width // cols, height // rows) if rows and cols else (0, 0)
+    return cell_px if _is_possible(cell_px) else None
