@@ -16,7 +16,7 @@ from tuisim.app.panels.arrays import Arrays
 from tuisim.app.panels.world import WorldView
 from tuisim.app.terminal.answers import TerminalAnswered
 from tuisim.app.terminal.cell_view import PixelView
-from tuisim.app.terminal.queries import facts_in
+from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, facts_in
 from tuisim.config.options import AUTO, CellSet, Protocol
 
 CELL_PX = 8, 16
@@ -78,6 +78,14 @@ async def test_a_dialog_hides_a_part_of_the_picture_and_gives_it_back() -> None:
         await pilot.press("escape")
         await _sharp(pilot, world)
         assert np.array_equal(_part(_seen(pilot), world), _drawn(world, Protocol.SIXEL))
+
+
+async def test_a_resized_terminal_is_asked_for_the_size_of_its_cells() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await _answered(pilot, ANSWERS[Protocol.SIXEL])
+        wire_of(pilot).sent.clear()
+        await pilot.resize_terminal(110, 36)
+        await until(pilot, lambda: CELL_SIZE_QUERY + ATTRIBUTES_QUERY in wire_of(pilot).sent)
 
 
 async def test_a_terminal_without_pixels_gets_cells() -> None:

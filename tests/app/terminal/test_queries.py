@@ -13,6 +13,7 @@ from textual.message import Message
 
 from tuisim.app.graphics.choice import graphics_of
 from tuisim.app.graphics.picture import Graphics
+from tuisim.app.terminal import answers
 from tuisim.app.terminal.answers import AnswerParser, TerminalAnswered
 from tuisim.app.terminal.queries import TerminalFacts, cell_size_px
 from tuisim.config.options import AUTO, NO_PIXELS, Protocol
@@ -32,8 +33,28 @@ def _messages(*parts: str) -> list[Message]:
     return [message for part in parts for message in parser.feed(part)]
 
 
-def _facts(answers: str) -> TerminalFacts:
-    found = [message.facts for message in _messages(answers) if isinstance(message, TerminalAnswered)]
+def _read(*reads: tuple[float, str]) -> list[Message]:
+    """Return what a driver gets that reads at these times, in seconds: it lets the parser look at the time after each
+    read, and each tenth of a second."""
+    parser, now = AnswerParser(), 0.0
+    found: list[Message] = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(answers, "monotonic", lambda: now)
+        for until, text in reads:
+            while now + 0.1 < until:
+                now += 0.1
+                found += parser.tick()
+            now = until
+            found += [*parser.feed(text), *parser.tick()]
+    return found
+
+
+def _keys(messages: list[Message]) -> list[str]:
+    return [message.key for message in messages if isinstance(message, events.Key)]
+
+
+def _facts(text: str) -> TerminalFacts:
+    found = [message.facts for message in _messages(text) if isinstance(message, TerminalAnswered)]
     return found[-1] if found else TerminalFacts()
 
 
@@ -89,6 +110,23 @@ def test_answers_are_no_keys_however_they_arrive(answers: str, size: int) -> Non
     found = _messages(*(text[at : at + size] for at in range(0, len(text), size)))
     assert [message.key for message in found if isinstance(message, events.Key)] == ["a", "b"]
     assert any(isinstance(message, TerminalAnswered) for message in found)
+
+
+@pytest.mark.parametrize("at", range(1, len(XTERM)))
+def test_an_answer_may_come_in_two_reads(at: int) -> None:
+    assert not _keys(_read((0.0, XTERM[:at]), (0.05, XTERM[at:]), (1.0, "")))
+
+
+def test_a_second_answer_may_come_in_two_reads(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(AnswerParser, "is_asked", True)
+    size = "\x1b[6;14;7t"
+    assert not _keys(_messages("\x1b[6;16;8t", size[:1], size[1:], "\x1b[?63;4c"))
+    assert not AnswerParser.is_asked
+
+
+def test_an_answer_without_an_end_swallows_no_keys() -> None:
+    typed = [(10.0 + second, "a") for second in range(3)]
+    assert _keys(_read((0.0, "\x1bP>|XTerm(3"), *typed)) == ["a", "a", "a"]
 
 
 KEYS = {

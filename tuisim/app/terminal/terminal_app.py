@@ -46,7 +46,7 @@ from tuisim.app.terminal.cell_view import PixelView, RowsView
 from tuisim.app.terminal.drawing import Drawing, color_depth, drawing_of
 from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
 from tuisim.app.terminal.probe import SILENT
-from tuisim.app.terminal.queries import QUESTIONS, TerminalFacts, cell_size_px
+from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, QUESTIONS, TerminalFacts, cell_size_px
 from tuisim.app.terminal.screenshot import save_screenshot, screen_cells
 from tuisim.app.terminal.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors
 from tuisim.charts.traces import TRACE_COLORS
@@ -253,6 +253,10 @@ class TerminalApp(App[None]):
         """Send everything again: a resized terminal has cut or moved its content."""
         self.frame_buffer.forget()
         self._choose_graphics()
+        if self.terminal_facts.attributes and self._driver is not None:
+            # Zoom changes the size of the terminal and of its cells.
+            AnswerParser.is_asked = True
+            self._driver.write(CELL_SIZE_QUERY + ATTRIBUTES_QUERY)
 
     def get_line_filters(self) -> Sequence[LineFilter]:
         """Return the filters for everything that is drawn."""
