@@ -113,7 +113,12 @@ class PixelTerminal:
     def _kitty(self, keys: str, data: str) -> None:
         values = dict(key.split("=") for key in keys.split(","))
         if values.get("a") == "d":
-            del self.images[int(values["i"])]
+            if values["d"] == "I":
+                del self.images[int(values["i"])]
+            elif values["d"] == "R":
+                first, last = int(values["x"]), int(values["y"])
+                self.images = {number: one for number, one in self.images.items() if not first <= number <= last}
+            # Images at placeholders are not placed on the screen, so `d=A` does not concern them.
             return
         self._keys, self._data = self._keys or values, self._data + data
         assert len(data) <= 4096

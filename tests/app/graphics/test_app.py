@@ -94,6 +94,13 @@ async def test_a_terminal_without_pixels_gets_cells() -> None:
         assert pilot.app.query_one(WorldView)._tiles is None
 
 
+async def test_who_wants_no_colors_gets_no_pixels(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await _answered(pilot, ANSWERS[Protocol.SIXEL])
+        assert pilot.app.query_one(WorldView)._tiles is None
+
+
 async def test_glyphs_that_the_user_has_chosen_are_shown_instead() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await _answered(pilot, ANSWERS[Protocol.SIXEL])

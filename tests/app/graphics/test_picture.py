@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 
 from tests.app.graphics.decoder import PixelTerminal
-from tuisim.app.graphics import sixel
+from tuisim.app.graphics import kitty, sixel
 from tuisim.app.graphics.picture import Graphics, Rectangle, TilePicture, rectangles
 from tuisim.config.options import Protocol
 
@@ -82,6 +82,14 @@ def test_kitty_keeps_two_images_of_a_tile_at_most() -> None:
     for step in range(8):
         _draw(terminal, picture, picture.put(_disc(20 + 9 * step, 40)))
     assert len(terminal.images) == 3 * 3
+
+
+def test_kitty_forgets_all_images_when_it_is_told() -> None:
+    picture = TilePicture(Graphics(Protocol.KITTY, CELL_PX))
+    terminal = PixelTerminal(ROWS + 2, COLS + 3, CELL_PX)
+    _draw(terminal, picture, picture.put(_disc(20, 40)))
+    terminal.feed(kitty.DELETE_ALL)
+    assert not terminal.images
 
 
 @pytest.mark.parametrize("protocol", [Protocol.SIXEL, Protocol.ITERM])

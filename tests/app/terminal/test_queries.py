@@ -65,7 +65,7 @@ CHOICES = {
     "no graphics": (GHOSTTY_NO, None),
     "iTerm2": (ITERM, Graphics(Protocol.ITERM, (8, 17))),
     "WezTerm": (WEZTERM, Graphics(Protocol.ITERM, (8, 16))),
-    "tmux with sixel": (TMUX, Graphics(Protocol.SIXEL, (9, 18), in_tmux=True)),
+    "tmux does not know its terminal": (TMUX, None),
     "no pictures": (PLAIN, None),
     "only the kernel knows the size": ("\x1bP>|XTerm(379)\x1b\\\x1b[?63;4c", Graphics(Protocol.SIXEL, (9, 18))),
     "no answer": ("", None),
@@ -81,6 +81,7 @@ def test_the_answers_decide_how_pixels_are_drawn(answers: str, expected: Graphic
 
 def test_the_user_may_know_better() -> None:
     assert graphics_of(TerminalFacts(), Protocol.SIXEL, None) == Graphics(Protocol.SIXEL, (8, 16))
+    assert graphics_of(_facts(TMUX), Protocol.SIXEL, (9, 18)) == Graphics(Protocol.SIXEL, (9, 18), in_tmux=True)
     assert graphics_of(_facts(XTERM), NO_PIXELS, None) is None
 
 

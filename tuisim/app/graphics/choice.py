@@ -15,6 +15,9 @@ INLINE_IMAGES: Mapping[str, str] = {
 }
 """Terminals that show inline images of iTerm2."""
 
+TMUX = "tmux"
+"""What tmux answers to XTVERSION."""
+
 DEFAULT_CELL_PX = (8, 16)
 """Size of a cell if neither the terminal nor the kernel tells."""
 
@@ -34,11 +37,14 @@ def graphics_of(facts: TerminalFacts, wanted: str, cell_px: tuple[int, int] | No
     known_px = facts.cell_px or cell_px
     if protocol is None or (protocol is Protocol.SIXEL and wanted == AUTO and known_px is None):
         return None
-    return Graphics(protocol, known_px or DEFAULT_CELL_PX, in_tmux=facts.program == "tmux")
+    return Graphics(protocol, known_px or DEFAULT_CELL_PX, in_tmux=facts.program == TMUX)
 
 
 def _protocol_of(facts: TerminalFacts) -> Protocol | None:
     name = facts.program
+    if name == TMUX:
+        # Built with sixel, it says so whatever its own terminal can; elsewhere it shows frames with a text.
+        return None
     if name in kitty.TERMINALS and facts.has_kitty_graphics:
         return Protocol.KITTY
     if name in INLINE_IMAGES:

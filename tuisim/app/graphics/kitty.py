@@ -53,8 +53,9 @@ def encode(picture: Pixels, image: int, cols: int, rows: int) -> str:
     return "".join(parts)
 
 
-DELETE_ALL = "\x1b_Ga=d,d=A,q=2\x1b\\"
-"""Deletes all images and their data."""
+DELETE_ALL = "\x1b_Ga=d,d=A,q=2\x1b\\" + f"\x1b_Ga=d,d=R,x=1,y={0xFFFFFF},q=2\x1b\\"
+"""Deletes all images and their data: those that were placed on the screen, and by number, since kitty 0.33, those at
+placeholders, which are not placed anywhere."""
 
 
 def delete(image: int) -> str:

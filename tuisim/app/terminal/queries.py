@@ -88,7 +88,7 @@ def facts_in(text: str) -> TerminalFacts:
 
 
 def cell_size_px(fd: int) -> tuple[int, int] | None:
-    """Return width and height of a cell as the kernel knows them, also over SSH; None if it does not, or tells nonsense."""
+    """Return width and height of a cell as the kernel knows them, also over SSH; None if it does not."""
     try:
         rows, cols, width, height = struct.unpack("HHHH", fcntl.ioctl(fd, termios.TIOCGWINSZ, bytes(8)))
     except OSError:

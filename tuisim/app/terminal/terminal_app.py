@@ -283,8 +283,9 @@ class TerminalApp(App[None]):
 
     def _choose_graphics(self) -> None:
         size_px = cell_size_px(self._driver.fileno) if isinstance(self._driver, TerminalDriver) else None
-        # Who has chosen glyphs wants to see them.
-        wanted = NO_PIXELS if self.pixels == AUTO and self.drawing.chosen != AUTO else self.pixels
+        # Who has chosen glyphs wants to see them; pixels have colours.
+        is_without = self.drawing.chosen != AUTO or self.no_color
+        wanted = NO_PIXELS if self.pixels == AUTO and is_without else self.pixels
         found = graphics_of(self.terminal_facts, wanted, size_px)
         if found != self.drawing.graphics:
             self.drawing.graphics = found
