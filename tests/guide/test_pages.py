@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.app.terminals import Terminal
 from tests.conftest import ROOT, Command
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.cli import COMMANDS
@@ -137,3 +138,17 @@ def test_what_cannot_be_shown_is_told(words: list[str], code: int, said: str, tm
     done = here("guide", *words)
     assert done.returncode == code
     assert said in done.stderr + done.stdout
+
+
+@pytest.mark.tmux
+@pytest.mark.slow
+def test_a_terminal_shows_a_page_in_a_pager(tmp_path: Path) -> None:
+    terminal = Terminal(f"guide{tmp_path.name}", tmp_path)
+    terminal.start(["guide", "breakpoints"], 80, 24)
+    try:
+        first = terminal.until(lambda screen: "Breakpoints" in screen and "pauses when" in screen)
+        assert ("EXIT" in first, "[1m" in first) == (False, False)
+        terminal.keys("q")
+        terminal.until(lambda screen: "EXIT 0" in screen)
+    finally:
+        terminal.end()

@@ -60,7 +60,7 @@ def _show(lines: list[Line]) -> None:
     from tuisim.guide.text import written
 
     styled = sys.stdout.isatty() and "NO_COLOR" not in os.environ
-    click.echo_via_pager(written(lines, styled=styled), color=styled)
+    click.echo_via_pager(written(lines, styled=styled), color=None)
 
 
 def _search(words: str) -> int:

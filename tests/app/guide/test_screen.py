@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 from textual.pilot import Pilot
 from textual.widgets import Tree
@@ -20,13 +22,13 @@ DOWN_TO_PAGE = ["down"] * 2
 """From the keys past the first part to its first page."""
 
 
-def guide(pilot: Pilot[object]) -> GuideScreen:
+def guide(pilot: Pilot[Any]) -> GuideScreen:
     screen = pilot.app.screen
     assert isinstance(screen, GuideScreen)
     return screen
 
 
-async def opened(pilot: Pilot[object], *keys: str) -> GuideScreen:
+async def opened(pilot: Pilot[Any], *keys: str) -> GuideScreen:
     """Press keys and open the guide."""
     app = await ready(pilot)
     await pilot.press(*keys, "question_mark")

@@ -104,7 +104,7 @@ class GuideScreen(Dialog[None]):
     """
 
     TITLE_TEXT = "Guide"
-    HINT = "/ search · tab contents or page · enter open · Escape closes"
+    HINT = "/ search · tab switch · esc closes"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("question_mark,q", "leave", "Close", show=False),
         Binding("slash", "search", "Search", show=False),
