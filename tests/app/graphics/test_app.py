@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 from typing import Any
+from weakref import ref
 
 import numpy as np
 import pytest
@@ -120,3 +122,13 @@ async def test_on_a_slow_link_only_a_picture_that_stands_still_has_pixels() -> N
         await pilot.press("right")
         assert world._tiles is None
         await _sharp(pilot, world)
+
+
+async def test_pictures_that_have_gone_take_no_memory() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await _answered(pilot, ANSWERS[Protocol.SIXEL])
+        gone = ref(pilot.app.query_one(WorldView)._tiles)
+        pilot.app.choose_cells(CellSet.HALF)
+        await until_quiet(pilot)
+        gc.collect()
+        assert gone() is None

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache, partial
 from typing import NamedTuple
+from weakref import WeakSet
 
 from rich.cells import cell_len, split_graphemes
 from rich.color import Color, ColorSystem
@@ -64,8 +65,8 @@ class FrameBuffer:
 
     def __init__(self) -> None:
         self._rows: dict[int, list[Cell | None]] = {}
-        self._pictures: set[TilePicture] = set()
-        """Those that have been drawn."""
+        self._pictures: WeakSet[TilePicture] = WeakSet()
+        """Those that have been drawn, and still are in use."""
 
     def forget(self) -> None:
         """Assume nothing about the terminal's content: the next update is sent completely."""
