@@ -37,8 +37,8 @@ from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import GOOD_ENDS, AppState, RunPhase, Situation, end_label
 from tuisim.app.speech import Voice
-from tuisim.app.terminal.drawing import Drawing, choose_colors, drawing_for
 from tuisim.app.terminal.pacer import Pacer
+from tuisim.app.terminal.picture_mode import PictureMode, choose_colors, picture_mode_for
 from tuisim.app.workspace import Workspace
 from tuisim.config.options import AUTO, DEFAULT_FPS, Settings
 from tuisim.core.spec import RunSpec
@@ -123,7 +123,7 @@ class LabApp(PanelMessages):
 
     Args:
         settings: What the command line decided.
-        drawing: How pictures are drawn.
+        picture_mode: How pictures are drawn.
     """
 
     CSS_PATH = "tuisim.tcss"
@@ -133,15 +133,15 @@ class LabApp(PanelMessages):
         Binding("escape", "leave_field", "Leave a field", show=False),
     ]
 
-    def __init__(self, settings: AppSettings, drawing: Drawing | None = None) -> None:
-        super().__init__(drawing)
+    def __init__(self, settings: AppSettings, picture_mode: PictureMode | None = None) -> None:
+        super().__init__(picture_mode)
         self.settings = settings
         self.pixels = settings.pixels
         self.run_controller = RunController(settings.program, _first_next_run(settings), settings.speed)
         self.panel_area = PanelArea(settings.panels_on, settings.panels_off)
         self.key_footer = KeyFooter()
         self.pacer = Pacer(settings.fps)
-        self.drawing.is_slow, self.drawing.is_idle = lambda: self.pacer.is_slow, lambda: self.pacer.is_idle
+        self.picture_mode.is_slow, self.picture_mode.is_idle = lambda: self.pacer.is_slow, lambda: self.pacer.is_idle
         self.voice = Voice(settings.quiet)
         self.past_view = PastView(self.panel_area, self.run_controller.timeline)
         self.feed: Feed | None = None
@@ -553,6 +553,6 @@ class LabApp(PanelMessages):
 def run_app(settings: AppSettings) -> int:
     """Run the app in this terminal until the user quits; return the exit code."""
     most_colors = choose_colors(settings.colors)
-    lab = LabApp(settings, replace(drawing_for(settings.cells), most_colors=most_colors))
+    lab = LabApp(settings, replace(picture_mode_for(settings.cells), most_colors=most_colors))
     lab.run()
     return lab.return_code or 0

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Protocol, TypeVar
 from textual.screen import Screen
 
 from tuisim.app.action import Action
-from tuisim.app.terminal.drawing import Drawing
+from tuisim.app.terminal.picture_mode import PictureMode
 from tuisim.errors import TuisimError
 
 Result = TypeVar("Result")
@@ -20,7 +20,7 @@ class AppServices(Protocol):
     ACTIONS: ClassVar[Mapping[str, Action[Any, Any]]]
     """The keys by id."""
 
-    drawing: Drawing
+    picture_mode: PictureMode
     """How pictures are drawn."""
 
     def say(self, text: str) -> None: ...

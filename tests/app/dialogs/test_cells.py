@@ -11,9 +11,9 @@ from tests.app.app_help import LOGS, ready, settings, until
 from tests.app.wires import on_wire, until_quiet
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.cells import CellsCard
-from tuisim.app.terminal import drawing as drawings
+from tuisim.app.terminal import picture_mode as modes
 from tuisim.app.terminal.cell_view import PixelView
-from tuisim.app.terminal.drawing import Drawing, drawing_for
+from tuisim.app.terminal.picture_mode import PictureMode, picture_mode_for
 from tuisim.charts.glyphs import GLYPHS
 from tuisim.config import preferences
 from tuisim.config.options import CellSet
@@ -22,7 +22,7 @@ from tuisim.config.options import CellSet
 @pytest.fixture(autouse=True)
 def known_terminal(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(preferences, "preferences_file", lambda: tmp_path / "preferences.json")
-    monkeypatch.setattr(drawings, "best_cells", lambda **_: CellSet.SEXTANT)
+    monkeypatch.setattr(modes, "best_cells", lambda **_: CellSet.SEXTANT)
 
 
 def glyphs(view: PixelView) -> set[str]:
@@ -32,9 +32,9 @@ def glyphs(view: PixelView) -> set[str]:
 
 @pytest.mark.parametrize("size", [(80, 24), (60, 18), (120, 40)], ids=["80x24", "60x18", "120x40"])
 async def test_a_set_is_chosen_by_eye_and_kept(size: tuple[int, int]) -> None:
-    async with LabApp(settings(LOGS), drawing_for(None)).run_test(size=size) as pilot:
+    async with LabApp(settings(LOGS), picture_mode_for(None)).run_test(size=size) as pilot:
         app = await ready(pilot)
-        assert app.drawing.cells is CellSet.SEXTANT
+        assert app.picture_mode.cells is CellSet.SEXTANT
         await pilot.press("V")
         await until(pilot, lambda: isinstance(app.screen, CellsCard))
         listed = app.screen.query_one(OptionList)
@@ -46,17 +46,17 @@ async def test_a_set_is_chosen_by_eye_and_kept(size: tuple[int, int]) -> None:
         world = app.panel_area.screen.query_one("WorldView", PixelView)
         await until(pilot, lambda: any("\U0001cd00" <= glyph <= "\U0001cde5" for glyph in glyphs(world)))
 
-    assert drawing_for(None).cells is CellSet.OCTANT
-    assert drawing_for("half").cells is CellSet.HALF
-    assert drawing_for("auto").cells is CellSet.SEXTANT
+    assert picture_mode_for(None).cells is CellSet.OCTANT
+    assert picture_mode_for("half").cells is CellSet.HALF
+    assert picture_mode_for("auto").cells is CellSet.SEXTANT
 
 
 async def test_on_a_slow_link_cells_are_coarse_while_something_moves() -> None:
     slow = True
-    drawing = Drawing(CellSet.OCTANT)
-    async with on_wire(LabApp(settings(LOGS), drawing)) as pilot:
+    picture_mode = PictureMode(CellSet.OCTANT)
+    async with on_wire(LabApp(settings(LOGS), picture_mode)) as pilot:
         app = pilot.app
-        drawing.is_slow = lambda: slow
+        picture_mode.is_slow = lambda: slow
         await until(pilot, lambda: app.query_one("WorldView", PixelView)._cells.size > 0)
         view = app.query_one("WorldView", PixelView)
         assert glyphs(view) == {"▀"}

@@ -117,7 +117,7 @@ async def test_on_a_slow_link_only_a_picture_that_stands_still_has_pixels() -> N
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await _answered(pilot, ANSWERS[Protocol.SIXEL])
         world = pilot.app.query_one(WorldView)
-        pilot.app.drawing.is_slow = lambda: True
+        pilot.app.picture_mode.is_slow = lambda: True
         await pilot.press("right")
         await pilot.press("right")
         assert world._tiles is None

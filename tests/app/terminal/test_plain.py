@@ -15,7 +15,7 @@ from tests.app.wires import on_wire, until_quiet, wire_of
 from tuisim.app.app import LabApp
 from tuisim.app.render.cells import MONO
 from tuisim.app.terminal import probe
-from tuisim.app.terminal.drawing import Drawing, color_depth, drawing_for
+from tuisim.app.terminal.picture_mode import PictureMode, color_depth, picture_mode_for
 from tuisim.app.terminal.plain import as_ascii
 from tuisim.app.terminal.probe import colors_without_asking
 from tuisim.config.options import CellSet
@@ -76,7 +76,7 @@ def test_without_colours_no_blocks_are_taken(
     monkeypatch.setenv("TERM", environment["TERM"])
     monkeypatch.setenv("NO_COLOR", "1")
 
-    assert drawing_for("auto").cells is cells
+    assert picture_mode_for("auto").cells is cells
 
 
 @pytest.mark.parametrize(
@@ -86,7 +86,7 @@ async def test_without_colours_nothing_but_text_is_sent(
     cells: CellSet, most: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("NO_COLOR", "1")
-    async with on_wire(LabApp(settings(LOGS), Drawing(cells))) as pilot:
+    async with on_wire(LabApp(settings(LOGS), PictureMode(cells))) as pilot:
         app = await ready(pilot)
         await until_quiet(pilot)
         await pilot.press("question_mark")

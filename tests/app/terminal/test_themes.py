@@ -78,7 +78,7 @@ async def test_a_theme_is_chosen_from_the_list_and_kept(tmp_path: Path, monkeypa
         await pilot.press("enter")
         await until(pilot, lambda: app.theme == "high-contrast")
         await pilot.pause()
-        assert app.drawing.theme is not None
+        assert app.picture_mode.theme is not None
         background = {
             segment.style.bgcolor.triplet
             for strip in app.screen._compositor.render_strips()

@@ -138,7 +138,7 @@ def choose_cells(workspace: Workspace) -> None:
         except OSError as error:
             app.say(f"The choice applies to this session only: {error}")
 
-    app.push_screen(CellsCard(app.drawing.chosen, app.drawing.best), chosen)
+    app.push_screen(CellsCard(app.picture_mode.chosen, app.picture_mode.best), chosen)
 
 
 def choose_theme(workspace: Workspace) -> None:

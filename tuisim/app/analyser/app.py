@@ -13,7 +13,7 @@ from tuisim.analysis.source import LogRequest
 from tuisim.app.action import key_bindings
 from tuisim.app.analyser.actions.keys import ACTIONS
 from tuisim.app.analyser.screen import LogScreen
-from tuisim.app.terminal.drawing import Drawing, choose_colors, drawing_for
+from tuisim.app.terminal.picture_mode import PictureMode, choose_colors, picture_mode_for
 from tuisim.app.terminal.terminal_app import TerminalApp
 from tuisim.config.options import AUTO
 from tuisim.errors import TuisimError
@@ -34,13 +34,13 @@ class AnalyserApp(TerminalApp):
 
     Args:
         request: What to open.
-        drawing: How pictures are drawn.
+        picture_mode: How pictures are drawn.
     """
 
     CSS_PATH = "../tuisim.tcss"
 
-    def __init__(self, request: LogRequest, drawing: Drawing | None = None) -> None:
-        super().__init__(drawing)
+    def __init__(self, request: LogRequest, picture_mode: PictureMode | None = None) -> None:
+        super().__init__(picture_mode)
         self.request = request
         self.failure: TuisimError | None = None
         """The error that prevented the log from being opened."""
@@ -78,7 +78,7 @@ def run_analyser(request: LogRequest) -> int:
     # Modules imported by now stay until the end: exclude them from garbage collection.
     gc.freeze()
     most_colors = choose_colors(AUTO)
-    app = AnalyserApp(request, replace(drawing_for(None), most_colors=most_colors))
+    app = AnalyserApp(request, replace(picture_mode_for(None), most_colors=most_colors))
     app.run()
     if app.failure is not None:
         raise app.failure

@@ -35,7 +35,7 @@ from tuisim.app.render.cells import (
     reduce_pixels,
 )
 from tuisim.app.render.mono import mono_cells
-from tuisim.app.terminal.drawing import BLOCKS, color_depth, drawing_of
+from tuisim.app.terminal.picture_mode import BLOCKS, color_depth, picture_mode_of
 from tuisim.charts.glyphs import GLYPHS, GlyphSet, glyph_set, half_block_of
 from tuisim.charts.text_runs import Run, cut_line
 from tuisim.charts.world_image import CellPoints
@@ -97,14 +97,14 @@ class PixelView(RowsView):
     @property
     def cell_set(self) -> CellSet:
         """The glyphs of the app."""
-        return drawing_of(self.app).cells
+        return picture_mode_of(self.app).cells
 
     @property
     def graphics(self) -> Graphics | None:
         """How pixels are drawn now; None for cells: on a slow link, only an image that stands still has pixels."""
-        drawing = drawing_of(self.app)
+        picture_mode = picture_mode_of(self.app)
         is_moving = time.monotonic() - self._changed_s < STILL_S
-        return None if is_moving and drawing.is_slow() else drawing.graphics
+        return None if is_moving and picture_mode.is_slow() else picture_mode.graphics
 
     def cell_for(self, graphics: Graphics | None) -> CellPoints:
         """Return the points of an image in a cell; `graphics` is None for the app's glyphs."""
@@ -117,7 +117,7 @@ class PixelView(RowsView):
     @property
     def ground_rgb(self) -> tuple[int, int, int]:
         """Background colour of the widget."""
-        own, theme = self.background_colors[1].rgb, drawing_of(self.app).theme
+        own, theme = self.background_colors[1].rgb, picture_mode_of(self.app).theme
         return theme.rgb(own) if theme else own
 
     def set_picture(self, picture: Pixels) -> None:
@@ -171,7 +171,7 @@ class PixelView(RowsView):
         as_before = was.shape == shape and old.shape == picture.shape and fine is self._glyphs
         at = changed_cells(old, self._shown, fine) if as_before else all_cells(*shape)
         self._glyphs = fine
-        is_coarse = cell_set in BLOCKS and cell_set != CellSet.HALF and drawing_of(self.app).is_slow()
+        is_coarse = cell_set in BLOCKS and cell_set != CellSet.HALF and picture_mode_of(self.app).is_slow()
         if not as_before:
             self._coarse = np.zeros(shape, bool)
         self._coarse[at] = is_coarse
@@ -180,7 +180,7 @@ class PixelView(RowsView):
         cells[at] = self._fitted(glyphs, at, was[at] if as_before else None)
         self._put(cells)
         self._changed_s = time.monotonic()
-        is_to_be_refined = self._coarse.any() or drawing_of(self.app).graphics is not None
+        is_to_be_refined = self._coarse.any() or picture_mode_of(self.app).graphics is not None
         if is_to_be_refined and self._refine is None:
             self._refine = self.set_interval(REFINE_S, self._refine_some)
 
@@ -204,11 +204,11 @@ class PixelView(RowsView):
 
     def _refine_some(self) -> None:
         """Draw some of the coarse cells with fine glyphs: on a slow link only while nothing else is drawn."""
-        drawing = drawing_of(self.app)
+        picture_mode = picture_mode_of(self.app)
         is_still = time.monotonic() - self._changed_s >= STILL_S
-        if not drawing.is_idle() or (drawing.is_slow() and not is_still):
+        if not picture_mode.is_idle() or (picture_mode.is_slow() and not is_still):
             return
-        if drawing.graphics is not None:
+        if picture_mode.graphics is not None:
             self._stop_refining()
             self.redraw()
             return

@@ -43,8 +43,8 @@ from tuisim.app.render.cells import PALETTE_256
 from tuisim.app.terminal.answers import AnswerParser, TerminalAnswered
 from tuisim.app.terminal.browser import in_browser, offer
 from tuisim.app.terminal.cell_view import PixelView, RowsView
-from tuisim.app.terminal.drawing import Drawing, color_depth, drawing_of
 from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
+from tuisim.app.terminal.picture_mode import PictureMode, color_depth, picture_mode_of
 from tuisim.app.terminal.probe import SILENT
 from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, QUESTIONS, TerminalFacts, cell_size_px
 from tuisim.app.terminal.screenshot import save_screenshot, screen_cells
@@ -124,10 +124,10 @@ class TerminalApp(App[None]):
     # The palette offers the app's own actions: Textual's help, zoom and themes would be a second set of them.
     COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = {ActionProvider}
 
-    def __init__(self, drawing: Drawing | None = None) -> None:
+    def __init__(self, picture_mode: PictureMode | None = None) -> None:
         super().__init__(driver_class=_driver_class())
         self.frame_buffer = FrameBuffer()
-        self.drawing = drawing or Drawing()
+        self.picture_mode = picture_mode or PictureMode()
         """How pictures are drawn."""
         self.pixels = AUTO
         """One of `PIXELS`."""
@@ -150,7 +150,7 @@ class TerminalApp(App[None]):
 
     def _take_theme(self) -> None:
         is_own = self.theme == OWN_THEME
-        self.drawing.theme = None if is_own else ThemeColors(self.current_theme, TRACE_COLORS)
+        self.picture_mode.theme = None if is_own else ThemeColors(self.current_theme, TRACE_COLORS)
 
     def _theme_changed(self, theme: Theme) -> None:
         """Draw everything in the colours of another theme, and keep the choice."""
@@ -226,7 +226,7 @@ class TerminalApp(App[None]):
     def choose_cells(self, chosen: str) -> None:
         """Draw every picture with another set of glyphs, and keep the choice; `AUTO` or the name of a set."""
         try:
-            self.drawing.choose(chosen)
+            self.picture_mode.choose(chosen)
         finally:
             self._choose_graphics()
             self.redraw_pictures()
@@ -237,7 +237,7 @@ class TerminalApp(App[None]):
     @property
     def text_mode(self) -> TextMode:
         """What the terminal supports."""
-        return TextMode(color_depth(self), self.drawing.cells is CellSet.ASCII)
+        return TextMode(color_depth(self), self.picture_mode.cells is CellSet.ASCII)
 
     @property
     def _writes(self) -> bool:
@@ -261,7 +261,7 @@ class TerminalApp(App[None]):
     def get_line_filters(self) -> Sequence[LineFilter]:
         """Return the filters for everything that is drawn."""
         # Before the filter for terminals without colours, which leaves no colour to be replaced.
-        theme = [self.drawing.theme] if self.drawing.theme else []
+        theme = [self.picture_mode.theme] if self.picture_mode.theme else []
         return [*theme, *super().get_line_filters(), _HARMLESS]
 
     def on_ready(self) -> None:
@@ -284,15 +284,15 @@ class TerminalApp(App[None]):
     def _choose_graphics(self) -> None:
         size_px = cell_size_px(self._driver.fileno) if isinstance(self._driver, TerminalDriver) else None
         # Who has chosen glyphs wants to see them; pixels have colours.
-        is_without = self.drawing.chosen != AUTO or self.no_color
+        is_without = self.picture_mode.chosen != AUTO or self.no_color
         wanted = NO_PIXELS if self.pixels == AUTO and is_without else self.pixels
         found = graphics_of(self.terminal_facts, wanted, size_px)
-        if found != self.drawing.graphics:
-            self.drawing.graphics = found
+        if found != self.picture_mode.graphics:
+            self.picture_mode.graphics = found
             self.redraw_pictures()
 
     def redraw_pictures(self) -> None:
-        """Draw all pictures again: with pixels or glyphs, as `drawing` says now."""
+        """Draw all pictures again: with pixels or glyphs, as `picture_mode` says now."""
         for screen in self.screen_stack:
             for view in screen.query(PixelView):
                 view.redraw()
@@ -413,7 +413,7 @@ class TerminalDriver(LinuxDriver):
 
     def stop_application_mode(self) -> None:
         """Leave the terminal, and nothing in its memory."""
-        graphics = drawing_of(self._app).graphics
+        graphics = picture_mode_of(self._app).graphics
         if graphics is not None and graphics.protocol is Protocol.KITTY:
             self.write(kitty.through_tmux(kitty.DELETE_ALL) if graphics.in_tmux else kitty.DELETE_ALL)
         super().stop_application_mode()

@@ -27,7 +27,7 @@ _KEPT = "cells"
 
 
 @dataclass(slots=True)
-class Drawing:
+class PictureMode:
     """How an app draws pictures."""
 
     cells: CellSet = CellSet.HALF
@@ -69,7 +69,7 @@ def choose_colors(colors: str) -> int:
     return PALETTE_8 if colors == "8" else TRUECOLOR
 
 
-def drawing_for(given: str | None) -> Drawing:
+def picture_mode_for(given: str | None) -> PictureMode:
     """Return how an app that starts draws pictures.
 
     Args:
@@ -86,7 +86,7 @@ def drawing_for(given: str | None) -> Drawing:
     if given is None and (best is CellSet.ASCII or (not has_colors and chosen in BLOCKS)):
         # Chosen on another terminal.
         chosen = AUTO
-    return Drawing(best if chosen == AUTO else CellSet(chosen), chosen, best)
+    return PictureMode(best if chosen == AUTO else CellSet(chosen), chosen, best)
 
 
 _DEPTHS = {"standard": PALETTE_16, "windows": PALETTE_16, "256": PALETTE_256}
@@ -98,13 +98,13 @@ def color_depth(app: App[Any]) -> int:
 
     Blocks without colours are drawn in greys; dots and signs need none at all.
     """
-    drawing = drawing_of(app)
-    if app.no_color and drawing.cells not in BLOCKS:
+    picture_mode = picture_mode_of(app)
+    if app.no_color and picture_mode.cells not in BLOCKS:
         return MONO
-    return min(_DEPTHS.get(app.console.color_system or "", TRUECOLOR), drawing.most_colors)
+    return min(_DEPTHS.get(app.console.color_system or "", TRUECOLOR), picture_mode.most_colors)
 
 
-def drawing_of(app: App[Any]) -> Drawing:
+def picture_mode_of(app: App[Any]) -> PictureMode:
     """Return how an app draws pictures."""
-    found = getattr(app, "drawing", None)
-    return found if isinstance(found, Drawing) else Drawing()
+    found = getattr(app, "picture_mode", None)
+    return found if isinstance(found, PictureMode) else PictureMode()
