@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from tuisim.logs.reader import read_log
     from tuisim.runs.store import load_run
 
-__version__ = "0.1.0"
+__version__ = "1.0.0"
 __all__ = ["__version__", "experiment", "load_run", "read_log", "simulate"]
 
 _HOMES = {

@@ -57,6 +57,7 @@ COMMANDS: Mapping[str, Entry] = {
     "kernel": Entry("commands.kernel:kernel", "Install the Jupyter kernel for a course's notebooks"),
     "doctor": Entry("commands.system.doctor:doctor", "Check the terminal and the machine; restore a terminal"),
     "completion": Entry("cli:completion", "Print a script that completes commands in your shell"),
+    "man": Entry("cli:man", "Print the page for man"),
 }
 
 _COMPLETE = "_TUISIM_COMPLETE"
@@ -134,6 +135,22 @@ def completion(shell: str) -> int:
     scripts = get_completion_class(shell)
     assert scripts is not None
     print(scripts(_ROOT, {}, "tuisim", _COMPLETE).source())
+    return 0
+
+
+@command(
+    help="""Print the page for `man`.
+
+    \b
+    tuisim man | man -l -
+    tuisim man > ~/.local/share/man/man1/tuisim.1
+    """,
+)
+def man() -> int:
+    """Print the page."""
+    from tuisim.commands.system.man_page import man_page
+
+    print(man_page(_ROOT, __version__), end="")
     return 0
 
 

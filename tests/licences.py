@@ -1,0 +1,37 @@
+"""Lists the licences of everything that an install of tuisim brings.
+
+In a bare environment with nothing but tuisim: `python -m tests.licences > LICENCES.md`.
+"""
+
+from __future__ import annotations
+
+import re
+from importlib.metadata import Distribution, distributions
+
+HEAD = """\
+# Licences of the packages that an install of tuisim brings
+
+Made by `python -m tests.licences` from what the packages say about themselves, without the extras of tuisim.
+
+| package | licence |
+| --- | --- |
+"""
+NOT_BROUGHT = {"tuisim", "pip", "setuptools", "wheel"}
+
+
+def licence(found: Distribution) -> str:
+    """Return what a package says about its licence: an expression, its classifiers, or the first line of a text."""
+    said = found.metadata.json
+    classifiers = [one.rpartition(" :: ")[2] for one in said.get("classifier", []) if one.startswith("License ::")]
+    text = str(said.get("license", "")).strip().split("\n")[0]
+    return str(said.get("license_expression") or ", ".join(classifiers) or text)
+
+
+def packages() -> dict[str, str]:
+    """Return the licence of each package by name."""
+    found = {re.sub(r"[-_.]+", "-", one.name).lower(): licence(one) for one in distributions()}
+    return {name: found[name] for name in sorted(found.keys() - NOT_BROUGHT)}
+
+
+if __name__ == "__main__":
+    print(HEAD + "".join(f"| {name} | {text} |\n" for name, text in packages().items()), end="")
