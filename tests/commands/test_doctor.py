@@ -25,6 +25,7 @@ JUDGED: dict[str, tuple[Finding, State, str]] = {
     "no terminal": (diagnosis.no_terminal_finding(), ADVICE, "tuisim run"),
     "16 colours": (diagnosis.colors_finding("16", is_remote=False), ADVICE, "COLORTERM=truecolor"),
     "256 colours over ssh": (diagnosis.colors_finding("256", is_remote=True), ADVICE, "SSH does not send"),
+    "8 colours by TERM": (diagnosis.colors_finding("8", is_remote=True, is_fixed=True), ADVICE, "--colors"),
     "truecolor": (diagnosis.colors_finding("truecolor", is_remote=False), OK, ""),
     "ascii": (diagnosis.cells_finding(CellSet.ASCII), ADVICE, "LANG=C.UTF-8"),
     "quadrants": (diagnosis.cells_finding(CellSet.QUADRANT), OK, "Press V"),
@@ -142,6 +143,7 @@ def test_a_terminal_that_shows_questions_as_text_is_not_asked(home: Path) -> Non
     shown, code, _ = in_terminal(["doctor"], {"TERM": "dumb"}, {})
     assert (code, b"\x1b" in shown) == (0, False)
     assert b"letters and signs" in shown
+    assert b"latency" not in shown
 
 
 def test_reset_restores_what_a_killed_app_has_left(home: Path) -> None:

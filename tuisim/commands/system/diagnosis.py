@@ -60,11 +60,19 @@ def no_terminal_finding() -> Finding:
     return Finding("terminal", "none", State.ADVICE, advice)
 
 
-def colors_finding(depth: str, *, is_remote: bool) -> Finding:
-    """Judge the number of colours, one of `COLOR_DEPTHS` other than `auto`."""
+def colors_finding(depth: str, *, is_remote: bool, is_fixed: bool = False) -> Finding:
+    """Judge the number of colours, one of `COLOR_DEPTHS` other than `auto`.
+
+    Args:
+        depth: What the app would draw with.
+        is_remote: Whether the terminal is reached by SSH.
+        is_fixed: Whether TERM or NO_COLOR decides, whatever else is set.
+    """
     if depth == "truecolor":
         return Finding("colours", "truecolor (16 million)")
     value = {"none": "none", "8": "8", "16": "16", "256": "256"}[depth]
+    if is_fixed:
+        return Finding("colours", f"{value}, as TERM or NO_COLOR says", State.ADVICE, "--colors chooses another number")
     sent = "; SSH does not send this variable by itself" if is_remote else ""
     advice = f"If the terminal shows more, as most do: export COLORTERM=truecolor{sent}"
     return Finding("colours", value, State.ADVICE, advice)

@@ -133,26 +133,26 @@ def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) ->
     return [
         diagnosis.terminal_finding(answers.facts.name, term, is_remote=is_remote),
         diagnosis.size_finding(size.columns, size.lines),
-        diagnosis.colors_finding(_colors(environment), is_remote=is_remote),
+        _colors_finding(environment, is_remote),
         diagnosis.cells_finding(cells or cells_of(answers.facts.name, answers.octant_cols)),
         diagnosis.graphics_finding(graphics.protocol if graphics else ""),
-        diagnosis.latency_finding(answers.latency_s),
+        *([] if term in SILENT else [diagnosis.latency_finding(answers.latency_s)]),
         _locale_finding(environment),
     ]
 
 
-def _colors(environment: Mapping[str, str]) -> str:
-    """Return the number of colours that the app would draw with, one of `COLOR_DEPTHS`."""
+def _colors_finding(environment: Mapping[str, str], is_remote: bool) -> Finding:
     from rich.console import Console
 
     from tuisim.app.terminal.probe import colors_without_asking
     from tuisim.config.options import AUTO
 
-    known = colors_without_asking(environment.get("TERM", ""))
-    if known != AUTO or environment.get("NO_COLOR"):
-        return "none" if environment.get("NO_COLOR") else known
+    known = "none" if environment.get("NO_COLOR") else colors_without_asking(environment.get("TERM", ""))
+    if known != AUTO:
+        return diagnosis.colors_finding(known, is_remote=is_remote, is_fixed=True)
     system = Console(force_terminal=True, _environ=environment).color_system
-    return {"truecolor": "truecolor", "256": "256", "standard": "16", "windows": "16"}.get(system or "", "none")
+    depth = {"truecolor": "truecolor", "256": "256", "standard": "16", "windows": "16"}.get(system or "", "none")
+    return diagnosis.colors_finding(depth, is_remote=is_remote)
 
 
 def _locale_finding(environment: Mapping[str, str]) -> Finding:
