@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
-from tuisim.charts.canvas import TextRun, canvas
+from tuisim.charts.canvas import Curve, TextRun, canvas
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState
 from tuisim.charts.traces import Traces
 
@@ -84,6 +86,32 @@ def test_the_horizontal_axis_ends_at_the_data(end_s: float, grows: bool) -> None
     # While more is to come, there is a little room for it.
     assert limits[0] == 0
     assert limits[1] == end_s if not grows else end_s <= limits[1] <= max(1.3 * end_s, 1)
+
+
+@pytest.mark.parametrize(
+    ("names", "is_ascii", "signs"),
+    [
+        pytest.param(["Colour"], False, "braille", id="one trace"),
+        pytest.param(["Colour", "Gyro"], False, "marks", id="two traces"),
+        pytest.param(["Colour"], True, "marks", id="one trace in ASCII"),
+    ],
+)
+def test_without_colours_marks_are_drawn_only_where_they_are_needed(
+    names: list[str], is_ascii: bool, signs: str
+) -> None:
+    picture = ChartPainter().paint(traces(*names), ChartState(grey=True, is_ascii=is_ascii), 40, 12)
+    shown = "\n".join(text(picture))
+
+    assert ("braille" if re.search("[\u2801-\u28ff]", shown) else "marks") == signs
+    assert ("[x] Colour" in shown) is (signs == "braille")
+
+
+@pytest.mark.parametrize("rows", [3, 4, 5, 8])
+def test_marks_use_the_full_height(rows: int) -> None:
+    levels = np.array([2.0, 50.2, 82.7])
+    drawn = canvas([Curve(levels, levels, (255, 0, 0), "o")], 20, rows, (0.0, 100.0), (0.0, 100.0))
+
+    assert sum("o" in "".join(part for part, _ in runs) for runs in drawn) == len(levels)
 
 
 @pytest.mark.parametrize("height", [6, 9, 12, 16, 24, 40])

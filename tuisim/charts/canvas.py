@@ -77,12 +77,25 @@ def canvas(curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y
         times_s, values = curve.times_s, curve.values
         if curve.rising:
             times_s, values = min_max(times_s, values, x_limits, columns)
+        if curve.marker != BRAILLE:
+            values = _on_rows(values, y_limits, rows)
         if len(times_s):
             marker = plotext.marker(curve.marker, curve.rgb)
             signal = figure.signal(times_s.tolist(), values.tolist(), marker=marker)
             figure.draw(signal.lines(curve.joined and curve.marker == BRAILLE))
     text = figure.build().string()
     return [_runs(line, columns) for line in text.split("\n")[:rows]]
+
+
+def _on_rows(values: FloatArray, limits: Limits, rows: int) -> FloatArray:
+    """Return values at the rows whose labels they are nearest to, as `axes.row_labels` places them.
+
+    plotext rounds to the middle of a row, so that the first and the last row get half as many values as others.
+    """
+    low, high = limits
+    above = np.floor((high - values) / (high - low) * (rows - 0.25))
+    on_rows: FloatArray = high - above * (high - low) / max(rows - 1, 1)
+    return on_rows
 
 
 def _runs(line: str, columns: int) -> list[TextRun]:

@@ -41,6 +41,9 @@ class ChartState:
     x_limits: Limits | None = None
     """Fixed limits while the chart is frozen, None to follow."""
     grey: bool = False
+    """Without colours: marks tell several traces apart."""
+    is_ascii: bool = False
+    """Without braille: without colours even a single trace is drawn as marks."""
     other_s: float | None = None
     """The second cursor; distances are measured from it."""
     unit: str = "s"
@@ -92,8 +95,9 @@ class ChartPainter:
 
     def paint(self, traces: Traces, state: ChartState, width: int, height: int) -> ChartPicture:
         """Return the chart in a panel of that inner size, each at least 1."""
-        lines, boxes = _tick_boxes(traces, state, width, min(max(height // _ROWS_A_LEGEND_LINE, 1), 3))
         drawn = traces.drawn()
+        by_mark = state.grey and (len(drawn) > 1 or state.is_ascii)
+        lines, boxes = _tick_boxes(traces, state.selected, by_mark, width, height)
         if not drawn:
             return ChartPicture((lines + _empty(len(traces) > 0, width, height - len(lines)))[:height], boxes)
         values = [values_at(drawn, state.cursor_s, state.unit, width)] if state.cursor_s is not None else []
@@ -102,7 +106,7 @@ class ChartPainter:
         x_limits = state.x_limits or _time_limits(traces.end_s(), state.grows)
         scales = _Scales.of(drawn, width, rows, state.zoomed)
         columns = max(width - scales.left_width - scales.right_width, 2)
-        self._draw(drawn, scales, columns, rows, x_limits, state.grey or state.marks)
+        self._draw(drawn, scales, columns, rows, x_limits, by_mark or state.marks)
         left, top = scales.left_width, len(lines)
         cursors = [time_s for time_s in (state.cursor_s, state.other_s) if time_s is not None]
         at = sorted({axes.column_of(time_s, x_limits, columns) for time_s in cursors})
@@ -196,9 +200,10 @@ def _with_cursors(runs: list[TextRun], columns: Sequence[int]) -> list[Run]:
 
 
 def _tick_boxes(
-    traces: Traces, state: ChartState, width: int, most_lines: int
+    traces: Traces, selected: str | None, by_mark: bool, width: int, height: int
 ) -> tuple[list[list[Run]], tuple[Box, ...]]:
     """Return the lines of tick boxes that fit, those around the selected one, and where the boxes are."""
+    most_lines = min(max(height // _ROWS_A_LEGEND_LINE, 1), 3)
     lines: list[list[tuple[str, Trace]]] = [[]]
     used = 0
     for trace in traces:
@@ -208,7 +213,7 @@ def _tick_boxes(
             used = 0
         used += len(text) + (2 if used else 0)
         lines[-1].append((text, trace))
-    chosen = next((at for at, line in enumerate(lines) for _, trace in line if trace.name == state.selected), 0)
+    chosen = next((at for at, line in enumerate(lines) for _, trace in line if trace.name == selected), 0)
     first = max(0, chosen - most_lines + 1)
     shown = lines[first : first + most_lines]
     made, boxes = [], []
@@ -219,7 +224,7 @@ def _tick_boxes(
                 runs.append(("  ", PLAIN))
                 column += 2
             boxes.append(Box(row, column, column + len(text), trace.name))
-            runs += _box_runs(text, trace, trace.name == state.selected, state.grey)
+            runs += _box_runs(text, trace, trace.name == selected, by_mark)
             column += len(text)
         made.append(runs)
     hidden = len(lines) - first - len(shown), first
@@ -231,9 +236,9 @@ def _tick_boxes(
     return [line for line in made if line], tuple(boxes)
 
 
-def _box_runs(text: str, trace: Trace, selected: bool, grey: bool) -> list[Run]:
+def _box_runs(text: str, trace: Trace, selected: bool, by_mark: bool) -> list[Run]:
     color = styled(trace.rgb) if trace.on else AXIS
-    if grey and trace.on:
+    if by_mark and trace.on:
         text = text.replace("[x]", f"[{trace.mark}]", 1)
     return [(text, color + Style(reverse=True) if selected else color)]
 

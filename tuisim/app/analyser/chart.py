@@ -12,6 +12,7 @@ from textual.message import Message
 from tuisim.analysis.chart import event_marks
 from tuisim.analysis.traces import DISTANCE
 from tuisim.app.terminal.cell_view import LinesPanel
+from tuisim.app.terminal.picture_mode import shows_ascii
 from tuisim.charts.canvas import BRAILLE, xy_lines
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.charts.text_runs import Run
@@ -104,7 +105,7 @@ class LogChart(LinesPanel):
         facets = _around_selected(facets, model.selected, height // _LEAST_FACET_ROWS)
         state = ChartState(
             model.selected, model.cursor_s if model.log.rows else None, x_limits, bool(self.app.no_color),
-            model.mark_s, unit, self.options.marks, zoomed=model.limits is not None,
+            shows_ascii(self.app), model.mark_s, unit, self.options.marks, zoomed=model.limits is not None,
         )  # fmt: skip
         self._pictures = []
         lines: list[list[Run]] = []
@@ -127,7 +128,7 @@ class LogChart(LinesPanel):
     def _against(self, model: Model, names: tuple[str, str], width: int, height: int) -> list[list[Run]]:
         trace = model.trace
         xs, ys = (model.along(name) for name in names)
-        marker = trace.mark if self.app.no_color or self.options.marks else BRAILLE
+        marker = trace.mark if (self.app.no_color and shows_ascii(self.app)) or self.options.marks else BRAILLE
         return xy_lines(xs, ys, model.sample, names, trace.rgb, marker, width, height)
 
     def columns(self) -> int:

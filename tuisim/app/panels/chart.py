@@ -13,6 +13,7 @@ from textual.message import Message
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesPanel
 from tuisim.app.terminal.pacer import Throttle
+from tuisim.app.terminal.picture_mode import shows_ascii
 from tuisim.charts import axes
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.charts.traces import Trace, Traces
@@ -99,7 +100,7 @@ class Chart(LinesPanel, can_focus=True):
         self._dirty = False
         if self._state.selected is None and (first := next(iter(self._traces), None)):
             self._state = replace(self._state, selected=first.name)
-        state = replace(self._state, grey=bool(self.app.no_color))
+        state = replace(self._state, grey=bool(self.app.no_color), is_ascii=shows_ascii(self.app))
         if not self.has_focus:
             state = replace(state, selected=None)
         self._picture = self._painter.paint(self._traces, state, self._text.size.width, self._text.size.height)

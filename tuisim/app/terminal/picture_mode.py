@@ -104,6 +104,11 @@ def color_depth(app: App[Any]) -> int:
     return min(_DEPTHS.get(app.console.color_system or "", TRUECOLOR), picture_mode.most_colors)
 
 
+def shows_ascii(app: App[Any]) -> bool:
+    """Return whether an app draws with ASCII only."""
+    return picture_mode_of(app).cells is CellSet.ASCII
+
+
 def picture_mode_of(app: App[Any]) -> PictureMode:
     """Return how an app draws pictures."""
     found = getattr(app, "picture_mode", None)
