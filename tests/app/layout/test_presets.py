@@ -52,7 +52,7 @@ async def test_a_key_shows_a_preset_and_again_the_standard_layout(preset: Preset
         standard = set(app.panel_area.arrangement.boxes)
         await pilot.press(key)
         assert set(core_panels(preset)) <= set(app.panel_area.arrangement.boxes)
-        await until(pilot, lambda: all(f"─ {PANELS[panel].title}" in screen_text(app) for panel in core_panels(preset)))
+        await until(pilot, lambda: all(f" {PANELS[panel].title}" in screen_text(app) for panel in core_panels(preset)))
         await pilot.press(key)
         assert set(app.panel_area.arrangement.boxes) == standard
 
