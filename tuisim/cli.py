@@ -74,7 +74,7 @@ def _check_command(word: str) -> None:
     close = get_close_matches(word, COMMANDS, 1)
     if not close or "." in word:
         return
-    from tuisim.commands.resolve import find_program
+    from tuisim.config.program_file import find_program
 
     if not find_program(word).exists():
         raise ConfigError(f"{word}: no such command or program", f"did you mean `tuisim {close[0]}`?")

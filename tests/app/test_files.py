@@ -295,3 +295,14 @@ async def test_the_command_opens_a_world_that_is_watched(folder: Path) -> None:
         (folder / "lab.toml").write_text(LAB.replace("seed = 5", "seed = 6"))
         look(app)
         assert app.run_controller.next_run.spec.seed == 6
+
+
+async def test_an_example_is_opened_by_its_name_and_the_footer_shows_the_keys_again(folder: Path) -> None:
+    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("o", *"log_greys", "enter")
+        await until(pilot, lambda: len(app.screen_stack) == 1)
+        await until(pilot, lambda: not any(word == "apply" for _, word in app.key_footer._typing))
+
+        assert app.run_controller.program is not None
+        assert app.run_controller.program.name == "log_greys.py"

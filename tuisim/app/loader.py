@@ -172,12 +172,17 @@ class Loader:
             self._app.complain(error)
 
     def open_file(self, path: str) -> None:
-        """Open a program with the world that it asks for, or a world with the program and the goals that it names."""
+        """Open a program with the world that it asks for, or a world with the program and the goals that it names.
+
+        Args:
+            path: The file, or the name of an example program.
+        """
+        from tuisim.config.program_file import find_program
         from tuisim.config.worlds import means_world
 
         opened = self._open_world if means_world(path) else self._open_program
         try:
-            opened(str(Path(path).expanduser()))
+            opened(str(find_program(str(Path(path).expanduser()))))
         except TuisimError as error:
             self._app.complain(error)
 

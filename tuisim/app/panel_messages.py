@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
+from textual import on
+
 from tuisim.app.action import ActionHost
 from tuisim.app.actions import time_travel
+from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.app.setup.next_run import with_obstacles
 from tuisim.app.terminal.terminal_app import TerminalApp
 from tuisim.app.workspace import Workspace
@@ -77,6 +80,11 @@ class PanelMessages(ActionHost, TerminalApp):
 
     def on_descendant_blur(self) -> None:
         self.call_later(self.situation_changed)
+
+    @on(ClosesOnce.Changed)
+    def show_keys_of_the_screen(self) -> None:
+        """Update the footer: below a dialog that closed another widget has the focus."""
+        self.situation_changed()
 
     def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
         """Move the robot with the mouse; in the past, ask about a branch at the end of the drag."""

@@ -9,15 +9,13 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 from tuisim.commands.echo import echo_error
 from tuisim.commands.notebooks import NotRun, check_folder, known_programs, without_unknown
 from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import ARGUMENTS_FOLLOW, Arguments
-from tuisim.config.folders import programs_folder
 from tuisim.config.options import RobotChoice, Settings, settings_of
-from tuisim.config.program_file import ProgramSource, read_program
+from tuisim.config.program_file import ProgramSource, find_program, read_program
 from tuisim.config.robots import choose_robot
 from tuisim.config.worlds import WorldFile, load_world, means_world
 from tuisim.core.spec import RunSpec
@@ -62,25 +60,6 @@ def check_arguments(words: Sequence[str], arguments: Arguments) -> None:
         raise ConfigError(f"{programs[0]} is a folder; notebooks take no arguments", key=ARGUMENTS_FOLLOW)
     if programs and is_notebook(programs[0]):
         raise ConfigError(f"{programs[0]} is a notebook; its cells take no arguments", key=ARGUMENTS_FOLLOW)
-
-
-def find_program(word: str) -> Path:
-    """Return the file that a word names: a path, else an example program. The file may be missing.
-
-    Raises:
-        ConfigError: the path cannot be checked, for example because it is too long.
-    """
-    path = Path(word)
-    try:
-        path.exists()
-    except OSError as error:
-        raise ConfigError(f"cannot read {word}: {error.strerror or error}") from error
-    if not path.name or path.parent != Path() or path.exists():
-        return path
-    for name in (path.name, f"{path.name}.py"):
-        if (example := programs_folder() / name).is_file():
-            return example
-    return path
 
 
 def _world(words: Sequence[str], arguments: Arguments) -> WorldFile | None:

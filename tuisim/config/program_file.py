@@ -196,6 +196,25 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
     return ProgramSource(Program(name, text, prelude, path), magic.options)
 
 
+def find_program(word: str) -> Path:
+    """Return the file that a word names: a path, else an example program. The file may be missing.
+
+    Raises:
+        ConfigError: the path cannot be checked, for example because it is too long.
+    """
+    path = Path(word)
+    try:
+        path.exists()
+    except OSError as error:
+        raise ConfigError(f"cannot read {word}: {error.strerror or error}") from error
+    if not path.name or path.parent != Path() or path.exists():
+        return path
+    for name in (path.name, f"{path.name}.py"):
+        if (example := programs_folder() / name).is_file():
+            return example
+    return path
+
+
 def read_program(path: Path) -> ProgramSource:
     """Read a program file; files in its magic line are looked up beside it.
 
