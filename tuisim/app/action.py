@@ -177,7 +177,7 @@ class ActionProvider(Provider):
 
 _ALWAYS = ("help", "quit", "leave")
 
-FIELD_KEYS: tuple[KeyWord, ...] = (("⏎", "apply"), ("esc", "leave"), ("tab", "next"))
+FIELD_KEYS: tuple[KeyWord, ...] = (("enter", "apply"), ("esc", "leave"), ("tab", "next"))
 """Keys of a text field, where letters are not keys."""
 TYPING_KEYS: tuple[KeyWord, ...] = (
     ("esc", "done"), ("^s", "save"), ("^r", "run"), ("^f", "find"), ("^g", "line"), ("^z", "undo"), ("^y", "redo"),

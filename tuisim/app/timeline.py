@@ -138,17 +138,25 @@ class Timeline:
         return False
 
 
-FORMS = (
+_FORMS = (
     ("3.5", "a time in seconds"),
     ("tick 120", "a tick"),
-    ("line 12", "the next time that line 12 runs"),
-    ("sample Colour", "the next sample with this name; `sample` alone: with any name"),
-    ("sample Colour < 90", f"the next sample that matches; operators: {spelled()}"),
-    ("print REGEX", "the next printed line that matches the regular expression"),
+    ("line 12", "{which} time that line 12 runs"),
+    ("sample Colour", "{which} sample with this name; `sample` alone: with any name"),
+    ("sample Colour < 90", f"{{which}} sample that matches; operators: {spelled()}"),
+    ("print REGEX", "{which} printed line that matches the regular expression"),
     ("start, end", "the first and the latest instant"),
     ("… back", "a line, sample or print, searched backwards"),
 )
 """The accepted forms, with what they mean."""
+
+
+def forms(timeline: Timeline) -> list[tuple[str, str]]:
+    """Return the accepted forms, with what they mean at the instant in view."""
+    # Nothing can be found after the newest instant: the search goes backwards from there.
+    which = "the last" if timeline.tick >= timeline.newest else "the next"
+    return [(form, meaning.replace("{which}", which)) for form, meaning in _FORMS]
+
 
 _HINT = f"3.5, tick 120, line 12, sample NAME, sample {comparison_form()}, print REGEX, start or end"
 _SECONDS = re.compile(r"([0-9]+\.?[0-9]*|\.[0-9]+)\s*s?")
@@ -189,7 +197,7 @@ def find(text: str, timeline: Timeline) -> int:
     """Return the tick that an expression means, relative to the instant in view.
 
     Args:
-        text: One of `FORMS`.
+        text: One of `forms`.
         timeline: The run, and where one is in it.
 
     Raises:

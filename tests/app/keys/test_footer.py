@@ -74,6 +74,6 @@ async def test_letters_that_are_typed_are_not_offered_as_keys() -> None:
         await pilot.press("escape")
         await until(pilot, lambda: "R run" in last_line(pilot))
         app.query_one("#light-number", Input).focus()
-        await until(pilot, lambda: "⏎ apply" in last_line(pilot) and "R run" not in last_line(pilot))
+        await until(pilot, lambda: "enter apply" in last_line(pilot) and "R run" not in last_line(pilot))
         await pilot.press("escape")
         await until(pilot, lambda: "R run" in last_line(pilot))

@@ -49,6 +49,10 @@ def test_a_heading_is_shown_within_half_a_turn(heading_deg: float, shown: str) -
     assert now.instant.pose.heading_deg == heading_deg
 
 
+def test_a_narrow_panel_names_the_pen() -> None:
+    assert "pen down" in text(moment(), 34, 11)[-1]
+
+
 @pytest.mark.parametrize("now", [moment(), BARE, FURTHER], ids=["usual", "no sensors", "further parts"])
 def test_it_fits(now: Snapshot) -> None:
     for width, height in product((18, 20, 24, 26, 32, 40, 44, 80), (4, 6, 8, 9, 11, 13, 14, 30)):

@@ -37,6 +37,7 @@ def test_every_sign_of_the_app_has_one_in_ascii() -> None:
         pytest.param("╭──╮│╰╯┼", "+--+|+++", id="frames"),
         pytest.param("━┃═", "=#=", id="heavy frames"),
         pytest.param("⠀⠁⣿", " .@", id="braille"),
+        pytest.param("90° 1 … 9 cut…", "90  1...9 c...", id="degrees and ellipses"),
         pytest.param("é中✓", "e??v", id="letters"),
     ],
 )

@@ -18,7 +18,11 @@ if TYPE_CHECKING:
 
 def pen(workspace: Workspace) -> None:
     """Put the pen up or down."""
-    workspace.run_controller.set_pen(not workspace.run_controller.pen_down)
+    runs = workspace.run_controller
+    runs.set_pen(not runs.pen_down)
+    if not runs.in_past:
+        kind = runs.spec.robot.pen
+        workspace.app.say(f"Pen down: {kind.color}, {kind.width_mm:g} mm" if runs.pen_down else "Pen up")
 
 
 def home(workspace: Workspace) -> None:

@@ -9,7 +9,7 @@ from tuisim import protocol
 from tuisim.app.branch import Branch, action_words
 from tuisim.app.setup.mat import mat_key
 from tuisim.app.snapshot import RunPhase
-from tuisim.app.timeline import FORMS, find
+from tuisim.app.timeline import find, forms
 from tuisim.errors import TuisimError
 
 if TYPE_CHECKING:
@@ -129,7 +129,9 @@ def ask_where(workspace: Workspace) -> None:
     def go(text: str) -> None:
         to_tick(workspace, find(text, timeline))
 
-    workspace.app.push_screen(LinePrompt("Go to", go, forms=FORMS, placeholder=f"now at {timeline.time_s:.2f} s"))
+    workspace.app.push_screen(
+        LinePrompt("Go to", go, forms=forms(timeline), placeholder=f"now at {timeline.time_s:.2f} s")
+    )
 
 
 def to_sample(workspace: Workspace, words: str) -> None:

@@ -242,6 +242,7 @@ def _state(now: Snapshot, width: int) -> Line:
     return _fit(
         width,
         (_label("State"), (f"{state[0]:<9}", state[1]), _unit(" "), _value(pen.ljust(9)), _unit(" "), _value(profile)),
+        (_label("State", 6), state, _unit(" · "), _value(pen), _unit(" · "), _value(profile)),
         (_label("State"), state, _unit(" · "), _value(profile)),
         (_label("State", 6), state, _unit(" · "), _value(profile)),
         (state, _unit("·"), _value(profile)),

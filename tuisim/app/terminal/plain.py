@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
+import re
 import unicodedata
 from functools import lru_cache
 
 from rich.cells import cell_len
 
 _SIGNS = {
-    "·": ".", "•": "*", "…": "~", "×": "x", "°": "o", "±": "~", "–": "-", "—": "-", "−": "-", "⌀": "D", "Δ": "d",
+    "·": ".", "•": "*", "…": "~", "×": "x", "°": " ", "±": "~", "–": "-", "—": "-", "−": "-", "⌀": "D", "Δ": "d",
     "←": "<", "↑": "^", "→": ">", "↓": "v", "◀": "<", "▲": "^", "△": "^", "▶": ">", "▸": ">", "▼": "v", "▽": "v",
     "●": "*", "○": "o", "◆": "*", "◇": "o", "■": "#", "□": "o", "▮": "#", "█": "#", "✓": "v", "✗": "x", "♪": "~",
     "⏎": "E", "↵": "E", "⇧": "S", "⌫": "B", "‘": "'", "’": "'", "“": '"', "”": '"', "░": ".", "▒": ":", "▓": "%",
     "▀": '"', "↕": "|", "‹": "<", "›": ">",
     "▄": "_", "▌": "[", "▐": "]", "▁": "_", "▔": "~", "▏": "|", "▕": "|", "⌷": "#",
 }  # fmt: skip
+_ELLIPSIS = re.compile(r" … |…  |[A-Za-z0-9]{2}…")
+"""An ellipsis with the blanks beside it, or the end of a word that was cut, which three dots replace."""
 _BY_DOTS = " .':;+*#@"
 
 
 def as_ascii(text: str) -> str:
     """Return a text of the same width in ASCII."""
-    return text if text.isascii() else "".join(map(_as_ascii, text))
+    return text if text.isascii() else "".join(map(_as_ascii, _ELLIPSIS.sub("...", text)))
 
 
 @lru_cache(maxsize=4096)
