@@ -17,6 +17,7 @@ from tests.running import PATIENCE_S, Done, Run, Start, over
 from tuisim.atomic import make_private_folder
 from tuisim.cli import run_command
 from tuisim.config import mat_cache
+from tuisim.config.preferences import keep
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import NoiseSpec, PenSpec, RobotSpec, RunSpec, WorldSpec
@@ -53,6 +54,8 @@ def _own_home(tmp_path_factory: pytest.TempPathFactory) -> object:
     patch = pytest.MonkeyPatch()
     patch.setenv("TUISIM_HOME", str(tmp_path_factory.mktemp("home")))
     patch.delenv("TUISIM_ASSETS", raising=False)
+    # Only the tests of the first start begin with the welcome.
+    keep("welcomed", True)
     yield
     patch.undo()
 

@@ -26,6 +26,7 @@ from tests.bench.starts import first_line, first_paint, help_text, imports
 from tests.bench.stops import stop_latency
 from tests.bench.variables import variables
 from tests.bench.wire import wire
+from tuisim.config.preferences import keep
 from tuisim.runs.handle import RunOptions
 
 BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
@@ -72,6 +73,7 @@ def main(words: Sequence[str]) -> int:
     with tempfile.TemporaryDirectory() as home:
         # A home of its own: the runs are thrown away, and the user's catalogue stays as it is.
         os.environ["TUISIM_HOME"] = home
+        keep("welcomed", True)
         warm_up()
         for name in arguments.names or BENCHES:
             # Close to the figures that are compared with them.

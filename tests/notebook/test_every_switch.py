@@ -163,7 +163,7 @@ CASES = [
     Case(("-F", "--refresh"), "0.5", refreshed, 500),
     Case(("-L", "--collab"), "", answered, ["hello"]),
 ]
-OF_TERMINALS = {"--fps", "--colors"}
+OF_TERMINALS = {"--fps", "--colors", "--cells", "--pixels"}
 """Switches that the command line shares and that mean nothing in a notebook."""
 
 

@@ -161,7 +161,7 @@ def test_an_app_that_is_stopped_from_outside_and_not_by_ctrl_z_is_drawn_again_an
         screen.wait(b"quit")
         # Were there still another reader from before, one of the two would get each key.
         os.write(outer, b"?")
-        screen.wait(b"Help")
+        screen.wait(b"Guide")
         # Where the first of them is lost, the second closes the help, and the app goes on.
         os.write(outer, b"?")
         os.write(outer, b"q")

@@ -168,7 +168,9 @@ class GuideScreen(Dialog[None]):
 
     def _draw(self) -> None:
         """Draw the page again if it has another width."""
-        if self.is_mounted and self._page.scrollable_content_region.width != self._width:
+        # It may be removed before it was drawn.
+        is_there = self.is_mounted and bool(self.query("#page"))
+        if is_there and self._page.scrollable_content_region.width != self._width:
             self._show(self._shown, with_keys=self._with_keys)
 
     def _show(self, place: Place, *, with_keys: bool = False) -> None:
