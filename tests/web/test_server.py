@@ -131,7 +131,7 @@ async def test_a_stranger_gets_no_app(
     visitor = await visited()
     url = visitor.origin + path.format(place="ws")
     with pytest.raises(WSServerHandshakeError) as refused:
-        await visitor.client.ws_connect(url, headers={"Origin": visitor.origin} | headers)
+        await visitor.client.ws_connect(url, headers={"Origin": visitor.origin, **headers})
     assert (refused.value.status, started) == (403, [])
 
 

@@ -116,8 +116,8 @@ class PixelTerminal:
             if values["d"] == "I":
                 del self.images[int(values["i"])]
             elif values["d"] == "R":
-                first, last = int(values["x"]), int(values["y"])
-                self.images = {number: one for number, one in self.images.items() if not first <= number <= last}
+                gone = range(int(values["x"]), int(values["y"]) + 1)
+                self.images = {number: one for number, one in self.images.items() if number not in gone}
             # Images at placeholders are not placed on the screen, so `d=A` does not concern them.
             return
         self._keys, self._data = self._keys or values, self._data + data

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from textual.pilot import Pilot
 
-from tests.app.app_help import ready, settings, until
+from tests.app.app_help import lab, ready, settings, until
 from tests.app.graphics.decoder import PixelTerminal
 from tests.app.wires import on_wire, until_quiet, wire_of
 from tuisim.app.app import LabApp
@@ -106,10 +106,10 @@ async def test_who_wants_no_colors_gets_no_pixels(monkeypatch: pytest.MonkeyPatc
 async def test_glyphs_that_the_user_has_chosen_are_shown_instead() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await _answered(pilot, ANSWERS[Protocol.SIXEL])
-        pilot.app.choose_cells(CellSet.HALF)
+        lab(pilot).choose_cells(CellSet.HALF)
         await until_quiet(pilot)
         assert pilot.app.query_one(WorldView)._tiles is None
-        pilot.app.choose_cells(AUTO)
+        lab(pilot).choose_cells(AUTO)
         await _sharp(pilot, pilot.app.query_one(WorldView))
 
 
@@ -117,7 +117,7 @@ async def test_on_a_slow_link_only_a_picture_that_stands_still_has_pixels() -> N
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await _answered(pilot, ANSWERS[Protocol.SIXEL])
         world = pilot.app.query_one(WorldView)
-        pilot.app.picture_mode.is_slow = lambda: True
+        lab(pilot).picture_mode.is_slow = lambda: True
         await pilot.press("right")
         await pilot.press("right")
         assert world._tiles is None
@@ -128,7 +128,7 @@ async def test_pictures_that_have_gone_take_no_memory() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await _answered(pilot, ANSWERS[Protocol.SIXEL])
         gone = ref(pilot.app.query_one(WorldView)._tiles)
-        pilot.app.choose_cells(CellSet.HALF)
+        lab(pilot).choose_cells(CellSet.HALF)
         await until_quiet(pilot)
         gc.collect()
         assert gone() is None
