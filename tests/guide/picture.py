@@ -21,6 +21,8 @@ from tuisim.source import Program
 
 PICTURE = ROOT / "docs" / "tuisim.svg"
 SIZE = (120, 40)
+LOOKS = 6
+"""The screen is finished when it looks the same so often: it is refined step by step."""
 
 
 async def drawn() -> str:
@@ -37,11 +39,11 @@ async def drawn() -> str:
         await until(pilot, lambda: app.situation().looks_back)
         app.clear_notifications()
         await until(pilot, lambda: not app.screen.query(Toast))
-        before = ""
-        while before != (now := svg_of_cells(screen_cells(app), "tuisim")):
-            before = now
-            await pilot.pause(0.5)
-        return now
+        seen = [""]
+        while len(seen) < LOOKS or len(set(seen[-LOOKS:])) > 1:
+            await pilot.pause(0.3)
+            seen.append(svg_of_cells(screen_cells(app), "tuisim"))
+        return seen[-1]
 
 
 def main() -> None:
