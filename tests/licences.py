@@ -1,6 +1,6 @@
 """Lists the licences of everything that an install of tuisim brings.
 
-In a bare environment with nothing but tuisim: `python -m tests.licences > LICENCES.md`.
+In a bare environment with nothing but tuisim: `python -m tests.licences > tuisim/guide/pages/licences.md`.
 """
 
 from __future__ import annotations
@@ -9,9 +9,15 @@ import re
 from importlib.metadata import Distribution, distributions
 
 HEAD = """\
-# Licences of the packages that an install of tuisim brings
++++
+about = "The licence of each package that an install of tuisim brings."
+words = "license dependencies packages third party"
++++
 
-Made by `python -m tests.licences` from what the packages say about themselves, without the extras of tuisim.
+# Licences of the packages
+
+The packages that an install of tuisim brings, without its extras, and what each says about its licence. `python -m
+tests.licences` in a fresh environment makes this page.
 
 | package | licence |
 | --- | --- |

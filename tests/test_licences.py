@@ -1,4 +1,4 @@
-"""LICENCES.md lists every package that an install brings."""
+"""The guide's page of licences lists every package that an install brings."""
 
 from __future__ import annotations
 
@@ -7,7 +7,11 @@ import tomllib
 
 from tests.conftest import ROOT
 
-TABLE = dict(re.findall(r"^\| ([a-z0-9-]+) \| (.*?) \|$", (ROOT / "LICENCES.md").read_text(), re.MULTILINE)[1:])
+TABLE = dict(
+    re.findall(r"^\| ([a-z0-9-]+) \| (.*?) \|$", (ROOT / "tuisim/guide/pages/licences.md").read_text(), re.MULTILINE)[
+        1:
+    ]
+)
 
 
 def test_every_dependency_is_listed_with_its_licence() -> None:

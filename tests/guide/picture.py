@@ -19,7 +19,7 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.source import Program
 
-PICTURE = ROOT / "docs" / "tuisim.svg"
+PICTURE = Path(__file__).with_name("tuisim.svg")
 SIZE = (120, 40)
 LOOKS = 6
 """The screen is finished when it looks the same so often: it is refined step by step."""
@@ -49,8 +49,7 @@ async def drawn() -> str:
 def main() -> None:
     """Write the picture."""
     os.environ |= {"TUISIM_HOME": tempfile.mkdtemp(), "COLORTERM": "truecolor"}
-    PICTURE.parent.mkdir(exist_ok=True)
-    Path(PICTURE).write_text(asyncio.run(drawn()), encoding="utf-8")
+    PICTURE.write_text(asyncio.run(drawn()), encoding="utf-8")
 
 
 if __name__ == "__main__":

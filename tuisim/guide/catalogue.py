@@ -42,7 +42,7 @@ CONTENTS: Mapping[Part, tuple[str, ...]] = {
         "the-brick", "library-differences",
     ),
     Part.EXPLANATION: ("virtual-time", "how-sensors-see", "motion-and-drift", "the-real-robot"),
-    Part.PROJECT: ("contributing", "architecture", "security"),
+    Part.PROJECT: ("contributing", "architecture", "security", "licences"),
 }  # fmt: skip
 """The names of all pages, by part."""
 
