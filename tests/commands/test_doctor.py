@@ -120,9 +120,10 @@ def in_terminal(words: list[str], environment: dict[str, str], answers: dict[byt
     reader.start()
     code = "import fcntl, sys, termios; fcntl.ioctl(0, termios.TIOCSCTTY, 0); from tuisim.__main__ import main; "
     command = [sys.executable, "-c", code + "sys.exit(main())", *words]
+    inherited = {name: value for name, value in os.environ.items() if name != "NO_COLOR"}
     child = subprocess.run(
         command, stdin=theirs, stdout=theirs, stderr=theirs, cwd=ROOT, start_new_session=True, check=False,
-        env={**os.environ, "NO_COLOR": "", "LC_ALL": "C.UTF-8", **environment},
+        env={**inherited, "LC_ALL": "C.UTF-8", **environment},
     )  # fmt: skip
     left = termios.tcgetattr(theirs)[3]
     os.close(theirs)
@@ -131,11 +132,20 @@ def in_terminal(words: list[str], environment: dict[str, str], answers: dict[byt
     return bytes(shown), child.returncode, left
 
 
-def test_asks_the_terminal(home: Path) -> None:
-    shown, code, _ = in_terminal(["doctor"], {"TERM": "xterm-256color", "COLORTERM": "truecolor"}, ANSWERS)
-    text = shown.decode()
+ASKED = {
+    "colours": ({}, ("foot(1.21.0)", "truecolor", "octant", "sixel", " ms")),
+    "NO_COLOR": ({"NO_COLOR": "1"}, ("none, as TERM or NO_COLOR says", "braille", "says: the world is drawn")),
+    "NO_COLOR without a value": ({"NO_COLOR": ""}, ("is drawn with glyphs",)),
+}
+
+
+@pytest.mark.parametrize(("environment", "expected"), ASKED.values(), ids=ASKED)
+def test_asks_the_terminal(environment: dict[str, str], expected: tuple[str, ...], home: Path) -> None:
+    where = {"TERM": "xterm-256color", "COLORTERM": "truecolor", **environment}
+    shown, code, _ = in_terminal(["doctor"], where, ANSWERS)
+    text = " ".join(shown.decode().split())
     assert code == 0
-    for words in ("foot(1.21.0)", "truecolor", "octant", "sixel", " ms"):
+    for words in expected:
         assert words in text
 
 

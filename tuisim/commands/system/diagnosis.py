@@ -98,9 +98,15 @@ def cells_finding(cells: CellSet) -> Finding:
     return Finding("cells", value)
 
 
-def graphics_finding(protocol: str) -> Finding:
-    """Judge the protocol for real pixels; empty if there is none."""
-    return Finding("graphics", protocol or "none: the world is drawn with glyphs")
+def graphics_finding(protocol: str, *, has_colors: bool = True) -> Finding:
+    """Judge the protocol for real pixels.
+
+    Args:
+        protocol: Empty if there is none.
+        has_colors: Whether colours are used: pixels have some.
+    """
+    why = "" if has_colors else ", as TERM or NO_COLOR says"
+    return Finding("graphics", protocol or f"none{why}: the world is drawn with glyphs")
 
 
 def size_finding(cols: int, rows: int) -> Finding:

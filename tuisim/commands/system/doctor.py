@@ -118,7 +118,7 @@ def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) ->
         first_environment,
     )
     from tuisim.app.terminal.queries import TerminalFacts, cell_size_px
-    from tuisim.config.options import AUTO
+    from tuisim.config.options import AUTO, NO_PIXELS
 
     term = environment.get("TERM", "")
     answers = Answers(TerminalFacts(), None, None)
@@ -127,27 +127,35 @@ def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) ->
             answers = ask_everything(fd)
         except (OSError, termios.error):
             return [diagnosis.no_terminal_finding(), _locale_finding(environment)]
-    cells = cells_without_asking({**first_environment(), "TERM": term})
-    graphics = graphics_of(answers.facts, AUTO, cell_size_px(fd))
+    has_colors = _colors_without_asking(environment) != "none"
+    cells = cells_without_asking({**first_environment(), "TERM": term}, has_colors=has_colors)
+    graphics = graphics_of(answers.facts, AUTO if has_colors else NO_PIXELS, cell_size_px(fd))
     size = os.get_terminal_size(fd)
     return [
         diagnosis.terminal_finding(answers.facts.name, term, is_remote=is_remote),
         diagnosis.size_finding(size.columns, size.lines),
         _colors_finding(environment, is_remote),
         diagnosis.cells_finding(cells or cells_of(answers.facts.name, answers.octant_cols)),
-        diagnosis.graphics_finding(graphics.protocol if graphics else ""),
+        diagnosis.graphics_finding(graphics.protocol if graphics else "", has_colors=has_colors),
         *([] if term in SILENT else [diagnosis.latency_finding(answers.latency_s)]),
         _locale_finding(environment),
     ]
 
 
+def _colors_without_asking(environment: Mapping[str, str]) -> str:
+    """Return the colours that the environment decides, as the app takes them; `auto` if it leaves them open."""
+    from tuisim.app.terminal.probe import colors_without_asking
+
+    # Textual takes an empty variable as well.
+    return "none" if "NO_COLOR" in environment else colors_without_asking(environment.get("TERM", ""))
+
+
 def _colors_finding(environment: Mapping[str, str], is_remote: bool) -> Finding:
     from rich.console import Console
 
-    from tuisim.app.terminal.probe import colors_without_asking
     from tuisim.config.options import AUTO
 
-    known = "none" if environment.get("NO_COLOR") else colors_without_asking(environment.get("TERM", ""))
+    known = _colors_without_asking(environment)
     if known != AUTO:
         return diagnosis.colors_finding(known, is_remote=is_remote, is_fixed=True)
     system = Console(force_terminal=True, _environ=environment).color_system
