@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import statistics
 import sys
 import tempfile
 import time
@@ -19,6 +20,7 @@ from tests.bench.processes import ROOT, cpu_s
 from tests.bench.screen import Screen
 from tests.bench.sshd import Sshd, missing
 from tests.bench.terminal import Terminal
+from tuisim.config.options import CellSet, Protocol
 
 _UNLIMITED = Line("no limit")
 _SLOW = (Line("128 kbit/s", 128e3, 0.150), Line("256 kbit/s", 256e3, 0.150))
@@ -28,6 +30,12 @@ _QUIET_S = 0.6
 _DRIVES_S = 5.0
 """So long the robot has driven when a key is pressed: a backlog would have grown by then."""
 _SETTLE_S = 1.0
+_RESUMED_S = 2.0
+"""So long the robot has driven again when the next key is pressed."""
+_PICTURES = (
+    *(("--cells", cells) for cells in (CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT)),
+    *(("--pixels", protocol) for protocol in Protocol),
+)
 _TOASTS_S = 5.0
 """No notice stays longer."""
 _PATIENCE_S = 90.0
@@ -148,6 +156,8 @@ def wire(effort: Effort) -> Iterator[Figure]:
             yield from _rests(server, circle, short, effort.watch_s)
             for line in _SLOW:
                 yield from _answers(server, line, circle)
+            for words in _PICTURES:
+                yield from _driven(server, _SLOW[-1], circle, words, effort.stops)
 
 
 def _app(*words: str) -> list[str]:
@@ -216,3 +226,25 @@ def _answers(server: Sshd, line: Line, circle: Path) -> Iterator[Figure]:
                 key, shows = _DIALOGS[name]
                 yield Figure(f"{name} opens, {line.name}", remote.paint(key, shows)[1], "s", most=1)
                 yield Figure(f"{name} closes, {line.name}", remote.paint(b"\x1b", shows, on=False)[1], "s", most=1)
+
+
+def _driven(server: Sshd, line: Line, circle: Path, words: tuple[str, str], stops: int) -> Iterator[Figure]:
+    """Yield how soon a key is answered while the robot drives, and what is sent, with a set of glyphs or a protocol."""
+    name = f"{' '.join(words)[2:]}, {line.name}"
+    with Remote(server, line, _app(str(circle), "-R", "--colors", "truecolor", *words)) as remote:
+        remote.until("running")
+        remote.terminal.read_for(_DRIVES_S)
+        before = remote.link.down_bytes, remote.terminal.queries
+        remote.terminal.read_for(_DRIVES_S)
+        down, frames = remote.link.down_bytes - before[0], remote.terminal.queries - before[1]
+        yield Figure(f"driving, {name}", down / _DRIVES_S / 1e3, "kB/s")
+        yield Figure(f"driving, {name}", frames / _DRIVES_S, "frames/s")
+        took_s = []
+        for _ in range(stops):
+            remote.terminal.type(b" ")
+            took_s.append(remote.until("paused"))
+            remote.terminal.type(b" ")
+            remote.until("running")
+            remote.terminal.read_for(_RESUMED_S)
+        yield Figure(f"space until 'paused', {name}", statistics.median(took_s), "s", most=1)
+        yield Figure(f"space until 'paused', {name}, longest", max(took_s), "s")
