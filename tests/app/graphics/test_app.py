@@ -48,7 +48,7 @@ def _drawn(view: PixelView, protocol: Protocol) -> np.ndarray[Any, Any]:
 
 async def _sharp(pilot: Pilot[Any], view: PixelView) -> None:
     """Wait until a picture is drawn with pixels: while it moves and the link may be slow, it need not be."""
-    await until(pilot, lambda: view._tiles is not None)
+    await until(pilot, lambda: view._tiles is not None and not view._tiles.is_coarse)
     await until_quiet(pilot)
 
 
@@ -113,15 +113,35 @@ async def test_glyphs_that_the_user_has_chosen_are_shown_instead() -> None:
         await _sharp(pilot, pilot.app.query_one(WorldView))
 
 
-async def test_on_a_slow_link_only_a_picture_that_stands_still_has_pixels() -> None:
+@pytest.mark.parametrize("protocol", Protocol)
+async def test_on_a_slow_link_half_blocks_are_sent_for_what_moves(protocol: Protocol) -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
-        await _answered(pilot, ANSWERS[Protocol.SIXEL])
+        await _answered(pilot, ANSWERS[protocol])
         world = pilot.app.query_one(WorldView)
+        await _sharp(pilot, world)
+        await pilot.press("right")
+        await until_quiet(pilot)
+        wire_of(pilot).sent.clear()
         lab(pilot).picture_mode.is_slow = lambda: True
         await pilot.press("right")
-        await pilot.press("right")
-        assert world._tiles is None
+        assert world._tiles is not None and world._tiles.is_coarse
+        codes = "".join(wire_of(pilot).sent)
+        assert "▀" in codes and len(codes) < 4_000
+        wire_of(pilot).sent.clear()
         await _sharp(pilot, world)
+        assert len("".join(wire_of(pilot).sent)) < 20_000
+
+
+@pytest.mark.parametrize("protocol", Protocol)
+async def test_half_blocks_become_pixels_once_the_picture_stands_still(protocol: Protocol) -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        lab(pilot).picture_mode.is_slow = lambda: True
+        await _answered(pilot, ANSWERS[protocol])
+        for key in ("right", "a"):
+            await pilot.press(key)
+        world = pilot.app.query_one(WorldView)
+        await _sharp(pilot, world)
+        assert np.array_equal(_part(_seen(pilot), world), _drawn(world, protocol))
 
 
 async def test_pictures_that_have_gone_take_no_memory() -> None:

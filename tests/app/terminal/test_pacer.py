@@ -182,3 +182,15 @@ def test_a_link_is_slow_until_the_first_answer_and_quick_again_after_a_rest() ->
     assert seen == [True]
     assert not line.pacer.is_slow
     assert line.pacer.is_idle
+
+
+def test_fine_frames_are_tried_less_and_less_often_on_a_link_that_does_not_carry_them() -> None:
+    line = Line(32_000, 0.150)
+    was_slow, tries = True, 0
+    for _ in range(600):
+        slow = line.pacer.is_slow
+        line.drive(0.1, size=FRAME_BYTES if slow else 5 * FRAME_BYTES)
+        tries += was_slow and not slow
+        was_slow = slow
+
+    assert 3 <= tries <= 6

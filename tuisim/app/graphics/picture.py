@@ -53,6 +53,8 @@ class PictureCell(NamedTuple):
     col: int
     version: int
     """Number of its last change."""
+    half_block: int | None = None
+    """What is drawn in place of its pixels, see `render.cells.Cells`: on a slow link it has far fewer bytes."""
 
 
 class Rectangle(NamedTuple):
@@ -87,6 +89,7 @@ class TilePicture:
         self.graphics = graphics
         self._points: Pixels = np.empty((0, 0, 3), np.uint8)
         self._versions = np.empty((0, 0), np.int64)
+        self._coarse: Mask = np.zeros((0, 0), bool)
         self._changes = 0
         self._first_image = 1 + next(_COUNT) % _MOST_PICTURES * _MOST_IMAGES
         self._tiles: dict[tuple[int, int], tuple[int, int]] = {}
@@ -98,8 +101,17 @@ class TilePicture:
         rows, cols = self._versions.shape
         return rows, cols
 
-    def put(self, points: Pixels) -> list[tuple[int, int, int]]:
-        """Show other points, with `Graphics.cell_points` for each cell.
+    @property
+    def is_coarse(self) -> bool:
+        """Whether cells are drawn as half blocks, to be refined."""
+        return bool(self._coarse.any())
+
+    def put(self, points: Pixels, coarse: bool = False) -> list[Run]:
+        """Show other points.
+
+        Args:
+            points: `Graphics.cell_points` for each cell.
+            coarse: Whether to draw the cells that change as half blocks.
 
         Returns:
             Runs of changed cells: row, first column, number of cells. All rows if the size has changed.
@@ -109,14 +121,30 @@ class TilePicture:
         self._changes += 1
         if points.shape != self._points.shape:
             self._versions = np.full((rows, cols), self._changes)
+            self._coarse = np.full((rows, cols), coarse)
             self._points = points
             return [(row, 0, cols) for row in range(rows)]
         differs = (points != self._points).reshape(rows, height, cols, width * 3).any(axis=(1, 3))
         if self.graphics.protocol is Protocol.KITTY and differs.any():
             differs = _whole_tiles(differs)
         self._versions[differs] = self._changes
+        self._coarse[differs] = coarse
         self._points = points
-        return [(one.top, one.left, one.right - one.left) for one in _row_runs(differs)]
+        return _runs(differs)
+
+    def refine(self, cells: int) -> list[Run]:
+        """Draw the pixels of about so many of the cells that are drawn as half blocks.
+
+        Returns:
+            Runs of changed cells: row, first column, number of cells.
+        """
+        rows, cols = np.nonzero(self._coarse)
+        some: Mask = np.zeros(self._coarse.shape, bool)
+        some[rows[:cells], cols[:cells]] = True
+        if self.graphics.protocol is Protocol.KITTY:
+            some = _whole_tiles(some)
+        self._coarse[some] = False
+        return _runs(some)
 
     def half_blocks(self, row: int) -> list[int]:
         """Return the cells of a row as half blocks (see `render.cells.Cells`), for what cannot show pixels."""
@@ -133,7 +161,12 @@ class TilePicture:
 
     def row(self, row: int) -> list[PictureCell]:
         """Return the cells of a row."""
-        return [PictureCell(self, row, col, version) for col, version in enumerate(self._versions[row].tolist())]
+        versions, coarse = self._versions[row].tolist(), self._coarse[row]
+        blocks = self.half_blocks(row) if coarse.any() else []
+        return [
+            PictureCell(self, row, col, version, blocks[col] if is_coarse else None)
+            for col, (version, is_coarse) in enumerate(zip(versions, coarse.tolist(), strict=True))
+        ]
 
     def draw(self, places: Sequence[tuple[int, int, PictureCell]], is_shown: Callable[[int, int], bool]) -> str:
         """Return the codes that draw some cells.
@@ -226,6 +259,9 @@ class TilePicture:
         return kitty.through_tmux(codes) if self.graphics.in_tmux else codes
 
 
+Run = tuple[int, int, int]
+"""Row, first column and number of some cells of a picture."""
+
 Mask = np.ndarray[tuple[int, int], np.dtype[np.bool_]]
 """Some cells of a picture, shape (rows, columns)."""
 
@@ -265,6 +301,10 @@ def rectangles(changed: Mask, may_draw: Callable[[Rectangle], bool]) -> list[Rec
         else:
             found.append(run)
     return found
+
+
+def _runs(changed: Mask) -> list[Run]:
+    return [(one.top, one.left, one.right - one.left) for one in _row_runs(changed)]
 
 
 def _row_runs(changed: Mask) -> Iterator[Rectangle]:

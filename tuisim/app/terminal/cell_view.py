@@ -65,7 +65,9 @@ class RowsView(Widget):
 REFINE_S = 0.1
 """Time between two steps in which coarse cells become fine."""
 REFINED_CELLS = 100
-"""Cells that become fine in one step."""
+"""Cells that become fine in one step on a slow link."""
+QUICKLY_REFINED_CELLS = 400
+"""Cells that become fine in one step on a link that is not known to be slow."""
 STILL_S = 0.3
 """An image that has not changed for this long stands still."""
 
@@ -101,10 +103,8 @@ class PixelView(RowsView):
 
     @property
     def graphics(self) -> Graphics | None:
-        """How pixels are drawn now; None for cells: on a slow link, only an image that stands still has pixels."""
-        picture_mode = picture_mode_of(self.app)
-        is_moving = time.monotonic() - self._changed_s < STILL_S
-        return None if is_moving and picture_mode.is_slow() else picture_mode.graphics
+        """How pixels are drawn; None for cells."""
+        return picture_mode_of(self.app).graphics
 
     def cell_for(self, graphics: Graphics | None) -> CellPoints:
         """Return the points of an image in a cell; `graphics` is None for the app's glyphs."""
@@ -144,17 +144,28 @@ class PixelView(RowsView):
         if self._tiles is None or self._tiles.graphics != graphics:
             self._tiles = TilePicture(graphics)
             self._forget_cells()
-        runs = self._tiles.put(picture)
+        runs = self._tiles.put(picture, picture_mode_of(self.app).is_slow())
         rows, _ = self._tiles.size
         self._changed_s = time.monotonic()
+        self._refine_later(self._tiles.is_coarse)
         if len(self._strips) != rows:
             self._strips = [None] * rows
             self.refresh()
-            return
-        for row, _, _ in runs:
+        else:
+            self._refresh_runs(runs)
+
+    def _refresh_runs(self, runs: Iterable[tuple[int, int, int]]) -> None:
+        """Draw cells anew, as (row, first column, number of cells)."""
+        regions = []
+        for row, col, length in runs:
             self._strips[row] = None
-        if runs:
-            self.refresh(*[Region(col, row, length, 1) for row, col, length in runs])
+            regions.append(Region(col, row, length, 1))
+        if regions:
+            self.refresh(*regions)
+
+    def _refine_later(self, is_coarse: bool) -> None:
+        if is_coarse and self._refine is None:
+            self._refine = self.set_interval(REFINE_S, self._refine_some)
 
     def _forget_cells(self) -> None:
         self._cells, self._strips = np.empty((0, 0), np.int64), []
@@ -180,9 +191,7 @@ class PixelView(RowsView):
         cells[at] = self._fitted(glyphs, at, was[at] if as_before else None)
         self._put(cells)
         self._changed_s = time.monotonic()
-        is_to_be_refined = self._coarse.any() or picture_mode_of(self.app).graphics is not None
-        if is_to_be_refined and self._refine is None:
-            self._refine = self.set_interval(REFINE_S, self._refine_some)
+        self._refine_later(bool(self._coarse.any()))
 
     def _fitted(self, glyphs: GlyphSet, at: CellIndex, before: Cells | None) -> Cells:
         mode = self.color_mode
@@ -197,29 +206,31 @@ class PixelView(RowsView):
             return
         runs = changed_runs(self._cells, cells)
         self._cells = cells
-        for row, _, _ in runs:
-            self._strips[row] = None
-        if runs:
-            self.refresh(*[Region(col, row, length, 1) for row, col, length in runs])
+        self._refresh_runs(runs)
 
     def _refine_some(self) -> None:
-        """Draw some of the coarse cells with fine glyphs: on a slow link only while nothing else is drawn."""
+        """Draw some of the coarse cells fine: on a slow link only while nothing else is drawn."""
         picture_mode = picture_mode_of(self.app)
-        is_still = time.monotonic() - self._changed_s >= STILL_S
-        if not picture_mode.is_idle() or (picture_mode.is_slow() and not is_still):
+        is_slow, is_still = picture_mode.is_slow(), time.monotonic() - self._changed_s >= STILL_S
+        if not picture_mode.is_idle() or (is_slow and not is_still):
             return
-        if picture_mode.graphics is not None:
+        count = REFINED_CELLS if is_slow else QUICKLY_REFINED_CELLS
+        if self._tiles is not None:
+            self._refresh_runs(self._tiles.refine(count))
+            is_coarse = self._tiles.is_coarse
+        else:
+            self._refine_glyphs(count)
+            is_coarse = bool(self._coarse.any())
+        if not is_coarse:
             self._stop_refining()
-            self.redraw()
-            return
+
+    def _refine_glyphs(self, count: int) -> None:
         rows, cols = np.nonzero(self._coarse)
-        at = rows[:REFINED_CELLS], cols[:REFINED_CELLS]
+        at = rows[:count], cols[:count]
         self._coarse[at] = False
         cells = self._cells.copy()
         cells[at] = self._fitted(self._glyphs, at, None)
         self._put(cells)
-        if not self._coarse.any():
-            self._stop_refining()
 
     def _stop_refining(self) -> None:
         if self._refine is not None:

@@ -147,7 +147,9 @@ def _pieces_of_part(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
 
 def _cells(strip: Strip, mode: TextMode) -> Sequence[Cell]:
     if isinstance(strip, PictureStrip):
-        return [("", cell) for cell in strip.parts]
+        return [
+            ("", cell) if cell.half_block is None else _image_cell(cell.half_block, mode.depth) for cell in strip.parts
+        ]
     if isinstance(strip, CellStrip):
         return [_image_cell(cell, mode.depth) for cell in strip.cells]
     return [cell for text, style, control in strip if not control for cell in _written(text, style, mode)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable
+from math import inf
 
 from textual.timer import Timer
 from textual.widget import Widget
@@ -65,7 +66,8 @@ LARGE_BYTES = 1_500
 
 
 SLOW_S = 2.0
-"""A link on which a frame had to queue counts as slow for this long."""
+"""A link on which a frame had to queue counts as slow for this long: twice as long each time this was too short."""
+MOST_SLOW_S = 16.0
 
 
 class Pacer:
@@ -95,6 +97,8 @@ class Pacer:
         self._allowed = 1
         self._queued_s: float | None = None
         """When a frame was last found to have queued on the link."""
+        self._slow_s = SLOW_S
+        """For how long the link counts as slow after that."""
         self.answers = False
         """Whether the terminal has ever answered."""
 
@@ -106,7 +110,7 @@ class Pacer:
         now = self._clock()
         if not self.answers:
             return self._proof_s is None or now < self._proof_s
-        return self._queued_s is not None and now - self._queued_s < SLOW_S
+        return self._queued_s is not None and now - self._queued_s < self._slow_s
 
     @property
     def is_idle(self) -> bool:
@@ -160,9 +164,18 @@ class Pacer:
         self._round_trip_s = took_s if first else min(took_s, self._round_trip_s + 0.001)
         queued_s = took_s - self._round_trip_s
         if queued_s > self._gap_s:
-            self._queued_s = self._heard_s
+            self._has_queued(self._heard_s)
         if queued_s > 2 * self._gap_s:
             self._allowed = 1
         else:
             # At least two, or an answer that arrives just after a frame timer would cost the next frame.
             self._allowed = min(self._allowed + 1, MAX_ON_THE_WAY, 2 + int(self._round_trip_s / self._gap_s))
+
+    def _has_queued(self, now: float) -> None:
+        rested_s = inf if self._queued_s is None else now - self._queued_s
+        if rested_s >= 2 * self._slow_s:
+            self._slow_s = SLOW_S
+        elif rested_s >= self._slow_s:
+            # Fine frames were too much for it as soon as they were drawn again.
+            self._slow_s = min(2 * self._slow_s, MOST_SLOW_S)
+        self._queued_s = now
