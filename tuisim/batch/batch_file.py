@@ -77,6 +77,8 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
     path = path.expanduser()
     data = dict(files.table(files.read_file(path, ConfigError), Location(str(path))))
     at = Location(str(path)).at(BATCH_KEY)
+    if BATCH_KEY not in data:
+        raise ConfigError("is no batch", f"a batch has a table [{BATCH_KEY}]", file=str(path))
     table = files.convert(data.pop(BATCH_KEY), _Batch, at)
     folder = path.parent
     world = None

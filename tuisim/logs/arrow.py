@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 PER_S = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
 """Arrow's units of time, by their number per second."""
 
+_PANDAS_KEY = b"pandas"
 METADATA_KEY = b"tuisim"
 """Key of the metadata in the schema of Parquet and Arrow files."""
 
@@ -167,13 +168,14 @@ def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
 
     try:
         file = pq.ParquetFile(path)
+        _check_names(file.schema_arrow)
     except (pa.ArrowException, OSError, ValueError) as error:
         hint = "a truncated Parquet file cannot be read: its index is at its end"
         raise LogError(f"not a readable Parquet file: {_short(error)}", hint, file=str(path)) from error
     with file:
         count = file.metadata.num_row_groups
         if not count:
-            yield 1.0, file.schema_arrow.empty_table()
+            yield 1.0, _named(file.schema_arrow.empty_table(), notes)
         first = 1
         for at in range(count):
             rows = file.metadata.row_group(at).num_rows
@@ -197,7 +199,7 @@ def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
             with pa.ipc.open_file(source) as reader:
                 count = reader.num_record_batches
                 if not count:
-                    yield 1.0, reader.schema.empty_table()
+                    yield 1.0, _named(reader.schema.empty_table(), notes)
                 for at in range(count):
                     try:
                         part = _whole(reader.get_batch(at))
@@ -228,9 +230,10 @@ def _stream_parts(path: Path, source: Any, start: int, notes: Notes) -> Iterator
     source.seek(start)
     try:
         stream = pa.ipc.open_stream(source)
+        _check_names(stream.schema)
     except (pa.ArrowException, OSError, ValueError) as error:
         raise LogError(f"not a readable Arrow file: {_short(error)}", file=str(path)) from error
-    yield 0.0, stream.schema.empty_table()
+    yield 0.0, _named(stream.schema.empty_table(), notes)
     while True:
         try:
             part = _whole(stream.read_next_batch())
@@ -240,6 +243,11 @@ def _stream_parts(path: Path, source: Any, start: int, notes: Notes) -> Iterator
             notes.say(_CUT_OFF)
             return
         yield source.tell() / size, _named(part, notes)
+
+
+def _check_names(schema: pa.Schema) -> None:
+    """Raise a ValueError if the name of a column is not UTF-8, as in a damaged file."""
+    _ = schema.names
 
 
 def _whole(batch: pa.RecordBatch) -> pa.Table:
@@ -259,7 +267,20 @@ def _named(part: pa.Table, notes: Notes) -> pa.Table:
         usual = _usual(field.type)
         if usual != field.type:
             renamed = renamed.set_column(at, renamed.field(at).with_type(usual), part.column(at).cast(usual))
-    return renamed.replace_schema_metadata(part.schema.metadata)
+    return _readable_by_pandas(renamed.replace_schema_metadata(part.schema.metadata), notes)
+
+
+def _readable_by_pandas(part: pa.Table, notes: Notes) -> pa.Table:
+    """Return the table, without the types that pandas has stored with it if they are damaged."""
+    metadata = part.schema.metadata or {}
+    if _PANDAS_KEY not in metadata:
+        return part
+    try:
+        part.schema.empty_table().to_pandas()
+    except (pa.ArrowException, ValueError, KeyError, TypeError, AttributeError):
+        notes.say("the types of the columns, as stored by pandas, are damaged and were ignored")
+        return part.replace_schema_metadata({key: text for key, text in metadata.items() if key != _PANDAS_KEY})
+    return part
 
 
 def _usual(kind: pa.DataType) -> pa.DataType:

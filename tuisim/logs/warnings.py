@@ -8,6 +8,10 @@ from tuisim.errors import counted
 
 ROWS_NAMED = 3
 """Rows that a warning names; more are only counted."""
+MOST_SAID = 8
+"""Warnings about a whole file that are told; more are only counted."""
+MOST_CHARACTERS = 200
+"""Length of a warning; a longer one, which quotes something of the file, is cut."""
 
 
 class Notes:
@@ -53,4 +57,6 @@ class Notes:
             where = f" ({'row' if len(rows) == 1 == count else 'rows'} {', '.join(map(str, rows))}" if rows else ""
             where += f"{', …' if count > len(rows) else ''})" if rows else ""
             texts.append(f"{counted(count, *text)}{where}")
-        return (*self._general, *texts)
+        said = [text if len(text) <= MOST_CHARACTERS else f"{text[:MOST_CHARACTERS]}…" for text in self._general]
+        more = len(said) - MOST_SAID
+        return (*said[:MOST_SAID], *([counted(more, "more warning")] if more > 0 else []), *texts)

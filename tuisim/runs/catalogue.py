@@ -74,6 +74,8 @@ class RunInfo:
     """Tags, separated by spaces."""
 
 
+_MOST_RUNS = 1 << 40
+"""A greater number than that of any run comes from a damaged file, and would leave none for the next run."""
 _NAMES = tuple(field.name for field in fields(RunInfo))
 _COLUMNS = ", ".join(f'"{name}"' for name in _NAMES)
 _INSERT = f"INSERT INTO runs ({_COLUMNS}) VALUES ({', '.join('?' * len(_NAMES))})"
@@ -159,6 +161,9 @@ class Catalogue:
             except sqlite3.DatabaseError as error:
                 if not _must_be_made_again(error):
                     raise
+            except UnicodeDecodeError:
+                # SQLite quotes a damaged schema in its message, which Python then cannot read.
+                pass
             self._make_again()
             with closing(_open(self._path)) as connection:
                 return operation(connection)
@@ -232,7 +237,7 @@ def _open(path: Path) -> sqlite3.Connection:
         version = connection.execute("PRAGMA user_version").fetchone()[0]
         if version != _SCHEMA_VERSION:
             raise _ForeignFile(f"version {version}")
-    except sqlite3.Error:
+    except (sqlite3.Error, UnicodeDecodeError):
         connection.close()
         raise
     return connection
@@ -254,6 +259,8 @@ def _is_sound(path: Path) -> bool:
                 return False
             _all_rows(connection)
             return True
+    except UnicodeDecodeError:
+        return False
     except sqlite3.DatabaseError as error:
         if _must_be_made_again(error):
             return False
@@ -265,8 +272,9 @@ def _insert(connection: sqlite3.Connection, info: RunInfo) -> int:
     listed = connection.execute("SELECT number FROM runs WHERE id = ?", (info.id,)).fetchone()
     if listed is not None:
         return int(listed[0])
-    free = not connection.execute("SELECT 1 FROM runs WHERE number = ?", (info.number,)).fetchone()
-    number = info.number if info.number > 0 and free else None
+    is_sound = 0 < info.number <= _MOST_RUNS
+    taken = is_sound and connection.execute("SELECT 1 FROM runs WHERE number = ?", (info.number,)).fetchone()
+    number = info.number if is_sound and not taken else None
     # A seed may exceed the integers of SQLite.
     changed = {"number": number, "seed": str(info.seed), "end": info.end or ""}
     row = [_storable(changed.get(name, getattr(info, name))) for name in _NAMES]

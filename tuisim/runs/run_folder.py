@@ -37,6 +37,8 @@ _ACTION_COUNTS = 1 << 16
 
 
 _Kind = TypeVar("_Kind")
+MOST_INTEGER = (1 << 63) - 1
+"""What the catalogue can hold."""
 _ANY_END = Ended(End.FINISHED, 0, 0)
 
 
@@ -173,7 +175,7 @@ def read_run_file(folder: Path) -> dict[str, Any]:
 
 
 def _typed(value: Any, kind: type[_Kind], name: str) -> _Kind:
-    if not isinstance(value, kind):
+    if not isinstance(value, kind) or (isinstance(value, int) and abs(value) > MOST_INTEGER):
         raise TypeError(f"{name} is {value!r}")
     return value
 
@@ -277,7 +279,8 @@ def mat_files(run: StoredRun) -> FieldFiles:
             raise LogError(f"the mat {name} has changed since the run", file=str(background(name).image))
     except ConfigError as error:
         raise _no_mat(run, error) from error
-    except (KeyError, TypeError, ValueError) as error:
+    # The system refuses some names that come from damaged files.
+    except (KeyError, TypeError, ValueError, OSError) as error:
         raise LogError(f"the mat of the run is not named: {error}", file=str(run.folder)) from error
     return found
 

@@ -29,6 +29,7 @@ from tuisim.protocol import RUN_STATES, Ended, Unended
 from tuisim.runs.catalogue import HOME_HINT, Catalogue, RunInfo, locked
 from tuisim.runs.packed_files import compact
 from tuisim.runs.run_folder import (
+    MOST_INTEGER,
     RUN_FILE,
     StoredRun,
     new_run_data,
@@ -433,8 +434,10 @@ def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
     )
     if end is None:
         return info
-    time_s = int(end["time_ns"]) / NS_PER_S
-    return replace(info, end=RUN_STATES[end["end"]], ticks=int(end["tick"]), time_s=time_s, summary=str(end["summary"]))
+    ticks, time_s = int(end["tick"]), int(end["time_ns"]) / NS_PER_S
+    if ticks > MOST_INTEGER:
+        raise ValueError(f"tick is {ticks}")
+    return replace(info, end=RUN_STATES[end["end"]], ticks=ticks, time_s=time_s, summary=str(end["summary"]))
 
 
 def _delete(folder: Path) -> None:

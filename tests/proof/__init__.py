@@ -1,0 +1,1 @@
+"""Tries to break tuisim: `python -m tests.proof [KIND…] [--minutes N] [--seed N]`."""

@@ -1,0 +1,21 @@
+"""The cases that have shown a fault, which was mended: each stays a quick test."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+FOUND: Sequence[tuple[str, str]] = (
+    ("damage", "arrow:1013840480"),
+    ("damage", "arrow:1112074422"),
+    ("damage", "arrow:2208802654"),
+    ("damage", "arrow:3138981886"),
+    ("damage", "arrow:3568964177"),
+    ("damage", "batch:1302420243"),
+    ("damage", "catalogue:554407099"),
+    ("damage", "parquet:1485874645"),
+    ("damage", "parquet:1560589855"),
+    ("damage", "parquet:644934153"),
+    ("damage", "run:2508605289"),
+    ("damage", "run:3138339898"),
+)
+"""Kind, and name of the case."""

@@ -1,0 +1,11 @@
+"""The kinds of attempts; to add one, write a module with a `Kind`, and name it here."""
+
+from __future__ import annotations
+
+from tests.proof.damage import DAMAGE
+from tests.proof.kind import Kind
+
+KINDS: dict[str, Kind] = {
+    "damage": DAMAGE,
+}
+"""Every kind by name."""
