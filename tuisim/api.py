@@ -99,13 +99,7 @@ def choices_of(choices: Mapping[str, Any]) -> dict[str, Any]:
         option = known[name]
         if value is None:
             continue
-        if option.convert is None:
-            if not isinstance(value, bool):
-                raise ConfigError(f"must be True or False, got {value!r}", key=name)
-            found[option.field] = option.value if value else not option.value
-        else:
-            text = ("on" if value else "off") if isinstance(value, bool) else str(value)
-            found[option.field] = option.convert(text, name)
+        found[option.field] = option.converted(value, name)
     return found
 
 

@@ -55,6 +55,7 @@ COMMANDS: Mapping[str, Entry] = {
     "programs": Entry("commands.listings:programs", "List the example programs"),
     "profiles": Entry("commands.listings:profiles", "List the profiles and the simulated time of each call"),
     "kernel": Entry("commands.kernel:kernel", "Install the Jupyter kernel for a course's notebooks"),
+    "config": Entry("commands.system.user_config:config", "Show your settings, and where each comes from"),
     "doctor": Entry("commands.system.doctor:doctor", "Check the terminal and the machine; restore a terminal"),
     "completion": Entry("cli:completion", "Print a script that completes commands in your shell"),
     "man": Entry("cli:man", "Print the page for man"),

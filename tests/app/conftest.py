@@ -19,7 +19,7 @@ from textual.css.tokenizer import Token
 from textual.notifications import Notification
 
 from tests.app.terminals import Terminal
-from tuisim.config import preferences
+from tuisim.config import preferences, user_config
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -85,8 +85,9 @@ def _notices_stay(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(autouse=True)
 def _own_preferences(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A test finds no arrangement of panels that another one has kept."""
+    """A test finds no arrangement of panels and no settings that another one has kept."""
     monkeypatch.setattr(preferences, "preferences_file", lambda: tmp_path / "preferences.json")
+    monkeypatch.setattr(user_config, "config_folder", lambda: tmp_path)
 
 
 @pytest.fixture

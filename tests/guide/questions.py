@@ -36,5 +36,9 @@ QUESTIONS = {
     "mark the programs of my class": "marking",
     "run a program with 100 seeds": "experiments",
     "will it work on the real robot": "the-real-robot",
+    "where are my settings saved": "settings",
+    "always start with the light theme": "settings",
+    "remap a key": "settings",
+    "vim keys in the editor": "settings",
     "is it safe to run a program from somebody else": "security",
 }

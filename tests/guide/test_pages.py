@@ -13,6 +13,7 @@ from tests.conftest import ROOT, Command
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.cli import COMMANDS
 from tuisim.config.options import OPTIONS
+from tuisim.config.user_config import SETTINGS
 from tuisim.core.profile import PROFILES
 from tuisim.guide.catalogue import Part, pages
 from tuisim.guide.tables import TABLES, table, tables_in
@@ -21,6 +22,7 @@ from tuisim.runs.frames import SAMPLE_COLUMNS
 WORDS_OF = {
     "keys": [action.key_label for action in ACTIONS.values()],
     "commands": [f"tuisim {name}" for name in COMMANDS],
+    "settings": [one.name for one in SETTINGS.values()],
     "options": [flag for option in OPTIONS for flag in option.flags],
     "profile-rules": list(PROFILES),
     "samples": list(SAMPLE_COLUMNS),

@@ -13,8 +13,9 @@ from rich.text import Text
 from textual import events
 from textual.binding import Binding, BindingType
 from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
+from textual.dom import DOMNode
+from textual.keys import format_key
 from textual.message import Message
-from textual.message_pump import MessagePump
 from textual.theme import ThemeProvider
 from textual.widget import Widget
 
@@ -61,7 +62,7 @@ class Action(Generic[Host, Now]):
     @property
     def key_label(self) -> str:
         """The display name of the key."""
-        return self.shown_key or ", ".join(map(_label, self.key.split(",")))
+        return self.shown_key or ", ".join(map(label_of_key, self.key.split(",")))
 
 
 _LABELS = {
@@ -85,11 +86,14 @@ _LABELS = {
     "pageup": "page up",
     "pagedown": "page down",
 }
+_WORDS = frozenset({"space", "home", "end", "escape", "enter", "tab", "delete", "backspace", "insert"})
+"""Keys whose names are their display names."""
 
 
-def _label(key: str) -> str:
+def label_of_key(key: str) -> str:
+    """Return the display name of a key in Textual's notation."""
     modifier, _, name = key.rpartition("+")
-    label = _LABELS.get(name, name)
+    label = _LABELS.get(name) or (name if name in _WORDS else format_key(name))
     if len(label) in (2, 3) and label[0] == "f" and label[1:].isdigit():
         label = label.upper()
     return f"⇧{label}" if modifier == "shift" else f"{modifier}+{label}" if modifier else label
@@ -97,14 +101,33 @@ def _label(key: str) -> str:
 
 def key_bindings(actions: Iterable[Action[Any, Any]]) -> list[BindingType]:
     """Return the bindings of an `ActionHost`."""
-    return [Binding(action.key, f"act('{action.id}')", action.title, show=False) for action in actions]
+    return [Binding(action.key, _call(action), action.title, show=False) for action in actions]
 
 
-class ActionHost(MessagePump):
+def _call(action: Action[Any, Any]) -> str:
+    return f"act('{action.id}')"
+
+
+class ActionHost(DOMNode):
     """An app or a screen whose keys are lines of a table; the command palette offers them by title."""
 
-    ACTIONS: ClassVar[Mapping[str, Action[Any, Any]]] = {}
+    ACTIONS: Mapping[str, Action[Any, Any]] = {}
     """The lines by id."""
+
+    def take_keys(self, actions: Mapping[str, Action[Any, Any]]) -> None:
+        """Use a table with other keys of the same actions."""
+        changed = [action for name, action in actions.items() if action.key != self.ACTIONS[name].key]
+        calls = {_call(action) for action in changed}
+        bindings = self._bindings.key_to_bindings
+        for key, bound in [*bindings.items()]:
+            if kept := [one for one in bound if one.action not in calls]:
+                bindings[key] = kept
+            else:
+                del bindings[key]
+        for action in changed:
+            for key in action.key.split(","):
+                self._bindings.bind(key, _call(action), action.title, show=False)
+        self.ACTIONS = actions
 
     def situation(self) -> Any:
         """Return the state that decides which keys are available."""

@@ -26,6 +26,7 @@ from tuisim.app.debugger import AppDebugger
 from tuisim.app.editor.document import Document
 from tuisim.app.feed import Feed, PastView, Series, sample_series
 from tuisim.app.goals import AppGoals
+from tuisim.app.keymap import check_theme, with_keys
 from tuisim.app.layout.borders import LAYOUT_KEYS
 from tuisim.app.lesson import AppLesson
 from tuisim.app.loader import PERIOD_S, Loader
@@ -41,8 +42,9 @@ from tuisim.app.terminal.pacer import Pacer
 from tuisim.app.terminal.picture_mode import PictureMode, choose_colors, picture_mode_for
 from tuisim.app.workspace import Workspace
 from tuisim.config.options import AUTO, DEFAULT_FPS, Settings
+from tuisim.config.user_config import FILE, UserConfig, load_config
 from tuisim.core.spec import RunSpec
-from tuisim.errors import TuisimError
+from tuisim.errors import ConfigError, TuisimError
 from tuisim.protocol import End, Ended
 from tuisim.runs.process import warm_up
 from tuisim.runs.run_folder import StoredRun
@@ -57,6 +59,8 @@ if TYPE_CHECKING:
 
 AFTER_FIRST_PAINT_S = 0.05
 """Large data is sent this much later: the screen is painted more than once at startup."""
+MOST_PROBLEMS = 3
+"""So many errors of `config.toml` are shown."""
 _CURSOR_QUERY = "\x1b[6n"
 _REST_GAP_S = 0.25
 """Seconds between two polls of the run while nothing happens."""
@@ -109,6 +113,8 @@ class AppSettings:
     """One of `CELLS`; None: what was chosen before, else auto."""
     pixels: str = AUTO
     """One of `PIXELS`."""
+    from_config: tuple[str, ...] = ()
+    """What `config.toml` decides about the run, in words."""
 
 
 def _first_next_run(settings: AppSettings) -> NextRun:
@@ -136,6 +142,7 @@ class LabApp(PanelMessages):
     def __init__(self, settings: AppSettings, picture_mode: PictureMode | None = None) -> None:
         super().__init__(picture_mode)
         self.settings = settings
+        self._config_problems = self._take_config(load_config())
         self.pixels = settings.pixels
         self.run_controller = RunController(settings.program, _first_next_run(settings), settings.speed)
         self.panel_area = PanelArea(settings.panels_on, settings.panels_off)
@@ -181,6 +188,26 @@ class LabApp(PanelMessages):
         self._last_words = ""
         """How the run ended, for the output panel once it has shown every row."""
 
+    def _take_config(self, config: UserConfig) -> tuple[ConfigError, ...]:
+        """Use the user's own keys; return everything that is wrong in the file."""
+        found = [*config.problems]
+        try:
+            self.take_keys(with_keys(ACTIONS, config))
+        except ConfigError as error:
+            found.append(error)
+        try:
+            check_theme(config)
+        except ConfigError as error:
+            found.append(error)
+        return tuple(found)
+
+    def _tell_config(self) -> None:
+        """Tell what is wrong in `config.toml`, or what it decides about the run."""
+        for error in self._config_problems[:MOST_PROBLEMS]:
+            self.complain(error)
+        if self.settings.from_config:
+            self.say(f"From {FILE}: {', '.join(self.settings.from_config)}")
+
     # Lifecycle
 
     def compose(self) -> ComposeResult:
@@ -206,6 +233,7 @@ class LabApp(PanelMessages):
         # Breakpoints apply, and are saved, whether or not a panel shows the program.
         self.debugger.program_changed(self.run_controller.program)
         self.lesson.begin()
+        self._tell_config()
         if self.settings.welcomes:
             welcome(self.workspace)
         self._set_frame_gap(1 / self.settings.fps)
@@ -478,9 +506,10 @@ class LabApp(PanelMessages):
 
     def _show_footer(self, state: AppState) -> None:
         off = frozenset(f"panel-{panel}" for panel in PANELS if not self.panel_area.shown(panel))
-        actions = working(state.situation)
+        names = working(state.situation)
         if self.panel_area.is_single:
-            actions = ACTIONS["panel-next"], *actions
+            names = ("panel-next", *names)
+        actions = [self.ACTIONS[name] for name in names]
         self.key_footer.show(actions, state.status, off, self._field_keys(), state.failed)
 
     def _field_keys(self) -> tuple[KeyWord, ...]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, ClassVar, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from textual.screen import Screen
 
 from tuisim.app.action import Action
 from tuisim.app.terminal.picture_mode import PictureMode
+from tuisim.config.options import FileValue
 from tuisim.errors import TuisimError
 
 Result = TypeVar("Result")
@@ -17,7 +18,7 @@ Result = TypeVar("Result")
 class AppServices(Protocol):
     """Notices, dialogs and timers, and what changes the screen as a whole; as in `LabApp` and Textual's `App`."""
 
-    ACTIONS: ClassVar[Mapping[str, Action[Any, Any]]]
+    ACTIONS: Mapping[str, Action[Any, Any]]
     """The keys by id."""
 
     picture_mode: PictureMode
@@ -33,6 +34,7 @@ class AppServices(Protocol):
     def start_run(self, paused: bool = False) -> bool: ...
     def run_changed(self, last_words: str = "", error_line: int = 0) -> None: ...
     def choose_cells(self, chosen: str) -> None: ...
+    def keep_setting(self, path: str, value: FileValue | None) -> None: ...
     def action_redraw(self) -> None: ...
     def action_save_screen(self) -> None: ...
     def action_suspend_process(self) -> None: ...

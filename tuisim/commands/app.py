@@ -20,6 +20,7 @@ from tuisim.errors import ConfigError
 
 if TYPE_CHECKING:
     from tuisim.commands.resolve import Prepared
+    from tuisim.config.options import Settings
     from tuisim.config.worlds import WorldFile
     from tuisim.goals.files import GoalsFile
     from tuisim.lessons.spec import Lesson
@@ -64,16 +65,17 @@ def read_opened(arguments: Arguments) -> Opened | None:
     """
     from tuisim.commands.notebooks import print_list, to_list
     from tuisim.commands.resolve import check_arguments, prepare_app, prepare_replay
+    from tuisim.config.user_config import load_config
 
     check_arguments(arguments.words, arguments)
     if listed := to_list(arguments.words):
         print_list(arguments.words[0], listed)
         return None
-    goals = _goals(arguments.goals)
+    goals, config = _goals(arguments.goals), load_config()
     if arguments.run is not None:
-        replay, prepared = prepare_replay(arguments.run, arguments.words, arguments)
+        replay, prepared = prepare_replay(arguments.run, arguments.words, arguments, config)
         return Opened(prepared, goals, replay)
-    prepared = prepare_app(_words(arguments, goals), arguments)
+    prepared = prepare_app(_words(arguments, goals), arguments, config)
     is_empty = not arguments.words and not arguments.world and goals is None and _WORLD.isdisjoint(arguments.settings)
     return Opened(prepared, goals or _goals_in(prepared.world, prepared.settings.mats), None, is_empty)
 
@@ -117,16 +119,24 @@ def open_app(**given: Any) -> int:
         panels_off=frozenset(settings.panels_off),
         welcomes=opened.is_empty,
         autorun=settings.autorun,
-        quiet=settings.quiet,
-        rays=settings.rays,
-        speed=1.0 if settings.speed is None else settings.speed,
-        fps=settings.fps,
-        colors=settings.colors,
-        cells=settings.cells,
-        pixels=settings.pixels,
+        from_config=prepared.from_config,
+        **_of_the_app(settings),
     )
     with _drawing_on_stdout():
         return run_app(app_settings)
+
+
+def _of_the_app(settings: Settings) -> dict[str, Any]:
+    """Return what the settings say about the app, by field of `AppSettings`."""
+    return {
+        "quiet": settings.quiet,
+        "rays": settings.rays,
+        "speed": 1.0 if settings.speed is None else settings.speed,
+        "fps": settings.fps,
+        "colors": settings.colors,
+        "cells": settings.cells,
+        "pixels": settings.pixels,
+    }
 
 
 def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
@@ -144,10 +154,11 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
     from tuisim.config.build import build_run_spec
     from tuisim.config.options import settings_of
     from tuisim.config.program_file import read_program
+    from tuisim.config.user_config import Section, load_config
     from tuisim.lessons.progress import prepare_program
 
     source = read_program(prepare_program(lesson))
-    settings = settings_of(source.options, lesson.settings)
+    settings = settings_of(load_config().layer(Section.APP), source.options, lesson.settings)
     app_settings = AppSettings(
         spec=build_run_spec(settings),
         settings=settings,
@@ -157,7 +168,7 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
         lessons_folder=folder,
         panels_on=frozenset(settings.panels_on) | {"lesson", "code"},
         panels_off=frozenset(settings.panels_off),
-        rays=settings.rays,
+        **_of_the_app(settings),
     )
     with _drawing_on_stdout():
         return run_app(app_settings)

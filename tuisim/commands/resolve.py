@@ -1,22 +1,26 @@
 """Resolve the words of a command line into program, settings and run specification.
 
 The command line takes precedence over the world file, the world file over the program's magic line, and the magic
-line over the defaults.
+line over the defaults. With a world file these are tuisim's own, so that a task is the same for everybody; else those
+of the user's `config.toml` take precedence over them.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
 
 from tuisim.commands.echo import echo_error
 from tuisim.commands.notebooks import NotRun, check_folder, known_programs, without_unknown
 from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import ARGUMENTS_FOLLOW, Arguments
-from tuisim.config.options import RobotChoice, Settings, settings_of
+from tuisim.config.options import OF_THE_APP, RobotChoice, Settings, settings_of
 from tuisim.config.program_file import ProgramSource, find_program, read_program
 from tuisim.config.robots import choose_robot
+from tuisim.config.user_config import Section, UserConfig
 from tuisim.config.worlds import WorldFile, load_world, means_world
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError
@@ -25,8 +29,8 @@ from tuisim.runs.run_folder import StoredRun, field_files
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
 
-_OF_THE_APP = frozenset({"panels_on", "panels_off", "quiet", "rays", "speed", "fps", "colors", "cells", "pixels"})
-"""Fields of `Settings` that do not affect the run."""
+NO_CONFIG = UserConfig(Path())
+"""No defaults of the user."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +43,8 @@ class Prepared:
     world: WorldFile | None = None
     label: str = ""
     """Its name in a table; empty for the program's name."""
+    from_config: tuple[str, ...] = ()
+    """What the user's `config.toml` decides about the run, in words."""
 
 
 def check_arguments(words: Sequence[str], arguments: Arguments) -> None:
@@ -71,22 +77,43 @@ def _world(words: Sequence[str], arguments: Arguments) -> WorldFile | None:
     return load_world(find_program(named[0]), arguments.settings.get("mats")) if named else None
 
 
-def _prepared(word: str | None, world: WorldFile | None, arguments: Arguments) -> Prepared:
+def _prepared(word: str | None, world: WorldFile | None, arguments: Arguments, config: UserConfig) -> Prepared:
     in_world = world.settings if world else {}
     if word is None:
         if "arguments" in arguments.settings:
             named = world.path if world else arguments.world
             raise ConfigError(f"{named} names no program to pass arguments to", key=ARGUMENTS_FOLLOW)
-        settings = settings_of(in_world, arguments.settings)
-        return Prepared(None, settings, _spec(settings), world)
-    return _of_source(read_program(find_program(word)), world, arguments)
+        settings = settings_of(_defaults(world, config), in_world, arguments.settings)
+        spec = _spec(settings)
+        said = _from_config(spec, world, config, arguments.settings)
+        return Prepared(None, settings, spec, world, from_config=said)
+    return _of_source(read_program(find_program(word)), world, arguments, config)
 
 
-def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Arguments) -> Prepared:
-    settings = settings_of(file.options, world.settings if world else {}, arguments.settings)
+def _defaults(world: WorldFile | None, config: UserConfig) -> dict[str, Any]:
+    return config.layer(Section.APP) | ({} if world else config.layer(Section.SIMULATION))
+
+
+def _from_config(
+    spec: RunSpec, world: WorldFile | None, config: UserConfig, *above: Mapping[str, Any]
+) -> tuple[str, ...]:
+    """Return the user's defaults that make the run another one, in words."""
+    said = () if world else tuple(config.in_effect(*above))
+    try:
+        return said if said and build_run_spec(settings_of(*above)) != spec else ()
+    except ConfigError:
+        # Only with them the run exists, such as one on a mat of the user's own folder.
+        return said
+
+
+def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Arguments, config: UserConfig) -> Prepared:
+    in_world = world.settings if world else {}
+    settings = settings_of(_defaults(world, config), file.options, in_world, arguments.settings)
     prelude = settings.preload or file.program.prelude
     program = replace(file.program, prelude=prelude, arguments=settings.arguments)
-    return Prepared(program, settings, _spec(settings), world)
+    spec = _spec(settings)
+    said = _from_config(spec, world, config, file.options, arguments.settings)
+    return Prepared(program, settings, spec, world, from_config=said)
 
 
 def _spec(settings: Settings) -> RunSpec:
@@ -97,15 +124,15 @@ def _spec(settings: Settings) -> RunSpec:
     return build_run_spec(replace(settings, robot=robot) if robot.notes else settings)
 
 
-def _of_cell(file: ProgramSource, world: WorldFile | None, arguments: Arguments) -> Prepared:
+def _of_cell(file: ProgramSource, world: WorldFile | None, arguments: Arguments, config: UserConfig) -> Prepared:
     try:
-        return _of_source(file, world, arguments)
+        return _of_source(file, world, arguments, config)
     except ConfigError as error:
         # An error about a mat or robot must also name the cell.
         raise ConfigError(error.message, error.hint, file="" if error.file else file.program.name) from None
 
 
-def prepare_app(words: Sequence[str], arguments: Arguments) -> Prepared:
+def prepare_app(words: Sequence[str], arguments: Arguments, config: UserConfig) -> Prepared:
     """Prepare the app for nothing, a program, a world, or a program in a world, as the user named them.
 
     Raises:
@@ -117,32 +144,39 @@ def prepare_app(words: Sequence[str], arguments: Arguments) -> Prepared:
         raise ConfigError(f"two programs: {programs[0]} and {programs[1]}", "the app opens only one")
     word = programs[0] if programs else world.program if world else None
     if word is not None and is_notebook(word):
-        return _of_cell(known_programs(word)[0].source, world, arguments)
-    return _prepared(word, world, arguments)
+        return _of_cell(known_programs(word)[0].source, world, arguments, config)
+    return _prepared(word, world, arguments, config)
 
 
-def prepare_replay(run: str, words: Sequence[str], arguments: Arguments) -> tuple[StoredRun, Prepared]:
+def prepare_replay(
+    run: str, words: Sequence[str], arguments: Arguments, config: UserConfig
+) -> tuple[StoredRun, Prepared]:
     """Load a stored run for the app.
 
     Args:
         run: Its number, its id or the start of its id, its folder's path, or `last`.
         words: Other words of the command line; must be empty.
+        config: The user's defaults, of which those of the app apply.
 
     Raises:
         ConfigError: a program, a world or an option of a run is given too.
         LogError: there is no such run, or it is damaged.
     """
     chosen = arguments.settings
-    if words or arguments.world or (wrong := sorted(chosen.keys() - _OF_THE_APP)):
+    if words or arguments.world or (wrong := sorted(chosen.keys() - OF_THE_APP)):
         what = words[0] if words else arguments.world or wrong[0].replace("_", " ")
         raise ConfigError(f"a stored run has its own program and world: remove {what}", "name one", key="--run")
     stored = RunStore().load_run(run)
     opened = replace(stored.program, python_path=(), working_directory="")
-    return stored, Prepared(opened, settings_of(chosen), stored.spec)
+    return stored, Prepared(opened, settings_of(config.layer(Section.APP), chosen), stored.spec)
 
 
 def prepare_runs(
-    words: Sequence[str], arguments: Arguments, usual_world: WorldFile | None = None, command: str = "run"
+    words: Sequence[str],
+    arguments: Arguments,
+    usual_world: WorldFile | None = None,
+    command: str = "run",
+    config: UserConfig = NO_CONFIG,
 ) -> list[Prepared | NotRun]:
     """Prepare the programs that the user named to run one after another, all in the named world, if any.
 
@@ -151,6 +185,7 @@ def prepare_runs(
     Args:
         usual_world: The world if none is named.
         command: The command that is asked for, for errors.
+        config: The user's defaults.
 
     Raises:
         ConfigError: a program, magic line, world or option is wrong, or there is no program.
@@ -165,15 +200,17 @@ def prepare_runs(
     prepared: list[Prepared | NotRun] = []
     for word in programs:
         if os.path.isdir(word):
-            prepared += _of_folder(word, world, arguments)
+            prepared += _of_folder(word, world, arguments, config)
         elif is_notebook(word):
-            prepared += [_checked(_of_cell(program.source, world, arguments)) for program in known_programs(word)]
+            prepared += [
+                _checked(_of_cell(program.source, world, arguments, config)) for program in known_programs(word)
+            ]
         else:
-            prepared.append(_checked(_prepared(word, world, arguments)))
+            prepared.append(_checked(_prepared(word, world, arguments, config)))
     return prepared
 
 
-def _of_folder(word: str, world: WorldFile | None, arguments: Arguments) -> list[Prepared | NotRun]:
+def _of_folder(word: str, world: WorldFile | None, arguments: Arguments, config: UserConfig) -> list[Prepared | NotRun]:
     # Errors of the command line are raised once, not for each cell.
     build_run_spec(settings_of(world.settings if world else {}, arguments.settings))
     found: list[Prepared | NotRun] = []
@@ -187,7 +224,7 @@ def _of_folder(word: str, world: WorldFile | None, arguments: Arguments) -> list
         for program in programs:
             cell = f"{label}#{program.number}"
             try:
-                found.append(replace(_checked(_of_source(program.source, world, arguments)), label=cell))
+                found.append(replace(_checked(_of_source(program.source, world, arguments, config)), label=cell))
             except ConfigError as error:
                 found.append(NotRun(cell, error))
     if not found:

@@ -18,6 +18,7 @@ from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.command_line import Arguments, Value, argument, choice, command, option
 from tuisim.config.options import APP, PANEL, number
 from tuisim.config.shared_options import shared_options
+from tuisim.config.user_config import FILE, Section, load_config
 from tuisim.core.geometry import pose_in_words
 from tuisim.core.profile import NS_PER_S
 from tuisim.errors import SIGNALLED, ConfigError, ExportError, LogError, TuisimError, counted, nearest
@@ -137,7 +138,9 @@ def run(**given: Any) -> int:
         print_list(arguments.programs[0], listed)
         return 0
     # All input is checked before the first program runs.
-    prepared = prepare_runs(arguments.programs, arguments)
+    prepared = prepare_runs(arguments.programs, arguments, config=load_config().checked().only(Section.SIMULATION))
+    for said in dict.fromkeys(one.from_config for one in prepared if isinstance(one, Prepared) and one.from_config):
+        echo_error(f"note: from {FILE}: {', '.join(said)}")
     check_breaks(arguments.breaks, arguments.watches, [one for one in prepared if isinstance(one, Prepared)])
     telemetry = arguments.telemetry
     check_targets(target for target in (*arguments.export, telemetry) if target is not None)

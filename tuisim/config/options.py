@@ -138,6 +138,24 @@ class Settings:
     """One of `PIXELS`."""
 
 
+FileValue = bool | int | float | str
+"""The value of a setting in `config.toml`."""
+
+
+@dataclass(frozen=True, slots=True)
+class InFile:
+    """An option as one of the user's settings, in `config.toml`."""
+
+    usual: FileValue
+    """Its value without the file; an empty text where the mat or the robot decides."""
+    allowed: str
+    """What it accepts, in words."""
+    choices: tuple[str, ...] = ()
+    """The words that it accepts, if there are only these, or besides numbers."""
+    is_live: bool = True
+    """Whether the app applies a change at once; else from its next start on."""
+
+
 @dataclass(frozen=True, slots=True)
 class Option:
     """One line of `OPTIONS`."""
@@ -156,6 +174,26 @@ class Option:
     value: bool = True
     magic_flags: tuple[str, ...] = ()
     """Further names in a magic line only, because they mean something else on the command line."""
+    in_file: InFile | None = None
+    """How `config.toml` sets it; None if it cannot."""
+
+    @property
+    def name(self) -> str:
+        """Its long name as a key: without dashes."""
+        return next(flag for flag in self.flags if flag.startswith("--"))[2:].replace("-", "_")
+
+    def converted(self, value: object, key: str) -> Any:
+        """Return a value of Python or of a file as the value of the field.
+
+        Raises:
+            ConfigError: it is wrong; `key` is to blame.
+        """
+        if self.convert is None:
+            if not isinstance(value, bool):
+                raise ConfigError(f"must be True or False, got {value!r}", key=key)
+            return self.value if value else not self.value
+        text = ("on" if value else "off") if isinstance(value, bool) else str(value)
+        return self.convert(text, key)
 
 
 def number(low: float, high: float) -> Callable[[str, str], float]:
@@ -225,13 +263,34 @@ def _speed(text: str, flag: str) -> float:
 _position = number(-MAX_POSITION_MM, MAX_POSITION_MM)
 _angle = number(-MAX_ANGLE_DEG, MAX_ANGLE_DEG)
 
+TRUE_FALSE = "true or false"
+
+
+def _words(allowed: Sequence[str]) -> str:
+    return f"one of {', '.join(allowed)}"
+
+
 WORLD, RUN, APP, PANEL = "World", "Run", "App", "Panels of the app"
 
 OPTIONS: tuple[Option, ...] = (
     Option(
-        WORLD, ("-b", "--background"), "background", "A mat from `tuisim backgrounds`, or an image file.", "MAT", _name
+        WORLD,
+        ("-b", "--background"),
+        "background",
+        "A mat from `tuisim backgrounds`, or an image file.",
+        "MAT",
+        _name,
+        in_file=InFile("Empty_Map", "the name of a mat, or an image file"),
     ),
-    Option(WORLD, ("--mats",), "mats", "Folder of images that `-b` finds by name.", "FOLDER", _name),
+    Option(
+        WORLD,
+        ("--mats",),
+        "mats",
+        "Folder of images that `-b` finds by name.",
+        "FOLDER",
+        _name,
+        in_file=InFile("", "a folder"),
+    ),
     Option(
         WORLD,
         ("--background-fit",),
@@ -241,33 +300,127 @@ OPTIONS: tuple[Option, ...] = (
         _one_of(BACKGROUND_FITS),
     ),
     Option(
-        WORLD, ("-r", "--robot", "--robotSetup"), "robot", "A robot from `tuisim robots`, or a file.", "ROBOT", _name
+        WORLD,
+        ("-r", "--robot", "--robotSetup"),
+        "robot",
+        "A robot from `tuisim robots`, or a file.",
+        "ROBOT",
+        _name,
+        in_file=InFile("Default_Robot", "the name of a robot, or a file"),
     ),
-    Option(WORLD, ("-o", "--obstacles"), "obstacles", "A set from `tuisim obstacles`, or a file.", "NAME", _name),
-    Option(WORLD, ("--walls",), "walls", "Walls on the edges of the field.", "on|off", _on_off),
+    Option(
+        WORLD,
+        ("-o", "--obstacles"),
+        "obstacles",
+        "A set from `tuisim obstacles`, or a file.",
+        "NAME",
+        _name,
+        in_file=InFile("", "the name of a set, or a file"),
+    ),
+    Option(
+        WORLD,
+        ("--walls",),
+        "walls",
+        "Walls on the edges of the field.",
+        "on|off",
+        _on_off,
+        in_file=InFile(True, TRUE_FALSE),
+    ),
     Option(WORLD, ("--solid",), "solid", "Obstacles and walls stop the robot."),
     Option(WORLD, ("--no-solid",), "solid", "The robot drives through obstacles and walls.", value=False),
     Option(WORLD, ("-x", "--x", "--xpos"), "x_mm", "Start x in mm.", "MM", _position),
     Option(WORLD, ("-y", "--y", "--ypos"), "y_mm", "Start y in mm.", "MM", _position),
     Option(WORLD, ("-a", "--angle"), "heading_deg", "Start heading, counter-clockwise from +x.", "DEG", _angle),
-    Option(WORLD, ("-N", "--sensornoise"), "light_noise", "Light noise, 0 … 128.", "N", whole(0, MAX_LIGHT_NOISE)),
-    Option(WORLD, ("-M", "--motornoise"), "motor_noise", "Motor noise, 0 … 500.", "N", whole(0, MAX_MOTOR_NOISE)),
+    Option(
+        WORLD,
+        ("-N", "--sensornoise"),
+        "light_noise",
+        "Light noise, 0 … 128.",
+        "N",
+        whole(0, MAX_LIGHT_NOISE),
+        in_file=InFile(0, f"a whole number from 0 to {MAX_LIGHT_NOISE}"),
+    ),
+    Option(
+        WORLD,
+        ("-M", "--motornoise"),
+        "motor_noise",
+        "Motor noise, 0 … 500.",
+        "N",
+        whole(0, MAX_MOTOR_NOISE),
+        in_file=InFile(0, f"a whole number from 0 to {MAX_MOTOR_NOISE}"),
+    ),
     Option(WORLD, ("-p", "--pendown"), "pen_down", "Start with the pen down."),
-    Option(WORLD, ("-P", "--pencolor"), "pen_color", "Colour of the pen: a CSS name, or #rrggbb.", "COLOUR", pen_color),
+    Option(
+        WORLD,
+        ("-P", "--pencolor"),
+        "pen_color",
+        "Colour of the pen: a CSS name, or #rrggbb.",
+        "COLOUR",
+        pen_color,
+        in_file=InFile("", "a CSS colour name, or #rrggbb"),
+    ),
     Option(WORLD, ("--pen-width",), "pen_width_mm", "Width of the trace.", "MM", number(MIN_PEN_MM, MAX_PEN_MM)),
     Option(WORLD, ("--pen-marks",), "pen_marks", "The sensors see what the pen draws."),
-    Option(RUN, ("--profile",), "profile", "A profile from `tuisim profiles`, or a file.", "NAME", _name),
+    Option(
+        RUN,
+        ("--profile",),
+        "profile",
+        "A profile from `tuisim profiles`, or a file.",
+        "NAME",
+        _name,
+        in_file=InFile("robolab", "the name of a profile, or a file"),
+    ),
     Option(RUN, ("--seed",), "seed", "Seed for noise and `random`.", "N", whole(0, MAX_SEED)),
-    Option(RUN, ("--speed",), "speed", "A multiple of real time, or max.", "N", _speed),
+    Option(
+        RUN,
+        ("--speed",),
+        "speed",
+        "A multiple of real time, or max.",
+        "N",
+        _speed,
+        in_file=InFile(1, f"{MAX_SPEED_WORD}, or a number from {MIN_SPEED:g} to {MAX_SPEED:g}", (MAX_SPEED_WORD,)),
+    ),
     Option(RUN, ("--preload",), "preload", "Names predefined for the program.", "|".join(PRELOADS), _one_of(PRELOADS)),
     Option(APP, ("-R", "--autorun"), "autorun", "Run at once."),
     Option(APP, ("-C", "--clear"), "clear_trace", "Clear the trace at the start."),
-    Option(APP, ("-u", "--ultrasound"), "rays", "Show the ultrasonic rays."),
-    Option(APP, ("-q", "--quiet"), "quiet", "Make no sound."),
-    Option(APP, ("--fps",), "fps", "Maximum frames per second, 1 … 60.", "N", whole(1, 60)),
-    Option(APP, ("--colors",), "colors", f"Colours: {', '.join(COLOR_DEPTHS)}.", "DEPTH", _one_of(COLOR_DEPTHS)),
-    Option(APP, ("--cells",), "cells", f"Glyphs of the world: {', '.join(CELLS)}.", "SET", _one_of(CELLS)),
-    Option(APP, ("--pixels",), "pixels", f"Draw real pixels: {', '.join(PIXELS)}.", "HOW", _one_of(PIXELS)),
+    Option(APP, ("-u", "--ultrasound"), "rays", "Show the ultrasonic rays.", in_file=InFile(False, TRUE_FALSE)),
+    Option(APP, ("-q", "--quiet"), "quiet", "Make no sound.", in_file=InFile(False, TRUE_FALSE)),
+    Option(
+        APP,
+        ("--fps",),
+        "fps",
+        "Maximum frames per second, 1 … 60.",
+        "N",
+        whole(1, 60),
+        in_file=InFile(DEFAULT_FPS, "a whole number from 1 to 60", is_live=False),
+    ),
+    Option(
+        APP,
+        ("--colors",),
+        "colors",
+        f"Colours: {', '.join(COLOR_DEPTHS)}.",
+        "DEPTH",
+        _one_of(COLOR_DEPTHS),
+        in_file=InFile(AUTO, _words(COLOR_DEPTHS), COLOR_DEPTHS, is_live=False),
+    ),
+    Option(
+        APP,
+        ("--cells",),
+        "cells",
+        f"Glyphs of the world: {', '.join(CELLS)}.",
+        "SET",
+        _one_of(CELLS),
+        in_file=InFile(AUTO, _words(CELLS), CELLS),
+    ),
+    Option(
+        APP,
+        ("--pixels",),
+        "pixels",
+        f"Draw real pixels: {', '.join(PIXELS)}.",
+        "HOW",
+        _one_of(PIXELS),
+        in_file=InFile(AUTO, _words(PIXELS), PIXELS),
+    ),
     Option(PANEL, ("-O", "--output"), "panels_on", "Show the output.", panel="output"),
     Option(PANEL, ("-A", "--array"), "panels_on", "Show the sensor arrays.", panel="arrays"),
     Option(PANEL, ("-c", "--chart"), "panels_on", "Show the chart.", panel="chart"),
@@ -280,6 +433,9 @@ OPTIONS: tuple[Option, ...] = (
     Option(PANEL, ("-H", "--hidecontrols", "--hide"), "panels_off", "Hide the simulator controls.", panel="controls"),
 )
 """Every shared option, in the order of the help."""
+
+OF_THE_APP = frozenset({"panels_on", "panels_off", "quiet", "rays", "speed", "fps", "colors", "cells", "pixels"})
+"""Fields of `Settings` that do not affect the run."""
 
 PANELS = tuple(option.panel for option in OPTIONS if option.panel)
 """Every panel that an option shows or hides."""

@@ -38,8 +38,8 @@ CONTENTS: Mapping[Part, tuple[str, ...]] = {
         "when-it-goes-wrong",
     ),
     Part.REFERENCE: (
-        "keys", "commands", "options", "breakpoints", "profile-rules", "data-columns", "world-files", "goal-files",
-        "the-brick", "library-differences",
+        "keys", "commands", "options", "settings", "breakpoints", "profile-rules", "data-columns", "world-files",
+        "goal-files", "the-brick", "library-differences",
     ),
     Part.EXPLANATION: ("virtual-time", "how-sensors-see", "motion-and-drift", "the-real-robot"),
     Part.PROJECT: ("contributing", "architecture", "security", "licences"),

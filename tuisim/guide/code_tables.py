@@ -6,8 +6,10 @@ from dataclasses import fields
 from inspect import getdoc
 
 from tuisim import breakpoints as rules
+from tuisim.config.files import toml_value
 from tuisim.config.options import OPTIONS
 from tuisim.config.profiles import SOURCES
+from tuisim.config.user_config import SETTINGS
 from tuisim.core.profile import MS, PROFILES, ProfileSpec
 from tuisim.core.sensors import mounted
 from tuisim.core.spec import RobotSpec
@@ -76,6 +78,21 @@ def options() -> Table:
         for one in OPTIONS
     ]
     return Table(("option", "value", "sets", "group"), rows)
+
+
+def settings() -> Table:
+    """Return the settings of `config.toml`."""
+    rows = [
+        (
+            f"[{one.section}]",
+            code(one.name),
+            code(toml_value(one.in_file.usual)),
+            one.help.rstrip("."),
+            one.in_file.allowed,
+        )
+        for one in SETTINGS.values()
+    ]
+    return Table(("table", "setting", "without the file", "sets", "value"), rows)
 
 
 def profile_rules() -> Table:

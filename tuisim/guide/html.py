@@ -57,7 +57,7 @@ def write_html(folder: Path, version: str) -> list[Path]:
 
 
 def _body(page: Page) -> str:
-    rendered: str = MarkdownIt("commonmark", {"html": False}).enable("table").render(markdown_of(page))
+    rendered: str = MarkdownIt("commonmark", {"html": False}).enable("table").render(markdown_of(page, for_others=True))
     return _PAGE_LINK.sub(r'href="\1.html"', rendered)
 
 

@@ -22,6 +22,7 @@ TABLES: Mapping[str, str] = {
     "commands": "guide.command_tables:commands",
     "command-options": "guide.command_tables:command_options",
     "options": "guide.code_tables:options",
+    "settings": "guide.code_tables:settings",
     "profile-rules": "guide.code_tables:profile_rules",
     "breakpoints": "guide.code_tables:breakpoints",
     "quantities": "guide.code_tables:quantities",
@@ -31,6 +32,8 @@ TABLES: Mapping[str, str] = {
 }
 """MODULE:FUNCTION by name, imported on use: some load the app."""
 
+_FOR_OTHERS: Mapping[str, str] = {"keys": "app.guide.key_tables:usual_keys"}
+"""Tables without what the user has changed, in place of those of `TABLES`."""
 _MARK = re.compile(r"^<!-- table: ([\w-]+) -->$", re.MULTILINE)
 
 
@@ -53,13 +56,14 @@ def code(text: str) -> str:
 
 
 @cache
-def table(name: str) -> Table:
+def table(name: str, *, for_others: bool = False) -> Table:
     """Make a table.
 
     Args:
         name: One of `TABLES`.
+        for_others: Whether it is not for this user, so that the user's own settings do not show.
     """
-    module, _, function = TABLES[name].partition(":")
+    module, _, function = ((for_others and _FOR_OTHERS.get(name)) or TABLES[name]).partition(":")
     return cast("Callable[[], Table]", getattr(import_module(f"tuisim.{module}"), function))()
 
 
@@ -68,6 +72,7 @@ def tables_in(page: Page) -> list[str]:
     return _MARK.findall(page.source)
 
 
-def markdown_of(page: Page) -> str:
-    """Return the whole page with its title and its tables."""
-    return f"# {page.title}\n\n" + _MARK.sub(lambda found: table(found[1]).markdown(), page.source)
+def markdown_of(page: Page, *, for_others: bool = False) -> str:
+    """Return the whole page with its title and its tables, as for `table`."""
+    made = _MARK.sub(lambda found: table(found[1], for_others=for_others).markdown(), page.source)
+    return f"# {page.title}\n\n{made}"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 from textual.widgets import OptionList
 
@@ -15,13 +13,11 @@ from tuisim.app.terminal import picture_mode as modes
 from tuisim.app.terminal.cell_view import PixelView
 from tuisim.app.terminal.picture_mode import PictureMode, picture_mode_for
 from tuisim.charts.glyphs import GLYPHS
-from tuisim.config import preferences
 from tuisim.config.options import CellSet
 
 
 @pytest.fixture(autouse=True)
-def known_terminal(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(preferences, "preferences_file", lambda: tmp_path / "preferences.json")
+def known_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(modes, "best_cells", lambda **_: CellSet.SEXTANT)
 
 

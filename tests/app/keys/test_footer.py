@@ -12,7 +12,7 @@ from tests.app.analyser.test_screen import text_of
 from tests.app.app_help import LOGS, program, ready, settings, until
 from tuisim.analysis.source import LogRequest
 from tuisim.app.action import fitting
-from tuisim.app.actions.keys import working
+from tuisim.app.actions.keys import ACTIONS, working
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.snapshot import RunPhase, Situation
@@ -26,7 +26,8 @@ pytestmark = pytest.mark.usefixtures("home")
 @pytest.mark.parametrize("width", [80, 100, 120])
 def test_after_a_run_the_next_steps_of_a_student_come_first(width: int) -> None:
     status = " time limit max "
-    shown = fitting(working(Situation(RunPhase.ENDED, has_program=True, has_run=True)), width - len(status))
+    names = working(Situation(RunPhase.ENDED, has_program=True, has_run=True))
+    shown = fitting([ACTIONS[name] for name in names], width - len(status))
     assert [action.footer_key or action.key for action in shown][:5] == ["R", "l", "e", "c", "d"]
 
 

@@ -331,7 +331,9 @@ def test_keys_differ() -> None:
 
 
 def test_in_the_past_the_footer_begins_with_the_ways_out() -> None:
-    shown = fitting(working(Situation(RunPhase.PAUSED, True, True, in_past=True, looks_back=True)), 80)
+    shown = fitting(
+        [ACTIONS[one] for one in working(Situation(RunPhase.PAUSED, True, True, in_past=True, looks_back=True))], 80
+    )
     assert [action.id for action in shown[:2]] == ["now", "branch"]
 
 

@@ -21,7 +21,6 @@ from tuisim.app.action import Palette
 from tuisim.app.app import LabApp
 from tuisim.app.terminal.themes import HIGH_CONTRAST, LIGHT, OWN_COLORS, UNUSED_THEMES, ThemeColors, contrast
 from tuisim.charts.traces import TRACE_COLORS
-from tuisim.config import preferences
 
 THEMES = [
     *(pytest.param(theme, id=name) for name, theme in BUILTIN_THEMES.items() if name not in UNUSED_THEMES),
@@ -66,8 +65,7 @@ def test_colours_that_a_sensor_sees_stay_as_they_are() -> None:
         assert shown(ThemeColors(LIGHT), swatch)[1].rgb == seen
 
 
-async def test_a_theme_is_chosen_from_the_list_and_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(preferences, "preferences_file", lambda: tmp_path / "preferences.json")
+async def test_a_theme_is_chosen_from_the_list_and_kept() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await pilot.press("f10")

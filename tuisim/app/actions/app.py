@@ -9,7 +9,9 @@ from tuisim.app.action import key_groups, theme_list
 from tuisim.app.actions import files, lesson
 from tuisim.app.layout.arrangement import Preset
 from tuisim.config.folders import programs_folder
+from tuisim.config.options import AUTO
 from tuisim.config.preferences import keep, preference
+from tuisim.config.user_config import CELL_SET
 
 if TYPE_CHECKING:
     from tuisim.app.workspace import Workspace
@@ -131,12 +133,9 @@ def choose_cells(workspace: Workspace) -> None:
     app = workspace.app
 
     def chosen(name: str | None) -> None:
-        if name is None:
-            return
-        try:
+        if name is not None:
             app.choose_cells(name)
-        except OSError as error:
-            app.say(f"The choice applies to this session only: {error}")
+            app.keep_setting(CELL_SET, None if name == AUTO else name)
 
     app.push_screen(CellsCard(app.picture_mode.chosen, app.picture_mode.best), chosen)
 

@@ -230,8 +230,8 @@ def _next_steps(now: Situation) -> tuple[str, ...]:
 
 
 @lru_cache(maxsize=16)
-def working(now: Situation) -> tuple[LabAction, ...]:
-    """Return the available actions: the likely next steps first, the others in the order of the table."""
-    found = {action.id: action for action in ACTIONS.values() if not action.why_not(now)}
-    first = [found.pop(step) for step in _next_steps(now) if step in found]
-    return *first, *found.values()
+def working(now: Situation) -> tuple[str, ...]:
+    """Return the ids of the available actions: the likely next steps first, the others in the order of the table."""
+    found = dict.fromkeys(name for name, action in ACTIONS.items() if not action.why_not(now))
+    first = [step for step in _next_steps(now) if step in found]
+    return tuple(dict.fromkeys((*first, *found)))

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from importlib import import_module
 from typing import Any
 
 from tuisim.app.action import Action
 from tuisim.app.editor.area import EDITOR_KEYS
+from tuisim.app.keymap import with_keys
 from tuisim.app.panels import PANELS
+from tuisim.config.user_config import load_config
+from tuisim.errors import ConfigError
 from tuisim.guide.tables import Table, code
 
 EVERYWHERE = (("ctrl+p", "Command palette"), ("tab", "Next panel or field"), ("Escape", "Leave a field"))
@@ -26,9 +30,23 @@ def _actions(module: str) -> Mapping[str, Action[Any, Any]]:
 
 
 def app_keys() -> Table:
-    """Return the keys of the app."""
-    everywhere = [(code(key), does, "Everywhere") for key, does in EVERYWHERE]
-    return Table(("key", "does", "group"), [*_keys(_actions("tuisim.app.actions.keys").values()), *everywhere])
+    """Return the keys of the app, with the user's own."""
+    actions = _actions("tuisim.app.actions.keys")
+    # The app and `tuisim config` tell what is wrong.
+    with suppress(ConfigError):
+        actions = with_keys(actions, load_config())
+    return _table_of(actions)
+
+
+def usual_keys() -> Table:
+    """Return the keys of the app as they are without the user's own."""
+    return _table_of(_actions("tuisim.app.actions.keys"))
+
+
+def _table_of(actions: Mapping[str, Action[Any, Any]]) -> Table:
+    rows = [(*row, code(name)) for row, name in zip(_keys(actions.values()), actions, strict=True)]
+    everywhere = [(code(key), does, "Everywhere", "") for key, does in EVERYWHERE]
+    return Table(("key", "does", "group", "id"), [*rows, *everywhere])
 
 
 def analyser_keys() -> Table:

@@ -15,15 +15,11 @@ from tuisim.app.render.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TR
 from tuisim.app.terminal.browser import in_browser
 from tuisim.app.terminal.probe import best_cells, colors_without_asking
 from tuisim.app.terminal.themes import ThemeColors
-from tuisim.config.options import AUTO, CELLS, CellSet
-from tuisim.config.preferences import keep, preference
+from tuisim.config.options import AUTO, CellSet
+from tuisim.config.user_config import CELL_SET, load_config
 
 BLOCKS = frozenset({CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT})
 """The sets whose glyphs fill their cells."""
-
-
-_KEPT = "cells"
-"""Name of the preference."""
 
 
 @dataclass(slots=True)
@@ -47,13 +43,8 @@ class PictureMode:
     """Whether the terminal has shown everything that was sent."""
 
     def choose(self, chosen: str) -> None:
-        """Switch to a set, or to the best one for `AUTO`, and keep the choice.
-
-        Raises:
-            OSError: it cannot be kept; it still applies.
-        """
+        """Switch to a set, or to the best one for `AUTO`."""
         self.chosen, self.cells = chosen, self.best if chosen == AUTO else CellSet(chosen)
-        keep(_KEPT, None if chosen == AUTO else chosen)
 
 
 def choose_colors(colors: str) -> int:
@@ -73,10 +64,9 @@ def picture_mode_for(given: str | None) -> PictureMode:
     """Return how an app that starts draws pictures.
 
     Args:
-        given: The option of the command line, if there is one; else what was chosen in the app applies.
+        given: The option of the command line, if there is one; else `config.toml` decides.
     """
-    kept = preference(_KEPT)
-    chosen = given or (kept if isinstance(kept, str) and kept in CELLS else AUTO)
+    chosen = given or str(load_config().value(CELL_SET))
     # As Textual decides it.
     has_colors = "NO_COLOR" not in os.environ
     if in_browser():

@@ -50,8 +50,9 @@ from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, QUEST
 from tuisim.app.terminal.screenshot import save_screenshot, screen_cells
 from tuisim.app.terminal.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors
 from tuisim.charts.traces import TRACE_COLORS
-from tuisim.config.options import AUTO, NO_PIXELS, CellSet, Protocol
-from tuisim.config.preferences import keep, preference
+from tuisim.config.options import AUTO, NO_PIXELS, CellSet, FileValue, Protocol
+from tuisim.config.user_config import SETTINGS, THEME, load_config
+from tuisim.errors import ConfigError
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
 
@@ -140,8 +141,8 @@ class TerminalApp(App[None]):
             self.register_theme(theme)
         for name in UNUSED_THEMES:
             self.unregister_theme(name)
-        if (kept := preference("theme")) in self.available_themes:
-            self.theme = str(kept)
+        if (chosen := str(load_config().value(THEME))) in self.available_themes:
+            self.theme = chosen
         self._take_theme()
 
     def on_mount(self) -> None:
@@ -155,8 +156,8 @@ class TerminalApp(App[None]):
     def _theme_changed(self, theme: Theme) -> None:
         """Draw everything in the colours of another theme, and keep the choice."""
         self._take_theme()
-        with suppress(OSError):
-            keep("theme", None if theme.name == OWN_THEME else theme.name)
+        if theme.name != load_config().value(THEME):
+            self.keep_setting(THEME, None if theme.name == OWN_THEME else theme.name)
         for screen in self.screen_stack:
             for view in screen.query(RowsView):
                 view.redraw()
@@ -223,13 +224,20 @@ class TerminalApp(App[None]):
         if codes:
             self.painted(len(codes))
 
-    def choose_cells(self, chosen: str) -> None:
-        """Draw every picture with another set of glyphs, and keep the choice; `AUTO` or the name of a set."""
+    def keep_setting(self, path: str, value: FileValue | None) -> None:
+        """Write a setting that applies already to `config.toml`; None for the usual one."""
+        from tuisim.config.user_config_file import save_setting
+
         try:
-            self.picture_mode.choose(chosen)
-        finally:
-            self._choose_graphics()
-            self.redraw_pictures()
+            save_setting(SETTINGS[path], value)
+        except ConfigError as error:
+            self.notify(f"The choice applies to this session only: {error}", severity="warning", markup=False)
+
+    def choose_cells(self, chosen: str) -> None:
+        """Draw every picture with another set of glyphs; `AUTO` or the name of a set."""
+        self.picture_mode.choose(chosen)
+        self._choose_graphics()
+        self.redraw_pictures()
 
     def painted(self, size: int) -> None:
         """Called with the number of characters after an update was sent to the terminal."""

@@ -16,7 +16,7 @@ from rich.segment import Segment
 from rich.style import Style
 from textual.color import Color
 from textual.filter import LineFilter
-from textual.theme import Theme
+from textual.theme import BUILTIN_THEMES, Theme
 
 from tuisim.core.css_colors import Rgb
 
@@ -33,6 +33,12 @@ LIGHT = Theme(
     "light", primary="#0050a0", secondary="#0050a0", accent="#8a5a00", warning="#8a5a00", error="#b00020",
     success="#006a3a", foreground="#101418", background="#f0f3f6", surface="#e6eaee", panel="#dde3e9", dark=False,
 )  # fmt: skip
+
+
+def theme_names() -> list[str]:
+    """Return the names of the themes that can be chosen."""
+    return [*(name for name in BUILTIN_THEMES if name not in UNUSED_THEMES), HIGH_CONTRAST.name, LIGHT.name]
+
 
 OWN_COLORS = frozenset({
     "#101010", "#10151c", "#18202a", "#1c242e", "#1c2733", "#263545", "#2a333d", "#2c4a2c", "#2f4a63", "#2f4a66",

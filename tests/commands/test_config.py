@@ -1,0 +1,136 @@
+"""`tuisim config`, and where its settings apply."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.conftest import Command
+from tuisim.app import app as lab_app
+from tuisim.commands import app as app_command
+from tuisim.runs.store import RunStore
+
+PROGRAM = "print('Colour: 1')\n"
+WORLD = 'background = "Loop"\n'
+
+
+@pytest.fixture
+def config(home: Path) -> Path:
+    home.mkdir()
+    return home / "config.toml"
+
+
+def test_every_setting_is_listed_with_its_source(config: Path, here: Command) -> None:
+    config.write_text("[app]\nquiet = true\n[keys]\nrun = 'f5'\n")
+
+    done = json.loads(here("config", "--json").stdout)
+    lines = here("config").stdout.splitlines()
+
+    assert (done["file"], lines[0]) == (str(config), str(config))
+    sources = {one["setting"]: (one["value"], one["from"]) for one in done["settings"]}
+    assert sources["app.quiet"] == (True, "config.toml")
+    assert sources["app.fps"] == (20, "default")
+    assert sources["keys.run"] == ("f5", "config.toml")
+    assert ["app.quiet", "true", "config.toml"] in [line.split() for line in lines]
+
+
+def test_the_file_is_written_once(config: Path, here: Command) -> None:
+    assert here("config", "--init").returncode == 0
+    text = config.read_text()
+    again = here("config", "--init")
+
+    assert (again.returncode, config.read_text()) == (2, text)
+    assert f"{config}: exists already" in again.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        pytest.param("[app]\nfps = 0", "app.fps: must be a whole number from 1 to 60", id="a value"),
+        pytest.param("[app]\ntheme = 'lite'", "app.theme: no such theme 'lite' (did you mean light?)", id="a theme"),
+        pytest.param("[keys]\nrnu = 'x'", "keys.rnu: no such action (did you mean run", id="an action"),
+        pytest.param("[keys]\nrun = 'hyper+x'", "keys.run: no such key 'hyper+x' (a character", id="a key"),
+        pytest.param("[keys]\nrun = 'esc'", "keys.run: esc leaves a field and cannot", id="a key that stays"),
+        pytest.param("[keys]\nrun = 'ctrl+i'", "keys.run: ctrl+i goes to the next", id="the same in a terminal"),
+        pytest.param("[keys]\nrun = 'S'", "keys.run: S is also the key of stop (Stop the program)", id="taken"),
+        pytest.param("[keys]\nrun = 'f5'\nstop = ['S', 'f5']", "keys.stop: F5 is also the key of run", id="both new"),
+    ],
+)
+def test_what_is_wrong_ends_the_command(text: str, problem: str, config: Path, here: Command) -> None:
+    config.write_text(text)
+
+    done = here("config")
+
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert f"tuisim: {config}: {problem}" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "noise"),
+    [
+        pytest.param(["p.py"], 7, id="applies"),
+        pytest.param(["p.py", "-M", "0"], 0, id="a switch is above"),
+        pytest.param(["magic.py"], 3, id="a magic line is above"),
+        pytest.param(["--world", "w.toml", "p.py"], 0, id="not in a world"),
+    ],
+)
+def test_run_tells_what_the_settings_change(
+    words: list[str], noise: int, config: Path, tmp_path: Path, here: Command
+) -> None:
+    config.write_text("[simulation]\nmotornoise = 7\n[app]\nspeed = 0.01\n")
+    (tmp_path / "p.py").write_text(PROGRAM)
+    (tmp_path / "magic.py").write_text(f"# %%sim_magic -M 3\n{PROGRAM}")
+    (tmp_path / "w.toml").write_text(WORLD)
+
+    done = here("run", *words)
+
+    assert done.returncode == 0
+    assert ("note: from config.toml: motornoise = 7" in done.stderr) == (noise == 7)
+    assert RunStore().load_run("last").spec.world.noise.motor == noise
+
+
+def test_settings_without_an_effect_are_not_told(config: Path, tmp_path: Path, here: Command) -> None:
+    config.write_text("[simulation]\nmotornoise = 0\nprofile = 'robolab'\n")
+    (tmp_path / "p.py").write_text(PROGRAM)
+
+    assert "note" not in here("run", "p.py").stderr
+
+
+def test_run_refuses_a_wrong_file(config: Path, tmp_path: Path, here: Command) -> None:
+    config.write_text("[simulation]\nmotornoise = -1\n")
+    (tmp_path / "p.py").write_text(PROGRAM)
+
+    done = here("run", "p.py")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "simulation.motornoise: must be" in done.stderr
+
+
+@pytest.mark.slow
+def test_a_batch_gives_everybody_the_same(config: Path, tmp_path: Path, here: Command) -> None:
+    config.write_text("[simulation]\nmotornoise = 'wrong'\n")
+    (tmp_path / "p.py").write_text(PROGRAM)
+    assert here("batch", "p.py", "--seeds", "0..1").returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "noise"),
+    [pytest.param(["p.py"], 7, id="a program"), pytest.param(["w.toml"], 0, id="a world")],
+)
+def test_the_app_opens_with_the_settings(
+    words: list[str], noise: int, config: Path, tmp_path: Path, here: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    config.write_text("[simulation]\nmotornoise = 7\n[app]\nspeed = 2\nfps = 5\nwrong = 1\n")
+    (tmp_path / "p.py").write_text(PROGRAM)
+    (tmp_path / "w.toml").write_text(WORLD)
+    opened: list[Any] = []
+    monkeypatch.setattr(lab_app, "run_app", lambda settings: opened.append(settings) or 0)
+    monkeypatch.setattr(app_command, "has_terminal", lambda: True)
+
+    here("open", *words)
+
+    (settings,) = opened
+    assert (settings.spec.world.noise.motor, settings.speed, settings.fps) == (noise, 2.0, 5)
+    assert settings.from_config == (("motornoise = 7",) if noise else ())

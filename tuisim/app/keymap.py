@@ -1,0 +1,119 @@
+"""The user's own keys: the table of keys with those of `[keys]` in `config.toml` in place of ours."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, TypeVar
+
+from textual.keys import KEY_NAME_REPLACEMENTS, Keys, _character_to_key
+
+from tuisim.app.action import Action, label_of_key
+from tuisim.app.terminal.themes import theme_names
+from tuisim.config.files import Location
+from tuisim.config.user_config import THEME, Section, UserConfig
+from tuisim.errors import nearest
+
+Host = TypeVar("Host")
+Now = TypeVar("Now")
+
+_TAKEN = {
+    "escape": "leaves a field",
+    "tab": "goes to the next panel or field",
+    "shift+tab": "goes to the panel or field before",
+    "enter": "applies a field",
+    "ctrl+c": "copies",
+    "ctrl+p": "opens the command palette",
+    "ctrl+q": "quits",
+}
+"""Keys that are no lines of the table, and what they do."""
+_SAME = {"ctrl+i": "tab", "ctrl+m": "enter", "ctrl+left_square_bracket": "escape", "esc": "escape", "return": "enter"}
+"""Keys that a terminal sends as another one, and other names of them."""
+_NAMED = frozenset(key.value.rpartition("+")[2] for key in Keys if key.value.isprintable() and key.value[0] != "<")
+_MODIFIERS = re.compile(r"(?:(?:ctrl|alt|shift)\+)*")
+_HOW = "a character such as x or ?, or a name such as f5, ctrl+x, shift+f5, pageup, space"
+
+
+def key_of(text: str, at: Location) -> str:
+    """Return a key in Textual's notation.
+
+    Args:
+        text: As the user writes it: a character, or a name with modifiers, such as `ctrl+x`.
+        at: Where it is written.
+
+    Raises:
+        ConfigError: there is no such key, or it has a meaning that cannot be changed.
+    """
+    match = _MODIFIERS.match(text.lower())
+    modifiers = match[0] if match and len(text) > 1 else ""
+    last = text[len(modifiers) :]
+    if len(last) == 1 and last.isprintable():
+        name = _character_to_key(last.lower() if modifiers else last)
+    else:
+        name = KEY_NAME_REPLACEMENTS.get(last.lower(), last.lower())
+        if name not in _NAMED and name not in _SAME:
+            raise at.wrong(f"no such key {text!r}", _HOW)
+    key = _SAME.get(modifiers + name, modifiers + name)
+    if does := _TAKEN.get(key):
+        raise at.wrong(f"{text} {does} and cannot be another action's key", "choose another key")
+    return key
+
+
+def with_keys(
+    actions: Mapping[str, Action[Host, Now]], config: UserConfig
+) -> dict[str, Action[Host, Now]]:  # fmt: skip
+    """Return a table of keys with the user's own.
+
+    Raises:
+        ConfigError: an id or a key does not exist, or a key belongs to two actions.
+    """
+    at = Location(str(config.path)).at(Section.KEYS)
+    found = dict(actions)
+    for name, keys in config.keys.items():
+        here = at.at(name)
+        if name not in found:
+            raise here.wrong("no such action", f"{nearest(name, found)}; `tuisim guide keys` lists the ids")
+        written = ",".join(dict.fromkeys(key_of(key, here) for key in keys))
+        found[name] = replace(found[name], key=written, shown_key="", footer_key="")
+    _check_clashes(found, config, at)
+    return found
+
+
+def _check_clashes(actions: Mapping[str, Action[Any, Any]], config: UserConfig, at: Location) -> None:
+    owners: dict[str, str] = {}
+    for name, action in actions.items():
+        for key in action.key.split(","):
+            other = owners.setdefault(key, name)
+            if other == name:
+                continue
+            # Blame an entry of the user's: without any, no two actions share a key.
+            blamed, has = (name, other) if name in config.keys else (other, name)
+            title = actions[has].title
+            raise at.at(blamed).wrong(
+                f"{label_of_key(key)} is also the key of {has} ({title})", f"give {blamed} or {has} another key"
+            )
+
+
+def check_in_app(config: UserConfig) -> None:
+    """Check what only the app knows: the keys, and the name of the theme.
+
+    Raises:
+        ConfigError: one of them is wrong.
+    """
+    from tuisim.app.actions.keys import ACTIONS
+
+    with_keys(ACTIONS, config)
+    check_theme(config)
+
+
+def check_theme(config: UserConfig) -> None:
+    """Check the name of the theme.
+
+    Raises:
+        ConfigError: there is no such theme.
+    """
+    name = str(config.value(THEME))
+    if name not in theme_names():
+        at = Location(str(config.path)).at(THEME)
+        raise at.wrong(f"no such theme {name!r}", nearest(name, theme_names()))

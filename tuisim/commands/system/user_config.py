@@ -1,0 +1,52 @@
+"""`tuisim config`: the user's settings, and where each comes from."""
+
+from __future__ import annotations
+
+from tuisim.commands.echo import echo, echo_json, echo_lines, table
+from tuisim.config.command_line import AS_JSON, command, option
+from tuisim.config.user_config import FILE, SETTINGS, load_config
+from tuisim.config.user_config_file import write_template
+from tuisim.errors import ConfigError
+
+
+@command(
+    AS_JSON,
+    option("--init", is_flag=True, help=f"Write a {FILE} with every setting in comments, unless there is one."),
+    name="config",
+    help=f"""Show your settings and keys, and where each comes from; check {FILE}.
+
+    The first line is the path of the file. Empty values are decided by the mat or the robot; `tuisim guide settings`
+    explains the settings.
+    """,
+)
+def config(as_json: bool, init: bool) -> int:
+    """Print the settings, or write the file.
+
+    Raises:
+        ConfigError: something in the file is wrong, or it exists already.
+    """
+    if init:
+        if as_json:
+            raise ConfigError("--init and --json exclude each other", "give one of them", key="config")
+        echo(f"written: {write_template()}")
+        return 0
+    from tuisim.app.keymap import check_in_app
+
+    found = load_config().checked()
+    check_in_app(found)
+    rows = [(path, found.value(path), FILE if path in found.written else "default") for path in SETTINGS]
+    rows += [(f"keys.{name}", ", ".join(keys), FILE) for name, keys in found.keys.items()]
+    exists = found.path.exists()
+    if as_json:
+        listed = [{"setting": path, "value": value, "from": source} for path, value, source in rows]
+        echo_json({"file": str(found.path), "exists": exists, "settings": listed})
+        return 0
+    echo(str(found.path) if exists else f"{found.path} does not exist: `tuisim config --init` writes it")
+    echo()
+    cells = [(path, _shown(value), source) for path, value, source in rows]
+    echo_lines(table(("setting", "value", "from"), cells))
+    return 0
+
+
+def _shown(value: object) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)
