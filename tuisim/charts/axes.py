@@ -77,21 +77,34 @@ def at_column(column: int, limits: Limits, columns: int) -> float:
     return low + (high - low) * min(max((column + 0.25) / (columns - 0.5), 0.0), 1.0)
 
 
+_FEW_ROWS = 7
+"""Limits are round numbers: on fewer rows, labels at both ends are more useful than one tick between them."""
+
+
+def row_ticks(limits: Limits, rows: int) -> list[float]:
+    """Return the positions that a vertical axis has a label for."""
+    return list(limits) if rows < _FEW_ROWS else ticks(limits, min(6, (rows - 1) // 2))
+
+
+def time_ticks(limits: Limits, columns: int) -> list[float]:
+    """Return the ticks of a horizontal axis."""
+    return ticks(limits, max(1, columns // 10))
+
+
 def row_labels(limits: Limits, rows: int) -> dict[int, str]:
     """Return labels of a vertical axis by row, 0 at the top."""
     low, high = limits
-    if rows < 7:
-        # Limits are round numbers: labels at both ends are more useful than one tick between them.
+    if rows < _FEW_ROWS:
         step = nice_step(high - low, 4)
         return {rows - 1: label(low, step), 0: label(high, step)}
-    positions = ticks(limits, min(6, (rows - 1) // 2))
+    positions = row_ticks(limits, rows)
     step = positions[1] - positions[0] if len(positions) > 1 else high - low
     return {math.floor((high - y) / (high - low) * (rows - 0.25)): label(y, step) for y in positions}
 
 
 def time_axis(limits: Limits, columns: int, unit: str = "s") -> tuple[str, str]:
     """Return a horizontal axis: the line with its ticks, and the labels below, each `columns` long."""
-    positions = ticks(limits, max(1, columns // 10))
+    positions = time_ticks(limits, columns)
     step = positions[1] - positions[0] if len(positions) > 1 else limits[1] - limits[0]
     line, below = ["─"] * columns, [" "] * columns
     free_from = 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
 from rich.style import Style
 from rich.text import Text
 
@@ -12,9 +13,11 @@ from tuisim.charts import axes
 from tuisim.charts.axes import Limits
 from tuisim.charts.canvas import AXIS, BRAILLE, PLAIN, Curve, TextRun, canvas, styled, xy_lines
 from tuisim.charts.layout import COLORS, Chart, Line, color_of, limits_of
+from tuisim.charts.plot_image import Plot
 from tuisim.charts.text_runs import Run, cut
 from tuisim.charts.traces import Trace, Traces
 from tuisim.errors import printable
+from tuisim.runs.arrays import FloatArray
 
 _CURSOR = Style(color="#ffffff", bgcolor="#44505e")
 _STRONG = Style(color="#ffffff", bold=True)
@@ -78,6 +81,8 @@ class ChartPicture:
     """Size of the canvas, 0 if there is none."""
     rows: int = 0
     x_limits: Limits = (0.0, 1.0)
+    plot: Plot | None = None
+    """What is on the canvas, for an image in place of it; None if there is none, or no room for it."""
 
     def time_at(self, column: int, row: int) -> float | None:
         """Return the time at a place, None beside the canvas."""
@@ -93,8 +98,10 @@ class ChartPainter:
     _key: object = field(default=None, init=False)
     _canvas: list[list[TextRun]] = field(default_factory=list, init=False)
 
-    def paint(self, traces: Traces, state: ChartState, width: int, height: int) -> ChartPicture:
-        """Return the chart in a panel of that inner size, each at least 1."""
+    def paint(
+        self, traces: Traces, state: ChartState, width: int, height: int, *, is_blank: bool = False
+    ) -> ChartPicture:
+        """Return the chart in a panel of that inner size, each at least 1; `is_blank` for an image on the canvas."""
         drawn = traces.drawn()
         by_mark = state.grey and (len(drawn) > 1 or state.is_ascii)
         lines, boxes = _tick_boxes(traces, state.selected, by_mark, width, height)
@@ -106,26 +113,31 @@ class ChartPainter:
         x_limits = state.x_limits or _time_limits(traces.end_s(), state.grows)
         scales = _Scales.of(drawn, width, rows, state.zoomed)
         columns = max(width - scales.left_width - scales.right_width, 2)
-        self._draw(drawn, scales, columns, rows, x_limits, by_mark or state.marks)
         left, top = scales.left_width, len(lines)
         cursors = [time_s for time_s in (state.cursor_s, state.other_s) if time_s is not None]
-        at = sorted({axes.column_of(time_s, x_limits, columns) for time_s in cursors})
-        lines += [scales.framed(row, _with_cursors(self._canvas[row], at)) for row in range(rows)]
+        curves = tuple(scales.curve(trace, by_mark or state.marks) for trace in drawn)
+        has_room = len(lines) + rows + with_line <= height and left + columns + scales.right_width <= width
+        plot = scales.plot(curves, columns, rows, x_limits, cursors, has_time_line=with_line) if has_room else None
         line, below = axes.time_axis(x_limits, columns, state.unit)
-        if with_line:
-            lines.append([(" " * (left - 1) + "└" + line + ("┘" if scales.right_width else ""), AXIS)])
+        if is_blank and plot:
+            lines += [scales.labelled(row, columns) for row in range(rows)] + [[]] * with_line
+        else:
+            self._draw(drawn, scales, columns, rows, x_limits, curves)
+            at = sorted({axes.column_of(time_s, x_limits, columns) for time_s in cursors})
+            lines += [scales.framed(row, _with_cursors(self._canvas[row], at)) for row in range(rows)]
+            if with_line:
+                lines.append([(" " * (left - 1) + "└" + line + ("┘" if scales.right_width else ""), AXIS)])
         lines.append([(" " * left + below, AXIS)])
-        return ChartPicture([*lines, *values][:height], boxes, left, top, columns, rows, x_limits)
+        return ChartPicture([*lines, *values][:height], boxes, left, top, columns, rows, x_limits, plot)
 
     def _draw(
-        self, drawn: list[Trace], scales: _Scales, columns: int, rows: int, x_limits: Limits, marks: bool
+        self, drawn: list[Trace], scales: _Scales, columns: int, rows: int, x_limits: Limits, curves: Sequence[Curve]
     ) -> None:
         points = [(trace.name, len(trace.times_s)) for trace in drawn]
-        key = (points, scales.left, scales.right, columns, rows, x_limits, marks)
+        key = (points, scales.left, scales.right, columns, rows, x_limits, [curve.marker for curve in curves])
         if key == self._key:
             return
         self._key = key
-        curves = [scales.curve(trace, marks) for trace in drawn]
         self._canvas = canvas(curves, columns, rows, x_limits, scales.left)
 
 
@@ -155,12 +167,32 @@ class _Scales:
     def right_width(self) -> int:
         return max(map(len, self.right_labels.values()), default=0) + 1 if self.right else 0
 
+    def _on_left(self, values: FloatArray, right: Limits) -> FloatArray:
+        share = (values - right[0]) / (right[1] - right[0])
+        return self.left[0] + share * (self.left[1] - self.left[0])
+
     def curve(self, trace: Trace, marks: bool) -> Curve:
         values = trace.values
         if self.right and trace.other_scale:
-            share = (values - self.right[0]) / (self.right[1] - self.right[0])
-            values = self.left[0] + share * (self.left[1] - self.left[0])
+            values = self._on_left(values, self.right)
         return Curve(trace.times_s, values, trace.rgb, trace.mark if marks else BRAILLE)
+
+    def plot(
+        self, curves: tuple[Curve, ...], columns: int, rows: int, x_limits: Limits, cursors: Sequence[float],
+        *, has_time_line: bool,
+    ) -> Plot:  # fmt: skip
+        right_ticks = None
+        if self.right:
+            right_ticks = tuple(self._on_left(np.array(axes.row_ticks(self.right, rows)), self.right).tolist())
+        return Plot(
+            curves, columns, rows, x_limits, self.left, tuple(axes.time_ticks(x_limits, columns)),
+            tuple(axes.row_ticks(self.left, rows)), right_ticks, has_time_line, tuple(cursors),
+        )  # fmt: skip
+
+    def labelled(self, row: int, columns: int) -> list[Run]:
+        """Return the labels of a row of a canvas of which an image is drawn."""
+        text = self.left_labels.get(row, "").rjust(self.left_width - 1) + " " * (1 + columns)
+        return [(text + " " + self.right_labels.get(row, "") if self.right else text, AXIS)]
 
     def framed(self, row: int, inside: list[Run]) -> list[Run]:
         text = self.left_labels.get(row, "")

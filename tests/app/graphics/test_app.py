@@ -1,4 +1,4 @@
-"""The app draws the world and the sensor arrays with pixels where the terminal can."""
+"""The app draws the world, the sensor arrays and charts with pixels where the terminal can."""
 
 from __future__ import annotations
 
@@ -15,10 +15,13 @@ from tests.app.graphics.decoder import PixelTerminal
 from tests.app.wires import on_wire, until_quiet, wire_of
 from tuisim.app.app import LabApp
 from tuisim.app.panels.arrays import Arrays
+from tuisim.app.panels.chart import Chart
 from tuisim.app.panels.world import WorldView
 from tuisim.app.terminal.answers import TerminalAnswered
 from tuisim.app.terminal.cell_view import PixelView
+from tuisim.app.terminal.plot_view import PlotView
 from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, facts_in
+from tuisim.app.terminal.screenshot import screen_cells
 from tuisim.config.options import AUTO, CellSet, Protocol
 
 CELL_PX = 8, 16
@@ -35,12 +38,12 @@ def _seen(pilot: Pilot[Any]) -> PixelTerminal:
     return terminal
 
 
-def _part(terminal: PixelTerminal, view: PixelView) -> np.ndarray[Any, Any]:
+def _part(terminal: PixelTerminal, view: PixelView | PlotView) -> np.ndarray[Any, Any]:
     x, y, width, height = view.content_region
     return terminal.pixels[y * 16 : (y + height) * 16, x * 8 : (x + width) * 8]
 
 
-def _drawn(view: PixelView, protocol: Protocol) -> np.ndarray[Any, Any]:
+def _drawn(view: PixelView | PlotView, protocol: Protocol) -> np.ndarray[Any, Any]:
     assert view._tiles is not None
     points = view._tiles._points
     return np.rint(np.rint(points * (100 / 255)) * 255 / 100).astype(np.uint8) if protocol == "sixel" else points
@@ -68,6 +71,75 @@ async def test_what_the_terminal_shows_is_what_was_drawn(protocol: Protocol) -> 
         for view in (pilot.app.query_one(WorldView), pilot.app.query_one(Arrays).query_one(PixelView)):
             await _sharp(pilot, view)
             assert np.array_equal(_part(_seen(pilot), view), _drawn(view, protocol))
+
+
+def _fed(pilot: Pilot[Any], end_s: float) -> PlotView:
+    """Show the chart with a point each tenth of a second."""
+    times_s = np.arange(0.0, end_s, 0.1)
+    chart = pilot.app.query_one(Chart)
+    chart.clear()
+    chart.append("Colour", times_s.tolist(), (50 + 40 * np.sin(times_s)).tolist())
+    chart.focus()
+    return chart.query_one(PlotView)
+
+
+def _on_canvas(view: PlotView, points: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Return what an image of the view shows where it has a chart."""
+    rows = [points[y * 16 : y * 16 + 16, 8 * left : 8 * right] for y, (left, right) in view._spans.items()]
+    return np.concatenate(rows)
+
+
+@pytest.mark.parametrize("protocol", Protocol)
+async def test_the_chart_is_what_was_drawn(protocol: Protocol) -> None:
+    async with on_wire(LabApp(settings(panels_on=frozenset({"chart"}))), "truecolor") as pilot:
+        await _answered(pilot, ANSWERS[protocol])
+        view = _fed(pilot, 7.9)
+        await until(pilot, lambda: view._tiles is not None)
+        await until_quiet(pilot)
+        # With other limits everything would move.
+        pilot.app.query_one(Chart).action_freeze()
+        await until_quiet(pilot)
+        before = wire_of(pilot).kilobytes
+        pilot.app.query_one(Chart).append("Colour", [7.75], [20.0])
+        await until_quiet(pilot)
+        seen, drawn = _part(_seen(pilot), view), _drawn(view, protocol)
+        assert np.array_equal(_on_canvas(view, seen), _on_canvas(view, drawn))
+        assert np.unique(_on_canvas(view, drawn).reshape(-1, 3), axis=0).shape[0] > 4
+        assert 0 < wire_of(pilot).kilobytes - before < before / 10
+
+
+def _characters(pilot: Pilot[Any], view: PlotView) -> str:
+    """Return the characters of a screenshot where a chart is."""
+    x, y, width, height = view.content_region
+    lines = ["".join(text for text, _ in row) for row in screen_cells(pilot.app)]
+    return "".join(line[x : x + width] for line in lines[y : y + height])
+
+
+async def test_a_screenshot_of_a_chart_has_its_characters() -> None:
+    async with on_wire(LabApp(settings(panels_on=frozenset({"chart"}))), "truecolor") as pilot:
+        await _answered(pilot, "\x1b[?1;2c")
+        view = _fed(pilot, 5.0)
+        await until_quiet(pilot)
+        expected = _characters(pilot, view)
+        pilot.app.post_message(TerminalAnswered(facts_in(ANSWERS[Protocol.SIXEL])))
+        await until(pilot, lambda: view._tiles is not None)
+        await until_quiet(pilot)
+        assert _characters(pilot, view) == expected
+
+
+async def test_a_chart_falls_back_to_characters_and_returns_to_pixels() -> None:
+    async with on_wire(LabApp(settings(panels_on=frozenset({"chart"}))), "truecolor") as pilot:
+        await _answered(pilot, ANSWERS[Protocol.KITTY])
+        view = _fed(pilot, 5.0)
+        await until(pilot, lambda: view._tiles is not None)
+        lab(pilot).choose_cells(CellSet.HALF)
+        assert view._tiles is None
+        lab(pilot).choose_cells(AUTO)
+        assert view._tiles is not None
+        lab(pilot).picture_mode.is_slow = lambda: True
+        pilot.app.query_one(Chart).append("Colour", [5.0], [0.0])
+        await until(pilot, lambda: view._tiles is None)
+        await until(pilot, lambda: view._tiles is not None)
 
 
 async def test_a_dialog_hides_a_part_of_the_picture_and_gives_it_back() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import ClassVar
 
 from textual import events
@@ -14,6 +15,7 @@ from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesPanel
 from tuisim.app.terminal.pacer import Throttle
 from tuisim.app.terminal.picture_mode import shows_ascii
+from tuisim.app.terminal.plot_view import PlotView
 from tuisim.charts import axes
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.charts.traces import Trace, Traces
@@ -53,6 +55,7 @@ class Chart(LinesPanel, can_focus=True):
     def __init__(self) -> None:
         super().__init__()
         self._traces = Traces()
+        self._text: PlotView = PlotView(self._redraw)
         self._painter = ChartPainter()
         self._state = ChartState()
         self._picture: ChartPicture | None = None
@@ -103,8 +106,14 @@ class Chart(LinesPanel, can_focus=True):
         state = replace(self._state, grey=bool(self.app.no_color), is_ascii=shows_ascii(self.app))
         if not self.has_focus:
             state = replace(state, selected=None)
-        self._picture = self._painter.paint(self._traces, state, self._text.size.width, self._text.size.height)
-        self._text.set_lines(self._picture.lines)
+        size = self._text.size
+        with_pixels = self._text.graphics is not None
+        self._picture = self._painter.paint(self._traces, state, *size, is_blank=with_pixels)
+        if not with_pixels:
+            self._text.set_lines(self._picture.lines)
+            return
+        glyphs = partial(self._painter.paint, self._traces, state, *size)
+        self._text.show(self._picture.lines, [(0, self._picture)], lambda: glyphs().lines)
 
     def _redraw(self) -> None:
         self._dirty = True

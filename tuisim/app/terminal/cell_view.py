@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import time
+from abc import abstractmethod
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -18,7 +18,6 @@ from textual.events import MouseEvent
 from textual.filter import LineFilter
 from textual.geometry import Region
 from textual.strip import Strip
-from textual.timer import Timer
 from textual.widget import Widget
 
 from tuisim.app.graphics.picture import Graphics, PictureCell, TilePicture
@@ -36,6 +35,7 @@ from tuisim.app.render.cells import (
 )
 from tuisim.app.render.mono import mono_cells
 from tuisim.app.terminal.picture_mode import BLOCKS, color_depth, picture_mode_of
+from tuisim.app.terminal.sharpness import Sharpness
 from tuisim.charts.glyphs import GLYPHS, GlyphSet, glyph_set, half_block_of
 from tuisim.charts.text_runs import Run, cut_line
 from tuisim.charts.world_image import CellPoints
@@ -53,6 +53,12 @@ class RowsView(Widget):
 
     ALLOW_SELECT = False
 
+    @property
+    def ground_rgb(self) -> tuple[int, int, int]:
+        """Background colour of the widget."""
+        own, theme = self.background_colors[1].rgb, picture_mode_of(self.app).theme
+        return theme.rgb(own) if theme else own
+
     def redraw(self) -> None:
         """Draw again: the app's glyphs or colours have changed."""
         self.refresh()
@@ -62,14 +68,10 @@ class RowsView(Widget):
         return _cut([self.render_line(y) for y in crop.line_range], crop, self.size.width, self.rich_style)
 
 
-REFINE_S = 0.1
-"""Time between two steps in which coarse cells become fine."""
 REFINED_CELLS = 100
 """Cells that become fine in one step on a slow link."""
 QUICKLY_REFINED_CELLS = 400
 """Cells that become fine in one step on a link that is not known to be slow."""
-STILL_S = 0.3
-"""An image that has not changed for this long stands still."""
 
 
 class PixelView(RowsView):
@@ -87,8 +89,7 @@ class PixelView(RowsView):
         self._glyphs = glyph_set(CellSet.HALF)
         self._tiles: TilePicture | None = None
         """The image, while it is drawn with pixels."""
-        self._refine: Timer | None = None
-        self._changed_s = 0.0
+        self._sharpness = Sharpness(self, self._refine_some)
         self._strips: list[Strip | None] = []
 
     @property
@@ -113,12 +114,6 @@ class PixelView(RowsView):
             return CellPoints(*graphics.cell_points, height_px / width_px)
         glyphs = glyph_set(self.cell_set)
         return CellPoints(glyphs.cols, glyphs.rows)
-
-    @property
-    def ground_rgb(self) -> tuple[int, int, int]:
-        """Background colour of the widget."""
-        own, theme = self.background_colors[1].rgb, picture_mode_of(self.app).theme
-        return theme.rgb(own) if theme else own
 
     def set_picture(self, picture: Pixels) -> None:
         """Show an image of square pixels, two in a cell; only cells that differ are repainted."""
@@ -146,8 +141,7 @@ class PixelView(RowsView):
             self._forget_cells()
         runs = self._tiles.put(picture, picture_mode_of(self.app).is_slow())
         rows, _ = self._tiles.size
-        self._changed_s = time.monotonic()
-        self._refine_later(self._tiles.is_coarse)
+        self._sharpness.changed(is_coarse=self._tiles.is_coarse)
         if len(self._strips) != rows:
             self._strips = [None] * rows
             self.refresh()
@@ -162,10 +156,6 @@ class PixelView(RowsView):
             regions.append(Region(col, row, length, 1))
         if regions:
             self.refresh(*regions)
-
-    def _refine_later(self, is_coarse: bool) -> None:
-        if is_coarse and self._refine is None:
-            self._refine = self.set_interval(REFINE_S, self._refine_some)
 
     def _forget_cells(self) -> None:
         self._cells, self._strips = np.empty((0, 0), np.int64), []
@@ -190,8 +180,7 @@ class PixelView(RowsView):
         glyphs = half_block_of(cell_set) if is_coarse else fine
         cells[at] = self._fitted(glyphs, at, was[at] if as_before else None)
         self._put(cells)
-        self._changed_s = time.monotonic()
-        self._refine_later(bool(self._coarse.any()))
+        self._sharpness.changed(is_coarse=bool(self._coarse.any()))
 
     def _fitted(self, glyphs: GlyphSet, at: CellIndex, before: Cells | None) -> Cells:
         mode = self.color_mode
@@ -208,21 +197,14 @@ class PixelView(RowsView):
         self._cells = cells
         self._refresh_runs(runs)
 
-    def _refine_some(self) -> None:
-        """Draw some of the coarse cells fine: on a slow link only while nothing else is drawn."""
-        picture_mode = picture_mode_of(self.app)
-        is_slow, is_still = picture_mode.is_slow(), time.monotonic() - self._changed_s >= STILL_S
-        if not picture_mode.is_idle() or (is_slow and not is_still):
-            return
-        count = REFINED_CELLS if is_slow else QUICKLY_REFINED_CELLS
+    def _refine_some(self) -> bool:
+        """Draw some of the coarse cells fine; return whether more are coarse."""
+        count = REFINED_CELLS if picture_mode_of(self.app).is_slow() else QUICKLY_REFINED_CELLS
         if self._tiles is not None:
             self._refresh_runs(self._tiles.refine(count))
-            is_coarse = self._tiles.is_coarse
-        else:
-            self._refine_glyphs(count)
-            is_coarse = bool(self._coarse.any())
-        if not is_coarse:
-            self._stop_refining()
+            return self._tiles.is_coarse
+        self._refine_glyphs(count)
+        return bool(self._coarse.any())
 
     def _refine_glyphs(self, count: int) -> None:
         rows, cols = np.nonzero(self._coarse)
@@ -231,11 +213,6 @@ class PixelView(RowsView):
         cells = self._cells.copy()
         cells[at] = self._fitted(self._glyphs, at, None)
         self._put(cells)
-
-    def _stop_refining(self) -> None:
-        if self._refine is not None:
-            self._refine.stop()
-            self._refine = None
 
     def redraw(self) -> None:
         """Draw the image again: the app's glyphs or colours have changed."""
@@ -320,13 +297,14 @@ class LinesView(RowsView):
     def render_line(self, y: int) -> Strip:
         """Return one row."""
         if y >= len(self._text_strips):
-            return self._made([])
+            return self.strip_of([])
         strip = self._text_strips[y]
         if strip is None or strip.cell_length != self.size.width:
-            strip = self._text_strips[y] = self._made(self._lines[y])
+            strip = self._text_strips[y] = self.strip_of(self._lines[y])
         return strip
 
-    def _made(self, line: Sequence[Run]) -> Strip:
+    def strip_of(self, line: Sequence[Run]) -> Strip:
+        """Return a line as a row of the widget."""
         base = self.rich_style
         whole = Strip([Segment(text, base + style) for text, style in line if text])
         segments = list(whole.adjust_cell_length(self.size.width, base))
@@ -399,21 +377,12 @@ def _channels(rgb: int) -> tuple[int, int, int]:
     return rgb >> 16, rgb >> 8 & 255, rgb & 255
 
 
-class CellStrip(Strip):
-    """A row of half-block cells, see `render.cells.Cells`. Segments are created only on demand.
+class LazyStrip(Strip):
+    """A row whose segments are created only on demand."""
 
-    Args:
-        cells: One number per cell.
-    """
+    __slots__ = ["_made"]
 
-    __slots__ = ["_made", "cells"]
-
-    def __init__(self, cells: Sequence[int]) -> None:
-        # The base class's caches are omitted: every method that uses one is overridden here.
-        self.cells = cells
-        """One number per cell."""
-        self._begin(len(cells))
-
+    # The base class's caches are omitted: every method that uses one is overridden here.
     def _begin(self, count: int) -> None:
         self._made: list[Segment] | None = None
         self._cell_length = self._cell_count = count
@@ -423,8 +392,12 @@ class CellStrip(Strip):
     @property
     def _segments(self) -> list[Segment]:  # type: ignore[override]  # a slot of the base class
         if self._made is None:
-            self._made = [_segment(cell) for cell in self.cells]
+            self._made = self._make()
         return self._made
+
+    @abstractmethod
+    def _make(self) -> list[Segment]:
+        """Return its segments."""
 
     def _plain(self) -> Strip:
         return Strip(self._segments, self.cell_length)
@@ -433,13 +406,14 @@ class CellStrip(Strip):
         return bool(self._cell_length)
 
     def crop(self, start: int, end: int | None = None) -> Strip:
-        """Return the cells from `start` up to `end`."""
+        """Return the part from `start` up to `end`."""
         length = self.cell_length
         start, end = max(0, start), length if end is None else min(length, end)
         return self if start == 0 and end == length else self._part(start, max(start, end))
 
-    def _part(self, start: int, end: int) -> CellStrip:
-        return CellStrip(self.cells[start:end])
+    @abstractmethod
+    def _part(self, start: int, end: int) -> LazyStrip:
+        """Return the part from `start` up to `end`, both inside it."""
 
     def divide(self, cuts: Iterable[int]) -> Sequence[Strip]:
         """Return the strips between the cuts, the first one from column 0."""
@@ -467,8 +441,29 @@ class CellStrip(Strip):
         return self._plain().apply_style(style)
 
     def apply_offsets(self, x: int, y: int) -> Strip:
-        """Return the strip unchanged: half blocks cannot be selected as text."""
+        """Return the strip unchanged: a picture cannot be selected as text."""
         return self
+
+
+class CellStrip(LazyStrip):
+    """A row of half-block cells, see `render.cells.Cells`.
+
+    Args:
+        cells: One number per cell.
+    """
+
+    __slots__ = ["cells"]
+
+    def __init__(self, cells: Sequence[int]) -> None:
+        self.cells = cells
+        """One number per cell."""
+        self._begin(len(cells))
+
+    def _make(self) -> list[Segment]:
+        return [_segment(cell) for cell in self.cells]
+
+    def _part(self, start: int, end: int) -> CellStrip:
+        return CellStrip(self.cells[start:end])
 
 
 class PictureStrip(CellStrip):

@@ -22,6 +22,7 @@ from tuisim.app.graphics.picture import PictureCell, TilePicture
 from tuisim.app.render.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR, sgr_index
 from tuisim.app.terminal.cell_view import CellStrip, PictureStrip
 from tuisim.app.terminal.plain import as_ascii
+from tuisim.app.terminal.plot_view import PlotStrip
 from tuisim.charts.glyphs import GLYPHS
 
 _SEEN_ON_BLANKS = frozenset({"4", "7", "9", "21", "51", "52", "53"})
@@ -146,6 +147,8 @@ def _pieces_of_part(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
 
 
 def _cells(strip: Strip, mode: TextMode) -> Sequence[Cell]:
+    if isinstance(strip, PlotStrip):
+        return [cell for part in strip.parts for cell in _cells(part, mode)]
     if isinstance(strip, PictureStrip):
         return [
             ("", cell) if cell.half_block is None else _image_cell(cell.half_block, mode.depth) for cell in strip.parts

@@ -42,7 +42,7 @@ from tuisim.app.graphics.choice import graphics_of
 from tuisim.app.render.cells import PALETTE_256
 from tuisim.app.terminal.answers import AnswerParser, TerminalAnswered
 from tuisim.app.terminal.browser import in_browser, offer
-from tuisim.app.terminal.cell_view import PixelView, RowsView
+from tuisim.app.terminal.cell_view import RowsView
 from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
 from tuisim.app.terminal.picture_mode import PictureMode, color_depth, picture_mode_of
 from tuisim.app.terminal.probe import SILENT
@@ -302,7 +302,7 @@ class TerminalApp(App[None]):
     def redraw_pictures(self) -> None:
         """Draw all pictures again: with pixels or glyphs, as `picture_mode` says now."""
         for screen in self.screen_stack:
-            for view in screen.query(PixelView):
+            for view in screen.query(RowsView):
                 view.redraw()
 
     @on(Driver.SignalResume)

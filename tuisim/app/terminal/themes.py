@@ -80,6 +80,11 @@ class ThemeColors(LineFilter):
         """Return the colour in place of one of the app's own; any other is returned as it is."""
         return self._replaced.get(own, own)
 
+    def text_rgb(self, own: Rgb) -> Rgb:
+        """Return the colour of text or lines in one of the app's own colours: it can be read on the background."""
+        new = self.rgb(own)
+        return self._legible(new, self._background.rgb, is_line=own == _LINE) if own in self._replaced else new
+
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
         """Return the segments in the theme's colours."""
         return [
