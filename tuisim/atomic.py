@@ -61,8 +61,11 @@ def replacing(path: Path, *, durable: bool = True, owner_only: bool = False) -> 
             if durable:
                 os.fsync(handle.fileno())
         os.replace(beside, target)
-    finally:
-        beside.unlink(missing_ok=True)
+    except BaseException:
+        # What went wrong first is what counts.
+        with suppress(OSError):
+            beside.unlink()
+        raise
 
 
 def sweep(folder: Path, name: str = "*") -> None:

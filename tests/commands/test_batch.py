@@ -209,6 +209,13 @@ def test_a_resumed_batch_runs_the_rest_and_gives_the_same_bytes(
     assert list(Path().glob("*.part")) == []
 
 
+def test_a_complete_batch_keeps_a_column_that_is_empty(batch: Batch) -> None:
+    assert batch("mine.py", "--seeds", "0..1", "--out", "rows.csv") == 0
+    whole = Path("rows.csv").read_bytes()
+    assert batch("mine.py", "--seeds", "0..1", "--out", "rows.csv", "--resume") == 0
+    assert Path("rows.csv").read_bytes() == whole
+
+
 @pytest.mark.parametrize("suffix", ["csv", "parquet", "jsonl", "arrow"])
 def test_a_complete_batch_is_not_run_again_for_another_picture(
     batch: Batch, suffix: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -15,7 +15,7 @@ from pathlib import Path
 from random import Random
 
 from tests.proof.commands import check_said, said
-from tests.proof.kind import FaultError, Kind
+from tests.proof.kind import FaultError, Kind, home
 from tests.proof.mutations import damaged
 from tuisim.analysis.source import read_notes
 from tuisim.app.layout.kept import load_borders, load_layout
@@ -79,13 +79,12 @@ def samples() -> Path:
     program = folder / "program.py"
     program.write_text(_PROGRAM)
     (folder / "batch.toml").write_text(_BATCH)
-    was, os.environ["TUISIM_HOME"] = os.environ["TUISIM_HOME"], str(folder / "home")
-    _done(["run", str(program), "--background", "Grey_bands"])
-    _done(["run", str(program), "--background", "Grey_bands"])
-    for suffix in ("csv", "jsonl", "parquet", "arrow"):
-        _done(["log", "export", "last", "--out", str(folder / f"log.{suffix}")])
-    _done(["runs", "compact", "1"])
-    os.environ["TUISIM_HOME"] = was
+    with home(folder / "home"):
+        _done(["run", str(program), "--background", "Grey_bands"])
+        _done(["run", str(program), "--background", "Grey_bands"])
+        for suffix in ("csv", "jsonl", "parquet", "arrow"):
+            _done(["log", "export", "last", "--out", str(folder / f"log.{suffix}")])
+        _done(["runs", "compact", "1"])
     for run in list((folder / "home" / "runs").iterdir()):
         run.rename(run.with_name("packed" if (run / "telemetry.bin.packed").exists() else "plain"))
     for kind, name in (("robots", "Explorer"), ("obstacles", "Square_posts"), ("profiles", "ev3")):

@@ -8,7 +8,7 @@ import signal
 import tempfile
 import traceback
 from collections.abc import Callable, Iterator
-from contextlib import chdir
+from contextlib import chdir, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from random import Random
@@ -38,15 +38,27 @@ class Kind:
     """CPU seconds of this process after which a case hangs; what a case waits for has limits of its own."""
 
 
+@contextmanager
+def home(folder: Path) -> Iterator[None]:
+    """Let a folder be the home of tuisim."""
+    was = os.environ.get("TUISIM_HOME")
+    os.environ["TUISIM_HOME"] = str(folder)
+    try:
+        yield
+    finally:
+        os.environ.pop("TUISIM_HOME")
+        if was is not None:
+            os.environ["TUISIM_HOME"] = was
+
+
 def fault_of(kind: Kind, name: str) -> str:
     """Run a case in a folder and a home of its own; return what was wrong, empty if nothing was."""
 
     def too_long(number: int, frame: FrameType | None) -> None:
         raise TooLongError(f"has not ended after {kind.limit_s:g} s of CPU")
 
-    was = os.environ.get("TUISIM_HOME")
-    with tempfile.TemporaryDirectory(prefix="tuisim-proof-", ignore_cleanup_errors=True) as folder, chdir(folder):
-        os.environ["TUISIM_HOME"] = str(Path(folder, "home"))
+    temporary = tempfile.TemporaryDirectory(prefix="tuisim-proof-", ignore_cleanup_errors=True)
+    with temporary as folder, chdir(folder), home(Path(folder, "home")):
         before = signal.signal(signal.SIGPROF, too_long)
         signal.setitimer(signal.ITIMER_PROF, kind.limit_s)
         try:
@@ -59,9 +71,6 @@ def fault_of(kind: Kind, name: str) -> str:
         finally:
             signal.setitimer(signal.ITIMER_PROF, 0)
             signal.signal(signal.SIGPROF, before)
-            os.environ.pop("TUISIM_HOME")
-            if was is not None:
-                os.environ["TUISIM_HOME"] = was
     return ""
 
 

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from tests.proof.crashes import CRASHES
 from tests.proof.damage import DAMAGE
+from tests.proof.failures import FAILURES
 from tests.proof.kind import Kind
 
 KINDS: dict[str, Kind] = {
     "damage": DAMAGE,
+    "crashes": CRASHES,
+    "failures": FAILURES,
 }
 """Every kind by name."""

@@ -110,9 +110,14 @@ def rows_of_table(path: Path, identity: Mapping[str, Any], columns: Iterable[str
         return {}
     if frame is None or len(frame) != identity["runs"]:
         return {}
-    kept = frame[[name for name in frame.columns if name in {*columns, RUN_ID} or is_statistic(name)]]
-    rows = [{name: value for name, value in row.items() if value == value} for row in kept.to_dict("records")]
-    return {int(row[RUN]) - 1: {str(name): value for name, value in row.items()} for row in rows}
+    usual = {*columns, RUN_ID}
+    kept = frame[[name for name in frame.columns if name in usual or is_statistic(name)]]
+    rows: list[Row] = [
+        # A run has no statistics of what it has not printed; of the other columns some texts are empty.
+        {str(name): value if value == value else None for name, value in row.items() if value == value or name in usual}
+        for row in kept.to_dict("records")
+    ]
+    return {int(row[RUN]) - 1: row for row in rows}
 
 
 def _encoded(row: Mapping[str, Any]) -> bytes:

@@ -395,12 +395,19 @@ def compact_run(run: StoredRun) -> tuple[int, int]:
 
 
 def bytes_in(folder: Path) -> int:
-    """Return the total size of a run's files in bytes; files deleted during the call do not count."""
+    """Return the total size of a run's files in bytes; files deleted during the call do not count.
+
+    Raises:
+        LogError: the folder cannot be read.
+    """
     found = 0
-    with suppress(FileNotFoundError), os.scandir(folder) as entries:
-        for entry in entries:
-            with suppress(FileNotFoundError):
-                found += entry.stat().st_size
+    try:
+        with suppress(FileNotFoundError), os.scandir(folder) as entries:
+            for entry in entries:
+                with suppress(FileNotFoundError):
+                    found += entry.stat().st_size
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=str(folder)) from error
     return found
 
 

@@ -1,0 +1,37 @@
+"""Operations that are killed at each write and rename, one by one: the next start reads all that was promised."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from random import Random
+from tempfile import TemporaryDirectory
+
+from tests.proof.injection import killed_at, numbers_of
+from tests.proof.kind import Kind, home
+from tests.proof.operations import OPERATIONS, check_after, prepared, undisturbed
+
+CALLS = "write,pwrite64,writev,rename,renameat,renameat2,unlink,unlinkat,fsync,fdatasync,ftruncate,mkdir,mkdirat,link"
+
+
+@cache
+def _numbers(name: str) -> list[int]:
+    with TemporaryDirectory(prefix="tuisim-proof-count-") as folder, home(Path(folder)):
+        return numbers_of(OPERATIONS[name].words, prepared(Path(folder), "count"), CALLS)
+
+
+def _names(random: Random) -> Iterator[str]:
+    for name in random.sample(list(OPERATIONS), len(OPERATIONS)):
+        numbers = _numbers(name)
+        yield from (f"{name}:{number}" for number in random.sample(numbers, len(numbers)))
+
+
+def _check(case: str, folder: Path) -> None:
+    name, _, number = case.partition(":")
+    undisturbed(name)
+    place = prepared(folder, "place")
+    check_after(name, place, killed_at(OPERATIONS[name].words, place, CALLS, int(number)))
+
+
+CRASHES = Kind("commands that are killed at each write and rename", _names, _check)

@@ -1,0 +1,193 @@
+"""What users do that changes files, and what must hold whatever happens to it."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import shutil
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from tests.proof.commands import said
+from tests.proof.injection import Ended, run
+from tests.proof.kind import FaultError, home
+from tuisim.cli import EXIT_OUR_MISTAKE
+from tuisim.goals.files import examples
+
+_PROGRAM = """\
+tank_drive.on(20, 20)
+import time
+for _ in range(5):
+    print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
+    time.sleep(0.1)
+tank_drive.off()
+"""
+_OLD = "the content before\n"
+_COMMAND = ("-P", "-m", "tuisim")
+"""Not from the working directory, which Python would list to import from it."""
+
+
+def _call(code: str) -> tuple[str, ...]:
+    lines = ["import sys", "from tuisim.errors import TuisimError", "try:", f"    {code}"]
+    # As the app does, which shows the error in a notice.
+    lines += ["except (TuisimError, OSError) as error:", "    sys.exit(str(error))"]
+    return ("-P", "-c", "\n".join(lines))
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """Something that changes files."""
+
+    words: tuple[str, ...]
+    """Of Python, in the folder of `prepared`."""
+    writes: tuple[str, ...] = ()
+    """The files that it replaces: each has the content before or the one after, at any time."""
+    removes: bool = False
+    """Whether it removes run 1."""
+    again: tuple[str, ...] = ()
+    """The words that go on after a crash; then `writes` have the content after."""
+
+
+OPERATIONS: Mapping[str, Operation] = {
+    "run": Operation((*_COMMAND, "run", "program.py", "-b", "Grey_bands")),
+    "run-export": Operation(
+        (*_COMMAND, "run", "program.py", "-b", "Grey_bands", "--telemetry", "out.csv"), ("out.csv", "out.csv.json")
+    ),
+    "csv": Operation((*_COMMAND, "runs", "export", "1", "out.csv"), ("out.csv", "out.csv.json")),
+    "parquet": Operation((*_COMMAND, "log", "export", "1", "--out", "out.parquet"), ("out.parquet",)),
+    "plot": Operation((*_COMMAND, "log", "plot", "1", "--out", "out.svg"), ("out.svg",)),
+    "picture": Operation((*_COMMAND, "runs", "picture", "1", "--out", "out.png"), ("out.png",)),
+    "compact": Operation((*_COMMAND, "runs", "compact", "1")),
+    "remove": Operation((*_COMMAND, "runs", "rm", "1"), removes=True),
+    "rerun": Operation((*_COMMAND, "runs", "rerun", "1")),
+    "catalogue": Operation(
+        _call("import os; os.truncate('home/runs.db', 9); from tuisim.cli import run_command; run_command(['runs'])")
+    ),
+    "guide": Operation((*_COMMAND, "guide", "--html", "out"), ("out/index.html", "out/keys.html")),
+    "lesson": Operation((*_COMMAND, "learn", "new", "out.md"), ("out.md",)),
+    "robot": Operation(
+        _call("from tuisim.config import robots; robots.save_robot(robots.load_robot('Small_Robot'), 'out.toml')"),
+        ("out.toml",),
+    ),
+    "preference": Operation(
+        _call("from tuisim.config.preferences import keep; keep('theme', 'dark')"), ("home/preferences.json",)
+    ),
+    "draft": Operation(_call("from tuisim.app.editor.text_file import keep_draft; keep_draft('/x.py', 'print()')")),
+    "notes": Operation(
+        _call(
+            "from tuisim.analysis import source; from pathlib import Path; "
+            "source.write_notes(Path('home/notes/a.jsonl'), [source.Note('a', 1.0, 2.0)])"
+        ),
+        ("home/notes/a.jsonl",),
+    ),
+    "progress": Operation(
+        _call(
+            "from tuisim.lessons import progress; "
+            "progress.save_progress('first-run', progress.LessonProgress({}, '2026-01-02'))"
+        ),
+        ("home/lessons/progress.json",),
+    ),
+    "batch": Operation(
+        (*_COMMAND, "batch", "program.py", "--seeds", "0..2", "--jobs", "1", "--out", "out.csv"), ("out.csv",),
+        again=("--resume",),
+    ),
+    "mark": Operation(
+        (*_COMMAND, "mark", "goals.toml", "class", "--seeds", "0..1", "--jobs", "1", "--export", "out.csv"),
+        ("out.csv",), again=("--resume",),
+    ),
+}  # fmt: skip
+"""Every operation by name."""
+
+
+@cache
+def _sample() -> Path:
+    """Make a folder with a home that has two runs, and files to work on; it is removed when this process ends."""
+    folder = Path(tempfile.mkdtemp(prefix="tuisim-proof-home-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    (folder / "program.py").write_text(_PROGRAM)
+    (folder / "class").mkdir()
+    (folder / "class" / "anna.py").write_text(_PROGRAM)
+    shutil.copy(next(path for path in examples() if path.name.startswith("log_greys")), folder / "goals.toml")
+    with home(folder / "home"):
+        for _ in range(2):
+            if (done := said(["run", str(folder / "program.py"), "-b", "Grey_bands"])).code:
+                raise FaultError(done.err)
+    return folder
+
+
+def prepared(folder: Path, name: str) -> Path:
+    """Make a folder for an operation, with files of an earlier time; its home becomes the one in use. Return it."""
+    place = folder / name
+    shutil.copytree(_sample(), place, ignore=shutil.ignore_patterns("cache"))
+    # Prepared mats are many megabytes; nobody writes to them.
+    shutil.copytree(_sample() / "home" / "cache", place / "home" / "cache", copy_function=os.link)
+    for one in ("out.csv", "out.parquet", "out.svg", "out.png", "out.toml"):
+        (place / one).write_text(_OLD)
+    os.environ["TUISIM_HOME"] = str(place / "home")
+    return place
+
+
+def contents(operation: Operation, place: Path) -> dict[str, bytes | None]:
+    """Return the contents of the files that an operation writes; None where there is no file."""
+    found = {name: place / name for name in operation.writes}
+    return {name: path.read_bytes() if path.is_file() else None for name, path in found.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class Undisturbed:
+    """An operation to which nothing happens."""
+
+    before: dict[str, bytes | None]
+    after: dict[str, bytes | None]
+    telemetry: bytes
+    """That of run 1."""
+
+
+@cache
+def undisturbed(name: str) -> Undisturbed:
+    """Return what an operation does if nothing happens to it."""
+    operation = OPERATIONS[name]
+    with tempfile.TemporaryDirectory(prefix="tuisim-proof-sound-") as folder, home(Path(folder)):
+        place = prepared(Path(folder), "sound")
+        before, telemetry = contents(operation, place), _telemetry(place)
+        done = run(operation.words, place)
+        if done.code:
+            raise FaultError(f"{name} fails by itself: {done.err}")
+        after = contents(operation, place)
+    return Undisturbed(before, after, telemetry)
+
+
+def _telemetry(place: Path) -> bytes:
+    out = place / "telemetry.jsonl"
+    done = said(["runs", "export", "1", "--telemetry", str(out)])
+    if done.code:
+        raise FaultError(f"run 1 cannot be exported: {done.err}")
+    found = out.read_bytes()
+    out.unlink()
+    return found
+
+
+def check_after(name: str, place: Path, ended: Ended) -> None:
+    """Check what must hold after an operation to which something has happened."""
+    operation, sound = OPERATIONS[name], undisturbed(name)
+    if ended.code in (EXIT_OUR_MISTAKE, 1) and ("Traceback" in ended.err or "internal error" in ended.err):
+        raise FaultError(f"a mistake of ours: {ended.err}")
+    found = contents(operation, place)
+    for path, content in found.items():
+        if content not in (sound.before[path], sound.after[path]):
+            raise FaultError(f"{path} has neither the content before nor the one after: {(content or b'')[:200]!r}")
+        if ended.code == 0 and content != sound.after[path]:
+            raise FaultError(f"{path} was not written, but the exit code is 0: {ended.err}")
+    listed = said(["runs", "--json"])
+    if listed.code:
+        raise FaultError(f"the runs cannot be listed: {listed.err}")
+    is_gone = operation.removes and said(["runs", "show", "1"]).code == 2
+    if not is_gone and _telemetry(place) != sound.telemetry:
+        raise FaultError("the telemetry of run 1 has changed")
+    if operation.again:
+        done = run((*operation.words, *operation.again), place)
+        if done.code or contents(operation, place) != sound.after:
+            raise FaultError(f"it does not go on with {' '.join(operation.again)}: {done.err}")
