@@ -61,6 +61,7 @@ def replacing(path: Path, *, durable: bool = True, owner_only: bool = False) -> 
             if durable:
                 os.fsync(handle.fileno())
         os.replace(beside, target)
+    # Also when the command is interrupted.
     except BaseException:
         # What went wrong first is what counts.
         with suppress(OSError):
