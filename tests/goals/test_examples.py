@@ -59,15 +59,15 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
         "log_greys",
         {"time.sleep(0.1)": "time.sleep(1)"},
         {
-            "levels": "Colour took 3 of 8 levels; 82.7 did not come after 100, the nearest was",
-            "black": "away.",
+            "levels": "Colour came near 3 of 8 levels, but not near 82.7 after 100: the nearest was",
+            "black": "from x = 1490 mm.",
             "straight": "left the area at",
         },
     ),
     "log_greys, goes on": (
         "log_greys",
         {"tank_drive.off()": "tank_drive.on_for_rotations(50, 50, 2)"},
-        {"black": "away."},
+        {"black": "from x = 1490 mm."},
     ),
     "log_greys, turns": (
         "log_greys",
@@ -78,7 +78,7 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
         "stop_at_wall",
         {"tank_drive.on(": "tank_drive.on_for_rotations(", "(30))": "(30), 6)", "while": "if"},
         {
-            "near": "At the end the robot was 126 mm away.",
+            "near": "At the end the robot was 126 mm from (1330, 600).",
             "no_touch": "touched the obstacle at x 1500, y 200",
             "sensor": "calls on_for_rotations",
         },

@@ -11,6 +11,7 @@ from tuisim.batch.pool import run_many
 from tuisim.cli import COMMANDS
 from tuisim.commands.learn import learn
 from tuisim.config.program_file import programs
+from tuisim.goals.spec import Log
 from tuisim.lessons.catalogue import shipped_paths
 from tuisim.lessons.files import load_lesson
 from tuisim.lessons.spec import Lesson, Question, Run
@@ -36,6 +37,16 @@ def test_lesson_is_complete(name: str) -> None:
         assert wrong or choices or name == "first-run", f"{step.name}: no wrong answer"
         assert step.hints, f"{step.name}: no hint"
         assert len(step.text) < 700, f"{step.name}: too long for a small terminal"
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_names_that_a_goal_needs_are_in_the_task(name: str) -> None:
+    lesson, needed = LESSONS[name], {goal.name: goal.condition for goal in LESSONS[name].goals}
+    for step in lesson.steps:
+        conditions = [needed[goal] for goal in step.check.goals] if isinstance(step.check, Run) else []
+        for condition in conditions:
+            if isinstance(condition, Log):
+                assert condition.name in f"{step.text} {lesson.program}", f"{step.name}: does not say {condition.name}"
 
 
 def _end(lesson: Lesson, text: str, field: str, seed: int = 0) -> float:

@@ -154,7 +154,7 @@ def test_a_class_is_marked_as_a_table(tmp_path: Path, here: Command) -> None:
             "student    points  robust  levels  place  heading  wall  done  reason",
             "ada.py     10      100%    4       3      1        1     1",
             "gustav.py  7       0%      4       0      1        1     1     "
-            "line 5: At the end the robot was 46 mm away.",
+            "line 5: At the end the robot was 46 mm from (1750, 500).",
             "raises.py  0       0%      0       0      0        0     0     "
             "ZeroDivisionError: division by zero (line 5)",
             "zip.py     0       0%      0       0      0        0     0     zip.py: is not Python text: invalid or "

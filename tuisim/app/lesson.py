@@ -29,6 +29,7 @@ from tuisim.lessons.events import (
     Watched,
     good_runs,
     is_met,
+    wanted_form,
 )
 from tuisim.lessons.files import load_lesson
 from tuisim.lessons.progress import LessonProgress, StepState
@@ -201,10 +202,13 @@ class AppLesson:
             return
         if not text:
             raise TuisimError("Type an answer")
+        if wanted := wanted_form(step.check, text):
+            raise TuisimError(f"{text}: type {wanted}")
         if not self._take(Typed(text)):
             self._keep(self.progress.with_step(step.name, tries=self.progress.of(step.name).tries + 1))
             self.show()
-            raise TuisimError(f"{text}: that is not right. Measure again; Y shows a hint")
+            left = len(step.hints) - self.progress.of(step.name).hints
+            raise TuisimError(f"{text} is not right. Try again{': escape, then Y shows a hint' if left > 0 else ''}")
 
     def hint(self) -> None:
         """Show the next hint of the step."""

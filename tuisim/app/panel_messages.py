@@ -48,6 +48,13 @@ class PanelMessages(ActionHost, TerminalApp):
             columns = _LESSON_COLUMNS if beside_lesson else ROOMY_COLUMNS
             self.workspace.panel_area.make_room("code", columns, ROOMY_ROWS)
 
+    def _end_former_text(self) -> None:
+        """End a run of the text before the edit: the user wants the new one to run."""
+        controller, code = self.workspace.run_controller, self.workspace.panel_area.code
+        if code and code.differs and controller.in_run and not controller.in_past and self.workspace.document.apply():
+            controller.close()
+            self.workspace.app.run_changed()
+
     def on_code_edited(self, message: Code.Edited) -> None:
         self.workspace.document.edited(message.text)
         self.workspace.debugger.edited(message.text)
@@ -59,6 +66,7 @@ class PanelMessages(ActionHost, TerminalApp):
             case ProgramCommand.SAVE:
                 self.workspace.document.save()
             case ProgramCommand.RUN:
+                self._end_former_text()
                 self.action_act("run")
                 # Make the robot visible, or the place of the error in the text.
                 area = self.workspace.panel_area

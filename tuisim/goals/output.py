@@ -81,15 +81,13 @@ def _no_level(condition: Log, count: int, rest: list[tuple[int, Sample]], eviden
         others = sorted({sample.name for _, sample in evidence.samples})
         logged = f" It logged {', '.join(others[:5])}." if others else ""
         return f"The program logged no sample {name}.{logged}"
-    taken = f"{name} took {count} of {len(levels)} levels"
+    came = f"{name} came near {count} of {len(levels)} levels" if len(levels) > 1 else ""
     after = f" after {levels[count - 1]:g}" if count and condition.in_order else ""
     if not rest:
-        return f"{taken}; no sample followed{after}, {levels[count]:g} was next."
+        return f"{came}; no sample followed{after}, {levels[count]:g} was next."
     _, nearest = min(rest, key=lambda each: abs(each[1].value - levels[count]))
-    return (
-        f"{taken}; {levels[count]:g} did not come{after}, the nearest was {nearest.value:.6g} at "
-        f"{nearest.time_ns / 1e9:.2f} s."
-    )
+    missed = f"{came}, but not near" if came else f"{name} did not come near"
+    return f"{missed} {levels[count]:g}{after}: the nearest was {nearest.value:.6g} at {nearest.time_ns / 1e9:.2f} s."
 
 
 def find_dialogue(condition: Dialogue, evidence: Evidence, span: Span) -> Found:

@@ -83,10 +83,18 @@ def _turned_deg(condition: Reach, records: Array) -> Array:
 def _off_words(condition: Reach, away_mm: float, turned_deg: float) -> str:
     words = []
     if condition.x_mm is not None or condition.y_mm is not None:
-        words.append(f"{distance_words(away_mm)} away")
+        words.append(f"{distance_words(away_mm)} from {_place_words(condition)}")
     if condition.heading_deg is not None:
         words.append(f"turned {turned_deg:.1f}° off")
     return " and ".join(words)
+
+
+def _place_words(condition: Reach) -> str:
+    if condition.y_mm is None:
+        return f"x = {condition.x_mm:g} mm"
+    if condition.x_mm is None:
+        return f"y = {condition.y_mm:g} mm"
+    return f"({condition.x_mm:g}, {condition.y_mm:g})"
 
 
 def find_pass(condition: Pass, evidence: Evidence, span: Span) -> Found:

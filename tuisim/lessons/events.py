@@ -120,6 +120,15 @@ def is_right(question: Question, text: str) -> bool:
             return any(_same(text, wanted) for wanted in several)
 
 
+def wanted_form(question: Question, text: str) -> str:
+    """Return in words what form an answer must have; empty if the text has it."""
+    if isinstance(question.answer, int | float):
+        return "" if _NUMBER.match(text) else "a number, such as 12.5"
+    if question.choices and not any(_same(_chosen(question, text), choice) for choice in question.choices):
+        return f"the number of a choice, 1 to {len(question.choices)}"
+    return ""
+
+
 def _chosen(question: Question, text: str) -> str:
     number = text.strip().rstrip(".)")
     if question.choices and number.isdecimal() and 1 <= int(number) <= len(question.choices):

@@ -98,6 +98,8 @@ async def test_text_with_a_mistake_does_not_run_and_leaves_the_world_alone(tmp_p
         assert app.run_controller.next_run.spec.world.start == start
         assert "✗ 1 if" in screen_text(app)
         assert any("cannot run: line 1" in text for text in notices(app))
+        # The notice goes; the reason stays at the mark.
+        assert "line 1" in str(code.border_subtitle)
         await pilot.press(*["backspace"] * 3, "ctrl+r")
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
 

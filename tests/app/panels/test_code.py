@@ -60,12 +60,14 @@ Keys = list[str]
         (["down", "down", "enter", "home", "backspace"], TEXT.replace("    ", "")),
         (["down", "down", "enter", "home", "right", "backspace"], TEXT.replace("    p", "    ")),
         (["down", "enter", "ctrl+a", "x"], "x"),
+        (["enter", "ctrl+end", "x"], TEXT + "x"),
+        (["down", "enter", "end", "ctrl+home", "x"], "x" + TEXT),
         (["enter", "shift+end", "ctrl+x", "down", "ctrl+v"], "\nprint('A: 1')" + TEXT.split("\n", 1)[1]),
     ],
     ids=[
         "letters are no text", "typing", "escape ends it", "undo", "redo", "tab", "indent", "outdent",
         "comment", "indented line", "after a colon", "backspace in an indent", "backspace in code", "select all",
-        "cut and paste",
+        "end of the text", "start of the text", "cut and paste",
     ],
 )  # fmt: skip
 async def test_keys_change_the_text(keys: Keys, after: str) -> None:

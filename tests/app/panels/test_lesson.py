@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from textual.pilot import Pilot
-from textual.widgets import Input, OptionList
+from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import notices, ready, settings, until
 from tuisim.analysis.source import NOTES_FILE, Note, write_notes
@@ -154,7 +154,7 @@ async def test_leaving_and_coming_back_to_the_step(tmp_path: Path) -> None:
 async def test_hints_come_one_by_one_and_are_counted(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: "Y hint (2 left)" in shown(app))
+        await until(pilot, lambda: "Y shows a hint (2 left)." in shown(app))
         await pilot.press("Y")
         await until(pilot, lambda: "Hint 1: Half of 84." in shown(app))
         assert "Six times seven." not in shown(app)
@@ -209,7 +209,7 @@ async def test_run_that_misses_a_goal_says_why_and_counts_as_a_try(tmp_path: Pat
         app.check_files()
         await run_over(pilot, app)
         await until(pilot, lambda: "✗ Drive." in shown(app))
-        assert "At the end the robot was 280 mm away." in shown(app)
+        assert "At the end the robot was 280 mm from x = 780 mm." in " ".join(shown(app).split())
         assert "Faster." in shown(app)
         assert load_progress()["try"].of("drive").tries == 1
 
@@ -401,6 +401,7 @@ def test_pages_of_a_lesson(tmp_path: Path) -> None:
     assert page(2)[:4] == ["Try it                               ✓–●", "✓ Drive", "", "3. Do it"]
     assert "skipped" in page(1)
     assert "✗ Drive." in page(1, at=1, judgements=(missed,))
+    assert page(2)[-1] == "Waits for the panel Chart."
     assert page(3)[1].startswith("The end of the lesson: a model answer")
     assert "A model answer:" not in page(3, states=(StepState.SKIPPED,) * 3, at=None)
     assert draw_lesson(LessonView(), 0, 0, 40, 5).lines[0][0][0] == "No lesson is open: M opens one"
@@ -408,3 +409,47 @@ def test_pages_of_a_lesson(tmp_path: Path) -> None:
 
 def test_steps_can_ask_for_every_panel() -> None:
     assert set(SHOWABLE) == set(PANELS) - {"lesson"}
+
+
+@pytest.mark.usefixtures("home")
+async def test_page_keys_scroll_the_text_after_a_run_from_the_editor(tmp_path: Path) -> None:
+    settings_ = opened(tmp_path)
+    assert settings_.lesson is not None
+    long = replace(settings_.lesson, intro="\n\n".join(f"Line {number}" for number in range(40)))
+    async with LabApp(replace(settings_, lesson=long)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: "Line 0" in shown(app))
+        await pilot.press("d", "escape", "pagedown")
+        await until(pilot, lambda: "Line 0\n" not in shown(app))
+
+
+@pytest.mark.usefixtures("home")
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("41", "41 is not right. Try again: escape, then Y shows a hint"),
+        ("Q0", "Q0: type a number, such as 12.5"),
+    ],
+    ids=["wrong", "no number"],
+)
+async def test_answer_that_is_not_right_says_what_to_do(text: str, words: str, tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await type_answer(pilot, app, text)
+        await until(pilot, lambda: words in str(app.screen.query_one("#message", Static).content))
+        # The readings at the bottom stay in view.
+        assert app.screen.query_one(".dialog").region.y == 0
+
+
+@pytest.mark.usefixtures("home")
+async def test_running_an_edited_text_ends_the_run_of_the_former_one(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await pilot.press("n")
+        await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
+        first = app.run_controller.run_id
+        await pilot.press("d")
+        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
+        await pilot.press("y", "=", "2", "enter", "ctrl+r")
+        await until(pilot, lambda: app.run_controller.run_id not in ("", first))
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)

@@ -204,8 +204,10 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("lesson-menu", "M", "Lessons: open, skip a step, start over", LESSON, lesson.menu, _can_change_world),
         Action("answer", "Q", "Answer the question of the lesson", LESSON, lesson.answer),
         Action("hint", "Y", "Next hint of the lesson", LESSON, lesson.hint),
-        Action("lesson-up", "pageup", "Text of the lesson: up", LESSON, partial(lesson.scroll, by=-8)),
-        Action("lesson-down", "pagedown", "Text of the lesson: down", LESSON, partial(lesson.scroll, by=8)),
+        Action("lesson-up", "pageup", "Text of the lesson, or the code: up", LESSON, partial(lesson.scroll, by=-8)),
+        Action(
+            "lesson-down", "pagedown", "Text of the lesson, or the code: down", LESSON, partial(lesson.scroll, by=8)
+        ),
         Action("enlarge", "plus", "Enlarge the focused panel, or restore it", PANEL, app.enlarge),
         *_nudges(),
         Action("help", "question_mark", "Guide: keys, pages, search", APP, app.show_help, footer="help"),

@@ -16,7 +16,7 @@ _SKIP, _OVER, _OPEN = "skip", "over", "open "
 
 def answer(workspace: Workspace) -> None:
     """Ask for the answer to the question of the step."""
-    from tuisim.app.dialogs.question import LinePrompt
+    from tuisim.app.dialogs.question import AnswerPrompt
 
     lesson = workspace.lesson
     step = lesson.step
@@ -27,7 +27,7 @@ def answer(workspace: Workspace) -> None:
     forms = [(f"{number}", choice) for number, choice in enumerate(step.check.choices, start=1)]
     place = "The number of your choice" if forms else "Your answer"
     workspace.app.push_screen(
-        LinePrompt(step.title, lesson.answer, forms=forms, placeholder=place, text=step.check.ask)
+        AnswerPrompt(step.title, lesson.answer, forms=forms, placeholder=place, text=step.check.ask)
     )
 
 
@@ -37,9 +37,12 @@ def hint(workspace: Workspace) -> None:
 
 
 def scroll(workspace: Workspace, by: int) -> None:
-    """Scroll the text of the lesson by rows."""
-    if panel := workspace.panel_area.lesson:
-        panel.action_scroll_text(by)
+    """Scroll the text of the lesson by rows; without a lesson, the code if it has the focus."""
+    area = workspace.panel_area
+    if area.lesson and area.shown("lesson"):
+        area.lesson.action_scroll_text(by)
+    elif area.code and area.code.has_focus_within:
+        area.code.page(by)
 
 
 def menu(workspace: Workspace) -> None:

@@ -225,3 +225,7 @@ class LinePrompt(Dialog[bool]):
             event.input.action_select_all()
             return
         self.dismiss(True)
+
+
+class AnswerPrompt(LinePrompt):
+    """A line that answers a question of a lesson: at the top, so that the readings below stay in view."""

@@ -37,6 +37,7 @@ EDITOR_KEYS = (
     ("ctrl+r F5", "Run the text as it is"),
     ("ctrl+f F3 ⇧F3", "Find, next, previous"),
     ("ctrl+g", "Go to a line"),
+    ("ctrl+home ctrl+end", "Start, end of the text"),
     ("tab ⇧tab", "Indent, outdent; backspace removes an indent"),
     ("ctrl+/", "Comment or uncomment lines"),
     ("ctrl+z ctrl+y", "Undo, redo"),
@@ -71,6 +72,8 @@ class CodeArea(TextArea):
         Binding("ctrl+f", "want('find')", "Find", show=False),
         Binding("ctrl+g", "want('line')", "Go to a line", show=False),
         Binding("ctrl+a", "select_all", "Select all", show=False),
+        Binding("ctrl+home", "go_to_end(False)", "Start of the text", show=False),
+        Binding("ctrl+end", "go_to_end(True)", "End of the text", show=False),
         Binding("f3", "want('next')", "Next match", show=False),
         Binding("shift+f3", "want('previous')", "Previous match", show=False),
     ]
@@ -245,11 +248,14 @@ class CodeArea(TextArea):
         return not self.read_only
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave the keys of undo and redo to the app while the user does not type."""
-        return self.typing if action in ("undo", "redo") else super().check_action(action, parameters)
+        """Leave the keys of undo, redo and the pages to the app while the user does not type."""
+        return self.typing if action in _TYPING_ACTIONS else super().check_action(action, parameters)
 
     def action_want(self, command: str) -> None:
         self.post_message(self.Wanted(EditorCommand(command)))
+
+    def action_go_to_end(self, end: bool) -> None:
+        self.move_cursor(self.document.end if end else (0, 0))
 
     def on_key(self, event: events.Key) -> None:
         if not self.typing:
@@ -316,6 +322,8 @@ class CodeArea(TextArea):
             if event.y + self.scroll_offset.y < self.wrapped_document.height:
                 self.post_message(self.GutterClicked(row + 1))
 
+
+_TYPING_ACTIONS = frozenset({"undo", "redo", "cursor_page_up", "cursor_page_down"})
 
 _WHILE_TYPING = {"escape": EditorCommand.STOP_TYPING, "ctrl+n": EditorCommand.NEW, "ctrl+o": EditorCommand.OPEN}
 """Usual editor keys; while the user does not type, the last two are keys of the robot and the obstacles."""

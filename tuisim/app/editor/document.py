@@ -265,7 +265,7 @@ class Document:
 
         mistake = mistake_in(self._text, self._name)
         if code := self._panel_area.code:
-            code.mark_error(mistake.line if mistake else 0)
+            code.mark_error(mistake.line if mistake else 0, mistake.message if mistake else "")
         return mistake
 
     def _apply_text(self) -> bool:

@@ -87,6 +87,8 @@ class Code(Vertical):
         self._lit_at_s = 0.0
         self._line = 0
         self._said = (_TITLE, "")
+        self._error_words = ""
+        """What is wrong in the line that is marked as an error, as far as it is known."""
 
     def compose(self) -> ComposeResult:
         self._area.placeholder = NOTHING_OPEN
@@ -135,14 +137,20 @@ class Code(Vertical):
         self._said = (f"{_TITLE}: {name}" if name else _TITLE, " • edited" if edited else "")
         self._say()
 
+    @property
+    def differs(self) -> bool:
+        """Whether a run of this program is on with another text."""
+        tells = self._run_lines is not None and self._tells_run and self._in_run
+        return tells and self._run_lines != source_lines(self._shown)
+
     def _say(self) -> None:
         title, edited = self._said
         # A file name is no markup.
         self.border_title = title.replace("[", "\\[") + edited
-        tells = self._run_lines is not None and self._tells_run and self._in_run
-        differs = tells and self._run_lines != source_lines(self._shown)
         keys = _TYPING_KEYS if self.typing else ""
-        self.border_subtitle = "  ".join(filter(None, ["running text differs" if differs else "", keys]))
+        words = self._error_words if self.error_line else ""
+        told = words or "  ".join(filter(None, ["running text differs" if self.differs else "", keys]))
+        self.border_subtitle = told.replace("[", "\\[")
 
     def set_running(self, text: str | None, tells: bool = True) -> None:
         """Set the text of the run in view.
@@ -168,9 +176,16 @@ class Code(Vertical):
         """The line that is marked as an error, 0 for none."""
         return self._area.error_line
 
-    def mark_error(self, line: int) -> None:
-        """Mark the line of an error; 0 removes the mark."""
+    def mark_error(self, line: int, words: str = "") -> None:
+        """Mark the line of an error; 0 removes the mark.
+
+        Args:
+            line: From 1.
+            words: What is wrong, which stays in view as long as the mark.
+        """
         self._area.set_error(line)
+        self._error_words = words
+        self._say()
         if line:
             self._area.scroll_to_line(line)
 
@@ -211,6 +226,13 @@ class Code(Vertical):
         if self._mapped is None or self._mapped[0] != lines:
             self._mapped = list(lines), LineMap(self._run_lines, lines)
         return self._mapped[1].to_shown(line)
+
+    def page(self, by: int) -> None:
+        """Move the cursor a page down, or up if `by` is negative."""
+        if by > 0:
+            self._area.action_cursor_page_down()
+        else:
+            self._area.action_cursor_page_up()
 
     # Typing
 

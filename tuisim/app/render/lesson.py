@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from rich.style import Style
 
+from tuisim.app.panels import PANELS
 from tuisim.charts.text_runs import Line, cut
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.lessons.markdown import markdown_lines
@@ -134,6 +135,8 @@ def _page(view: LessonView, page: int, width: int) -> Iterator[Line]:
     for number, hint in enumerate(step.hints[: view.hints], start=1):
         yield from _wrapped(f"Hint {number}: {hint}", width, _HINT)
     yield from _wrapped(_to_do(view, step), width, _PALE)
+    if left := len(step.hints) - view.hints:
+        yield from _wrapped(f"Y shows a hint ({left} left).", width, _PALE)
 
 
 def _question(question: Question, width: int) -> Iterator[Line]:
@@ -162,9 +165,7 @@ def _result(view: LessonView, step: Step, width: int) -> Iterator[Line]:
 
 
 def _to_do(view: LessonView, step: Step) -> str:
-    """Return what the step waits for, and the keys."""
-    left = len(step.hints) - view.hints
-    hint = f" · Y hint ({left} left)" if left > 0 else ""
+    """Return what the step waits for, or the keys that do it."""
     match step.check:
         case Run(times=times, seeds=seeds):
             count = f" {view.good_runs} of {times} runs{' with other seeds' if seeds else ''}." if times > 1 else ""
@@ -182,8 +183,8 @@ def _to_do(view: LessonView, step: Step) -> str:
         case Visit(from_s=from_s, to_s=to_s):
             words = f"Waits until you see the run between {from_s:g} and {to_s:g} s."
         case Show(panel=panel):
-            words = f"Waits until the panel is open: {panel}."
-    return f"{words}{hint}"
+            words = f"Waits for the panel {PANELS[panel].title}."
+    return words
 
 
 def _end(view: LessonView, width: int) -> Iterator[Line]:
