@@ -249,21 +249,19 @@ class KeyFooter(ActionWords):
     """The bottom row of the screen."""
 
     DEFAULT_CSS = "KeyFooter { dock: bottom; height: 1; }"
-    COMPONENT_CLASSES: ClassVar[set[str]] = {"footer--key", "footer--status", "footer--failed", "footer--off"}
+    COMPONENT_CLASSES: ClassVar[set[str]] = {"footer--key", "footer--status", "footer--failed"}
 
     def __init__(self) -> None:
         super().__init__(id="footer")
         self._actions: Sequence[Action[Any, Any]] = ()
         self._status = ""
         self._failed = False
-        self._off: frozenset[str] = frozenset()
         self._typing: tuple[KeyWord, ...] = ()
 
     def show(
         self,
         actions: Sequence[Action[Any, Any]],
         status: str = "",
-        off: frozenset[str] = frozenset(),
         typing: tuple[KeyWord, ...] = (),
         failed: bool = False,
     ) -> None:
@@ -272,13 +270,12 @@ class KeyFooter(ActionWords):
         Args:
             actions: The available actions, the most useful first.
             status: State of the run, at the right.
-            off: Ids of the actions whose keys are shown as switched off.
             typing: Keys of the text field that has the focus, where letters are not keys.
             failed: Whether the run has failed, so that its state is shown as a warning.
         """
-        now = actions, status, off, typing, failed
-        if now != (self._actions, self._status, self._off, self._typing, self._failed):
-            self._actions, self._status, self._off, self._typing, self._failed = now
+        now = actions, status, typing, failed
+        if now != (self._actions, self._status, self._typing, self._failed):
+            self._actions, self._status, self._typing, self._failed = now
             self.refresh()
 
     def render(self) -> Text:
@@ -293,14 +290,11 @@ class KeyFooter(ActionWords):
         for action in [] if self._typing else fitting(self._actions, width - len(status)):
             meta = Style(meta={ACT: action.id})
             line.append(f" {_key(action)}", key_style + meta)
-            line.append(f" {action.footer}", self._word_style(action) + meta)
+            line.append(f" {action.footer}", meta)
         line.append(" " * max(0, width - len(status) - len(line)))
         name = "footer--failed" if self._failed else "footer--status"
         line.append(status, self.get_component_rich_style(name, partial=True))
         return line
-
-    def _word_style(self, action: Action[Any, Any]) -> Style:
-        return self.get_component_rich_style("footer--off", partial=True) if action.id in self._off else Style()
 
 
 COLUMN_CELLS = 50

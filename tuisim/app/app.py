@@ -505,12 +505,11 @@ class LabApp(PanelMessages):
         )
 
     def _show_footer(self, state: AppState) -> None:
-        off = frozenset(f"panel-{panel}" for panel in PANELS if not self.panel_area.shown(panel))
         names = working(state.situation)
         if self.panel_area.is_single:
             names = ("panel-next", *names)
         actions = [self.ACTIONS[name] for name in names]
-        self.key_footer.show(actions, state.status, off, self._field_keys(), state.failed)
+        self.key_footer.show(actions, state.status, self._field_keys(), state.failed)
 
     def _field_keys(self) -> tuple[KeyWord, ...]:
         """Return the keys of the text field that has the focus; empty if there is none."""

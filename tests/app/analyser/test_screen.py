@@ -17,6 +17,7 @@ from tuisim.analysis.model import Model
 from tuisim.analysis.source import NOTES_FILE, LogRequest, read_notes
 from tuisim.app.analyser.actions.keys import ACTIONS
 from tuisim.app.analyser.app import Analyser, AnalyserApp
+from tuisim.app.analyser.panes import PaneView
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
@@ -132,6 +133,20 @@ async def test_the_bands_as_shown_are_exported(run: StoredRun, tmp_path: Path) -
         frame = pd.read_csv(target)
         assert frame["level"].tolist() == pytest.approx([band.level for band in model.bands()])
         assert frame["variable"].unique().tolist() == ["Colour"]
+
+
+@pytest.mark.parametrize(("size", "words"), [((80, 24), "row 2 of 8"), ((200, 60), "")], ids=["too many", "all fit"])
+async def test_a_pane_tells_which_row_is_selected_where_not_all_fit(
+    run: StoredRun, size: tuple[int, int], words: str
+) -> None:
+    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=size) as pilot:
+        screen, model = await opened(pilot)
+        await pilot.press("b")
+        await until(pilot, lambda: bool(model.bands()))
+        await pilot.press("down")
+        await pilot.pause()
+        subtitle = screen.query_one(PaneView).border_subtitle or ""
+        assert (words in subtitle) if words else not subtitle
 
 
 async def test_runs_to_open_are_listed_and_several_may_be_marked(run: StoredRun) -> None:

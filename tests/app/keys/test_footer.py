@@ -78,3 +78,13 @@ async def test_letters_that_are_typed_are_not_offered_as_keys() -> None:
         await until(pilot, lambda: "enter apply" in last_line(pilot) and "R run" not in last_line(pilot))
         await pilot.press("escape")
         await until(pilot, lambda: "R run" in last_line(pilot))
+
+
+async def test_the_key_of_a_panel_that_is_not_shown_looks_like_any_other() -> None:
+    async with LabApp(settings(LOGS, autorun=True, speed=0.0)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: "chart" in app.key_footer.render().plain)
+        rendered = app.key_footer.render()
+        assert not app.panel_area.shown("chart")
+        at = rendered.plain.index(" chart") + 1
+        assert rendered.get_style_at_offset(app.console, at).color is None

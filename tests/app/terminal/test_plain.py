@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pyte
 import pytest
 
 import tuisim
@@ -101,3 +102,34 @@ async def test_without_colours_nothing_but_text_is_sent(
     assert {CellSet.ASCII: "====", CellSet.BRAILLE: "━━━━"}[cells] in sent
     styles = {code for codes in re.findall(r"\x1b\[([\d;]*)m", sent) for code in codes.split(";")}
     assert styles <= {"", "0", "1", "2", "3", "4", "7", "9"}
+
+
+def _reversed_on(sent: str) -> list[str]:
+    """Return the texts in reverse video, by row."""
+    screen = pyte.Screen(120, 40)
+    pyte.Stream(screen).feed(re.sub(r"\x1b\[[<>=?][0-9;]*[a-zA-Z]|\x1b\[[?>]?[0-9;]*\$p", "", sent))
+    rows = ("".join(screen.buffer[y][x].data for x in range(120) if screen.buffer[y][x].reverse) for y in range(40))
+    return [row.strip() for row in rows]
+
+
+@pytest.mark.parametrize(
+    ("keys", "lit"),
+    [
+        pytest.param(["ctrl+p", "down"], "Stop the program", id="an entry of the palette"),
+        pytest.param(["f10", "down"], "atom-one-light", id="a theme"),
+        # The field is bright, and its cursor dark.
+        pytest.param(["o", "x", "y", "z", "left", "left"], "xz", id="the cursor in a field"),
+    ],
+)
+async def test_without_colours_what_is_selected_is_seen(
+    keys: list[str], lit: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    async with on_wire(LabApp(settings(LOGS), PictureMode(CellSet.ASCII))) as pilot:
+        await ready(pilot)
+        for key in keys:
+            await pilot.press(key)
+            await until_quiet(pilot)
+        shown = _reversed_on("".join(wire_of(pilot).sent))
+
+    assert lit in shown

@@ -215,8 +215,7 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
         searching = name == "bands" and model.unsearched()
         text = "Searching for bands …" if searching else pane.empty
         return [[(line, DIM)] for line in _wrapped([text], width, height)]
-    below = _wrapped(pane.below(model), width, max(0, height // 3))
-    room = max(height - 1 - len(below), 1)
+    below, room = _below(pane, model, width, height)
     first = first_shown(chosen, len(rows), room)
     measured = rows if len(rows) <= _MEASURED else rows[first : first + room]
     widths = [max(map(len, column)) for column in zip(pane.heads, *measured, strict=True)]
@@ -234,6 +233,19 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     # With rows of several lines, the selected one stays visible.
     start = max(min(chosen_at.start, chosen_at.stop - room), 0)
     return lines + shown[start : start + room] + [[(text, DIM)] for text in below]
+
+
+def _below(pane: Pane, model: Model, width: int, height: int) -> tuple[list[str], int]:
+    """Return the lines below the rows of a pane, and the number of rows for which there is room."""
+    below = _wrapped(pane.below(model), width, max(0, height // 3))
+    return below, max(height - 1 - len(below), 1)
+
+
+def place_in(name: str, model: Model, chosen: int, width: int, height: int) -> str:
+    """Return which row of a pane other than the table is selected, where not all of them fit; else nothing."""
+    count = len(PANES[name].rows(model))
+    fits = count <= _below(PANES[name], model, width, height)[1]
+    return "" if fits else f"↑↓ row {chosen + 1:,} of {count:,}"
 
 
 def _rows_of(texts: Sequence[str], widths: Sequence[int], style: Style, width: int) -> list[Line]:
@@ -372,9 +384,12 @@ class PaneView(LinesPanel):
         # Brackets mark the current pane even without colours.
         titles = (f"\\[{pane.title}]" if name == self.name_shown else pane.title for name, pane in PANES.items())
         self.border_title = " ".join(titles)
-        self.border_subtitle = _summary(model) if self.name_shown == "table" else ""
+        is_table = self.name_shown == "table"
+        self.border_subtitle = _summary(model) if is_table else ""
         width, height = self._text.size
         if width and height and self.display:
+            if not is_table:
+                self.border_subtitle = place_in(self.name_shown, model, self.chosen, width, height)
             self._text.set_lines(pane_lines(self.name_shown, model, self.chosen, width, height))
 
     def _compute(self, model: Model, pane: str) -> None:

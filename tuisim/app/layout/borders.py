@@ -13,7 +13,7 @@ from textual.widget import Widget
 from tuisim.app.layout.tree import Axis, Border, PanelLayout
 
 LAYOUT_KEYS = (
-    ("← ↑ ↓ →", "move"), ("⏎", "done"), ("esc", "undo"), ("0", "reset"), ("tab", "panel"),
+    ("← ↑ ↓ →", "move"), ("enter", "done"), ("esc", "undo"), ("0", "reset"), ("tab", "panel"),
 )  # fmt: skip
 """Keys in the layout mode."""
 _STEPS = {"left": (Axis.COLUMNS, -1), "right": (Axis.COLUMNS, 1), "up": (Axis.ROWS, -1), "down": (Axis.ROWS, 1)}

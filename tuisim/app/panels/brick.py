@@ -26,7 +26,7 @@ TAP_S = 0.25
 SEEN_S = 0.05
 """Minimum hold in simulated time: programs poll the buttons only now and then."""
 
-_HELP = "arrows ⏎ ⌫ press · shift holds · + size"
+_HELP = "arrows enter backspace press · shift holds · + size"
 
 
 class Brick(LinesPanel, can_focus=True):
