@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+from pathlib import Path
 from typing import Any
 from weakref import ref
 
@@ -13,6 +14,9 @@ from textual.pilot import Pilot
 from tests.app.app_help import lab, ready, settings, until
 from tests.app.graphics.decoder import PixelTerminal
 from tests.app.wires import on_wire, until_quiet, wire_of
+from tuisim.analysis.source import LogRequest
+from tuisim.app.analyser.app import Analyser, AnalyserApp
+from tuisim.app.analyser.chart import LogChart
 from tuisim.app.app import LabApp
 from tuisim.app.panels.arrays import Arrays
 from tuisim.app.panels.chart import Chart
@@ -22,6 +26,7 @@ from tuisim.app.terminal.cell_view import PixelView
 from tuisim.app.terminal.plot_view import PlotView
 from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, facts_in
 from tuisim.app.terminal.screenshot import screen_cells
+from tuisim.charts.traces import TRACE_COLORS
 from tuisim.config.options import AUTO, CellSet, Protocol
 
 CELL_PX = 8, 16
@@ -106,6 +111,29 @@ async def test_the_chart_is_what_was_drawn(protocol: Protocol) -> None:
         assert np.array_equal(_on_canvas(view, seen), _on_canvas(view, drawn))
         assert np.unique(_on_canvas(view, drawn).reshape(-1, 3), axis=0).shape[0] > 4
         assert 0 < wire_of(pilot).kilobytes - before < before / 10
+
+
+@pytest.mark.parametrize("facets", [False, True], ids=["one chart", "facets"])
+@pytest.mark.parametrize("protocol", Protocol)
+async def test_the_charts_of_the_analyser_are_what_was_drawn(protocol: Protocol, facets: bool, tmp_path: Path) -> None:
+    file = tmp_path / "waves.csv"
+    file.write_text(
+        "time,Sine,Steps\n" + "".join(f"{at},{np.sin(at / 9):.4f},{at // 20}\n" for at in range(200)), "utf-8"
+    )
+    async with on_wire(AnalyserApp(LogRequest(str(file))), "truecolor") as pilot:
+        await until(pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.is_open)
+        chart = pilot.app.screen.query_one(LogChart)
+        chart.options.facets = facets
+        pilot.app.post_message(TerminalAnswered(facts_in(ANSWERS[protocol])))
+        view = chart.query_one(PlotView)
+        await until(pilot, lambda: view._tiles is not None)
+        await until_quiet(pilot)
+        seen, drawn = _part(_seen(pilot), view), _drawn(view, protocol)
+        assert np.array_equal(_on_canvas(view, seen), _on_canvas(view, drawn))
+        assert len(chart._pictures) == 1 + facets
+        for rgb in TRACE_COLORS[:2]:
+            # Channels of sixel are percentages.
+            assert (np.abs(_on_canvas(view, drawn).astype(int) - rgb) < 3).all(axis=2).sum() > 100, rgb
 
 
 def _characters(pilot: Pilot[Any], view: PlotView) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from rich.style import Style
@@ -11,8 +12,10 @@ from textual.message import Message
 
 from tuisim.analysis.chart import event_marks
 from tuisim.analysis.traces import DISTANCE
+from tuisim.app.graphics.picture import MOST_POINTS
 from tuisim.app.terminal.cell_view import LinesPanel
 from tuisim.app.terminal.picture_mode import shows_ascii
+from tuisim.app.terminal.plot_view import PlotView
 from tuisim.charts.canvas import BRAILLE, xy_lines
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.charts.text_runs import Run
@@ -72,6 +75,7 @@ class LogChart(LinesPanel):
 
     def __init__(self) -> None:
         super().__init__()
+        self._text: PlotView = PlotView(self._redraw)
         self.border_title = "Chart"
         self.options = ChartOptions()
         self._painters: dict[str, ChartPainter] = {}
@@ -93,18 +97,21 @@ class LogChart(LinesPanel):
             self._pictures = []
             self._text.set_lines(self._against(model, self.options.against, width, height))
             return
-        x_limits = model.x_limits()
-        ticked = model.traces.ticked()
-        for trace in ticked:
-            trace.prepare(x_limits, width, self.options.hold)
+        self._text.draw(partial(self._paint, model))
+
+    def _paint(self, model: Model, is_blank: bool) -> tuple[list[list[Run]], list[tuple[int, ChartPicture]]]:
+        width, height = self._text.size
+        for trace in model.traces.ticked():
+            trace.prepare(model.x_limits(), width * (MOST_POINTS if is_blank else 1), self.options.hold)
         unit = "mm" if model.alignment == DISTANCE else "s"
         measured = _measured(model, unit, width)
         marked = 1 if model.events.thresholds and model.log.rows else 0
         height -= len(measured) + marked
+        ticked = model.traces.ticked()
         facets = ticked if self.options.facets and len(ticked) > 1 and height >= FACETS_ROWS else []
         facets = _around_selected(facets, model.selected, height // _LEAST_FACET_ROWS)
         state = ChartState(
-            model.selected, model.cursor_s if model.log.rows else None, x_limits, bool(self.app.no_color),
+            model.selected, model.cursor_s if model.log.rows else None, model.x_limits(), bool(self.app.no_color),
             shows_ascii(self.app), model.mark_s, unit, self.options.marks, zoomed=model.limits is not None,
         )  # fmt: skip
         self._pictures = []
@@ -112,11 +119,11 @@ class LogChart(LinesPanel):
         parts: list[Traces] = [_One(trace) for trace in facets] or [model.traces]
         for at, part in enumerate(parts):
             rows = height // len(parts) + (at < height % len(parts))
-            name = facets[at].name if facets else ""
-            picture = self._painters.setdefault(name, ChartPainter()).paint(part, state, width, rows)
+            painter = self._painters.setdefault(facets[at].name if facets else "", ChartPainter())
+            picture = painter.paint(part, state, width, rows, is_blank=is_blank)
             self._pictures.append((len(lines), picture))
             lines += [*picture.lines, *[[] for _ in range(rows - len(picture.lines))]]
-        self._text.set_lines([*lines, *(self._event_marks(model) if marked else []), *measured])
+        return [*lines, *(self._event_marks(model) if marked else []), *measured], self._pictures
 
     def _event_marks(self, model: Model) -> list[list[Run]]:
         """Return the line below the charts with a marker for each threshold crossing."""

@@ -18,6 +18,7 @@ from tuisim.app.terminal.picture_mode import shows_ascii
 from tuisim.app.terminal.plot_view import PlotView
 from tuisim.charts import axes
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
+from tuisim.charts.text_runs import Run
 from tuisim.charts.traces import Trace, Traces
 
 _PERIOD_S = 0.33
@@ -106,14 +107,11 @@ class Chart(LinesPanel, can_focus=True):
         state = replace(self._state, grey=bool(self.app.no_color), is_ascii=shows_ascii(self.app))
         if not self.has_focus:
             state = replace(state, selected=None)
-        size = self._text.size
-        with_pixels = self._text.graphics is not None
-        self._picture = self._painter.paint(self._traces, state, *size, is_blank=with_pixels)
-        if not with_pixels:
-            self._text.set_lines(self._picture.lines)
-            return
-        glyphs = partial(self._painter.paint, self._traces, state, *size)
-        self._text.show(self._picture.lines, [(0, self._picture)], lambda: glyphs().lines)
+        self._text.draw(partial(self._paint, state))
+
+    def _paint(self, state: ChartState, is_blank: bool) -> tuple[list[list[Run]], list[tuple[int, ChartPicture]]]:
+        self._picture = self._painter.paint(self._traces, state, *self._text.size, is_blank=is_blank)
+        return self._picture.lines, [(0, self._picture)]
 
     def _redraw(self) -> None:
         self._dirty = True

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from tuisim.core.css_colors import Rgb
 
 Lines = Sequence[Sequence[Run]]
+Paint = Callable[[bool], tuple[Lines, Sequence[tuple[int, ChartPicture]]]]
 
 _CURSOR: Rgb = 255, 255, 255
 _STILL_S = 1.0
@@ -85,24 +86,28 @@ class PlotView(LinesView):
         is_coarse = self.app.no_color or (picture_mode.is_slow() and not self._sharpness.is_still)
         return None if is_coarse else picture_mode.graphics
 
-    def show(
-        self, lines: Lines, pictures: Sequence[tuple[int, ChartPicture]], spare_lines: Callable[[], Lines]
-    ) -> None:
-        """Show charts with pixels.
+    def draw(self, paint: Paint) -> None:
+        """Show lines with charts.
 
         Args:
-            lines: All lines, blank where the charts are.
-            pictures: The charts, each with the row in which it begins.
-            spare_lines: Returns the lines with characters on the canvases.
+            paint: Returns all lines, and the charts, each with the row in which it begins; whether it is to leave the
+                canvases blank.
         """
         graphics = self.graphics
-        assert graphics is not None
+        lines, pictures = paint(graphics is not None)
+        if graphics is not None:
+            self._spare_lines, self._spare = lambda: paint(False)[0], None
+            self._show(lines, pictures, graphics)
+        else:
+            self.set_lines(lines)
+            self._sharpness.changed(is_coarse=picture_mode_of(self.app).graphics is not None and not self.app.no_color)
+
+    def _show(self, lines: Lines, pictures: Sequence[tuple[int, ChartPicture]], graphics: Graphics) -> None:
         plots = [(first + one.top, one.left - 1, one.plot) for first, one in pictures if one.plot]
         spans = {top + row: (left, left + plot.size[1]) for top, left, plot in plots for row in range(plot.size[0])}
         if self._tiles is None or self._tiles.graphics != graphics:
             self._tiles, self._spans = TilePicture(graphics), {}
         runs = self._tiles.put(self._image(plots, graphics.cell_points))
-        self._spare_lines, self._spare = spare_lines, None
         super().set_lines(lines)
         if spans != self._spans:
             self._spans = spans
@@ -110,7 +115,8 @@ class PlotView(LinesView):
         for row, _, _ in runs:
             if row < len(self._text_strips):
                 self._text_strips[row] = None
-        self.refresh(*[Region(col, row, length, 1) for row, col, length in runs])
+        if runs:
+            self.refresh(*[Region(col, row, length, 1) for row, col, length in runs])
         self._sharpness.changed()
 
     def _image(self, plots: Sequence[tuple[int, int, Plot]], cell: tuple[int, int]) -> Pixels:
@@ -135,7 +141,7 @@ class PlotView(LinesView):
             self._tiles, self._spans = None, {}
             super().redraw()
         super().set_lines(lines)
-        self._sharpness.changed(is_coarse=picture_mode_of(self.app).graphics is not None and not self.app.no_color)
+        self._sharpness.changed()
 
     def _refine(self) -> bool:
         self._draw_again()
