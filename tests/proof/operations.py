@@ -25,7 +25,7 @@ for _ in range(5):
     time.sleep(0.1)
 tank_drive.off()
 """
-_OLD = "the content before\n"
+_OLD = "# the content before\n"
 _COMMAND = ("-P", "-m", "tuisim")
 """Not from the working directory, which Python would list to import from it."""
 

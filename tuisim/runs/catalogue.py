@@ -210,11 +210,22 @@ def _is_full(folder: Path) -> bool:
 
 @contextmanager
 def locked(home: Path) -> Iterator[None]:
-    """Hold the lock of a home folder, for changes to several files. Blocks while another process holds it."""
-    make_private_folder(home)
-    descriptor = private(str(home / LOCK_FILE), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
+    """Hold the lock of a home folder, for changes to several files. Blocks while another process holds it.
+
+    Raises:
+        LogError: the folder, or the lock in it, cannot be used.
+    """
+    file = home / LOCK_FILE
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        make_private_folder(home)
+        descriptor = private(str(file), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
+    except OSError as error:
+        raise LogError(f"cannot be opened: {error.strerror or error}", HOME_HINT, file=str(file)) from error
+    try:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        except OSError as error:
+            raise LogError(f"cannot be locked: {error.strerror or error}", HOME_HINT, file=str(file)) from error
         yield
     finally:
         os.close(descriptor)
