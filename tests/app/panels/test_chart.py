@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from textual.pilot import Pilot
 
+from tests.app.app_help import until
 from tests.app.panel_help import PanelApp, moment, screen_text
 from tuisim.app.panels.chart import Chart
 from tuisim.charts.text_chart import ChartPainter
@@ -167,9 +168,9 @@ async def test_clearing_keeps_the_ticks() -> None:
 async def test_it_is_not_drawn_more_often_than_can_be_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     app = PanelApp(Chart())
     async with app.run_test(size=(80, 16)) as pilot:
-        await pilot.pause()
+        await until(pilot, lambda: app.panel._picture is not None)
         drawn: list[object] = []
-        monkeypatch.setattr(ChartPainter, "paint", lambda *args: drawn.append(args))
+        monkeypatch.setattr(ChartPainter, "paint", lambda *args, **more: drawn.append(args))
         app.panel._throttle._last_s = float("inf")
 
         for at in range(100):
