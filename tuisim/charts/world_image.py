@@ -39,6 +39,8 @@ _FEW_PX = {1: 8.0, 2: 18.0}
 the body."""
 _NOSE_PX = {1: 1.2, 2: 2.5}
 """How far it projects."""
+_THIN_PX = {1: 0.4, 2: 0.7}
+"""Half of its width at the tip: in two colours a cell, less of it is lost in what is behind."""
 
 _BUMPER_MM = 8.0
 """Thickness of the bar of a touch sensor."""
@@ -205,12 +207,14 @@ def _parts(
     beside = np.abs(across - outline.half_width_mm + wheel_mm / 2) <= wheel_mm / 2
     parts[beside & (np.abs(ahead) <= outline.wheel_radius_mm)] = _WHEEL
     # In few pixels the nose sticks out by one, and it is never thinner than that, so that the heading can be seen.
-    nose_mm = _NOSE_PX[cell_cols] * px_mm if 2 * outline.half_width_mm < _FEW_PX[cell_cols] * px_mm else 0.0
+    is_small = 2 * outline.half_width_mm < _FEW_PX[cell_cols] * px_mm
+    nose_mm = _NOSE_PX[cell_cols] * px_mm if is_small else 0.0
     tip = front_mm + nose_mm
     base = back_mm * 0.55
     # Longer than wide: in an even triangle of few pixels any corner could be the tip.
     widest_mm = min(0.62 * (outline.half_width_mm - outline.wheel_width_mm), 0.28 * (tip - base))
-    flank = np.maximum(widest_mm * (tip - ahead) / (tip - base), 0.4 * px_mm)
+    thinnest_mm = (_THIN_PX[cell_cols] if is_small else 0.4) * px_mm
+    flank = np.maximum(widest_mm * (tip - ahead) / (tip - base), thinnest_mm)
     parts[(ahead >= base) & (ahead <= tip) & (across <= flank)] = _MARKER
     for x_mm, y_mm, radius in outline.color_sensors_mm:
         # In pixels of a whole cell a small sensor would only blur the marker.

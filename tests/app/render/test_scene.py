@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 
 from tuisim.app.render.mat import Pixels, whole_field
 from tuisim.app.render.scene import BEACON_CORE_RGB, BEACON_RGB, PenTrace, ScenePainter, SceneState, pen_rgb
-from tuisim.charts.world_image import COLORED, Viewport, draw_robot
+from tuisim.charts.world_image import COLORED, CellPoints, Viewport, draw_robot, drawn_scale
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import BeaconSpec, InfraredSpec, Obstacle, PenSpec, RobotSpec, TouchSpec
@@ -171,3 +172,26 @@ def test_the_ghost_is_drawn_below_the_robot() -> None:
 )
 def test_pen_colours(name: str, rgb: tuple[int, int, int]) -> None:
     assert pen_rgb(name) == rgb
+
+
+@pytest.mark.parametrize("heading", [0, 30, 45, 70])
+@pytest.mark.parametrize("rows", [2, 3, 4], ids=["quadrants", "sextants", "octants"])
+def test_the_nose_of_a_small_robot_fills_a_third_of_a_cell(rows: int, heading: int) -> None:
+    view = whole_field(100, 20 * rows, CellPoints(2, rows))
+    picture = painter().paint(view, SceneState(ROBOT, Pose(1181.0, 571.0, heading)))
+
+    row, col = np.indices(picture.shape[:2]) + 0.5
+    east, north = view.left_mm + col * view.mm_per_px - 1181, view.top_mm - row * view.mm_per_row - 571
+    angle, outline = math.radians(heading), outline_of(ROBOT)
+    ahead = (east * math.cos(angle) + north * math.sin(angle)) / drawn_scale(outline, view) > outline.front_mm
+    yellow = (255 - picture[..., 2].astype(float))[ahead & (picture[..., 0] > 180)] / 255
+    assert yellow.sum() >= 2 * rows / 3
+
+
+@pytest.mark.parametrize("coarse", [False, True])
+def test_a_robot_without_details_has_no_sensors_on_its_marker(coarse: bool) -> None:
+    view = whole_field(100, 80, CellPoints(2, 4))
+    picture = ScenePainter(MAT, (9, 9, 9), PenTrace(), coarse=coarse).paint(view, SceneState(ROBOT, HERE))
+
+    red, green, blue = picture.reshape(-1, 3).astype(int).T
+    assert coarse is not bool(((red > 220) & (green < 190) & (abs(green - blue) < 90) & (blue > 30)).any())

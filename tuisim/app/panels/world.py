@@ -23,6 +23,7 @@ from tuisim.app.terminal.cell_view import LinesView, PixelView
 from tuisim.charts.axes import time_limits
 from tuisim.charts.text_runs import Run
 from tuisim.charts.world_image import Viewport, drawn_scale
+from tuisim.config.options import CellSet
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec
@@ -220,7 +221,9 @@ class WorldView(PixelView):
             mode = self.color_mode
             mono = mode.depth == MONO
             outside_rgb = _PAPER if mono else self.ground_rgb
-            self._painter = ScenePainter(self._mat, outside_rgb, self.trace, mode.grey, mono)
+            few = {CellSet.ASCII} if mono else {CellSet.ASCII, CellSet.BRAILLE}
+            coarse = graphics is None and self.cell_set in few
+            self._painter = ScenePainter(self._mat, outside_rgb, self.trace, mode.grey, mono, coarse)
         trace = self.trace if self.past_trace is None else self.past_trace
         if scene == self._scene and port == self._port and self._trace_drawn == trace.count:
             return

@@ -50,13 +50,23 @@ class ScenePainter:
         trace: The pen trace; it may grow, and be replaced.
         grey: Draw for a terminal with greys only.
         mono: Draw for a terminal without any colours.
+        coarse: Draw the robot with few details, for glyphs that show less than the points of their cells.
     """
 
-    def __init__(self, mat: Pixels, outside_rgb: Rgb, trace: PenTrace, grey: bool = False, mono: bool = False) -> None:
+    def __init__(
+        self,
+        mat: Pixels,
+        outside_rgb: Rgb,
+        trace: PenTrace,
+        grey: bool = False,
+        mono: bool = False,
+        coarse: bool = False,
+    ) -> None:
         self.trace = trace
         self._mat = MatPictures(mat, outside_rgb)
         self._robot_colors = MONO if mono else GREY if grey else COLORED
         self._grey = grey or mono
+        self._detail_cols = 1 if coarse else None
         self._ghost_colors = GREY_GHOST if grey else GHOST
         self._ground: Pixels | None = None
         self._ground_key: object = None
@@ -71,8 +81,12 @@ class ScenePainter:
             x_mm, y_mm = world_point(scene.rays_from or scene.pose, ultrasonic.x_mm, ultrasonic.y_mm)
             draw_rays(picture, view, x_mm, y_mm, scene.rays, self._grey)
         if scene.ghost is not None:
-            draw_robot(picture, view, scene.ghost, outline, self._ghost_colors, _GHOST_OPACITY)
-        draw_robot(picture, view, scene.pose, outline, self._robot_colors, pressed=scene.pressed)
+            draw_robot(
+                picture, view, scene.ghost, outline, self._ghost_colors, _GHOST_OPACITY, detail_cols=self._detail_cols
+            )
+        draw_robot(
+            picture, view, scene.pose, outline, self._robot_colors, pressed=scene.pressed, detail_cols=self._detail_cols
+        )
         return picture
 
     def _ground_picture(self, view: Viewport, scene: SceneState) -> Pixels:
