@@ -244,6 +244,18 @@ async def test_half_blocks_become_pixels_once_the_picture_stands_still(protocol:
         assert np.array_equal(_part(_seen(pilot), world), _drawn(world, protocol))
 
 
+async def test_kitty_keeps_no_images_of_pictures_that_have_gone() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await _answered(pilot, ANSWERS[Protocol.KITTY])
+        assert _seen(pilot).images
+        lab(pilot).choose_cells(CellSet.HALF)
+        await until_quiet(pilot)
+        gc.collect()
+        await pilot.press("question_mark")
+        await until_quiet(pilot)
+        assert not _seen(pilot).images
+
+
 async def test_pictures_that_have_gone_take_no_memory() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await _answered(pilot, ANSWERS[Protocol.SIXEL])

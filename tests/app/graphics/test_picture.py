@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -76,12 +78,45 @@ def test_a_picture_may_have_no_cells(protocol: Protocol, shape: tuple[int, ...])
     assert not picture.put(np.zeros(shape, np.uint8))
 
 
-def test_kitty_keeps_two_images_of_a_tile_at_most() -> None:
-    picture = TilePicture(Graphics(Protocol.KITTY, CELL_PX))
-    terminal = PixelTerminal(ROWS + 2, COLS + 3, CELL_PX)
+def _moved(terminal: PixelTerminal, picture: TilePicture) -> None:
     for step in range(8):
         _draw(terminal, picture, picture.put(_disc(20 + 9 * step, 40)))
-    assert len(terminal.images) == 3 * 3
+
+
+def _made_smaller(terminal: PixelTerminal, picture: TilePicture) -> None:
+    _draw(terminal, picture, picture.put(_disc(20, 40)))
+    _draw(terminal, picture, picture.put(_disc(20, 40, 6 * 9, 13 * 5)))
+
+
+def _sent_again(terminal: PixelTerminal, picture: TilePicture) -> None:
+    for x_px in (20, 29):
+        _draw(terminal, picture, picture.put(_disc(x_px, 40)))
+    picture.forget()
+    _draw(terminal, picture, [(row, 0, COLS) for row in range(ROWS)])
+
+
+def _gone(terminal: PixelTerminal, picture: TilePicture) -> None:
+    _draw(terminal, picture, picture.put(_disc(20, 40)))
+    terminal.feed(picture.images()())
+
+
+KEPT = {
+    "moved": (_moved, 3 * 3),
+    "made smaller": (_made_smaller, 2 * 2),
+    "sent again": (_sent_again, 3 * 3),
+    "gone": (_gone, 0),
+}
+
+
+@pytest.mark.parametrize("in_tmux", [False, True], ids=["", "tmux"])
+@pytest.mark.parametrize(("draw", "expected"), KEPT.values(), ids=KEPT)
+def test_kitty_keeps_no_images_that_are_not_seen(
+    draw: Callable[[PixelTerminal, TilePicture], None], expected: int, in_tmux: bool
+) -> None:
+    picture = TilePicture(Graphics(Protocol.KITTY, CELL_PX, in_tmux))
+    terminal = PixelTerminal(ROWS + 2, COLS + 3, CELL_PX)
+    draw(terminal, picture)
+    assert len(terminal.images) == expected
 
 
 def test_kitty_forgets_all_images_when_it_is_told() -> None:

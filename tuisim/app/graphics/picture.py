@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import count, groupby
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -156,8 +157,13 @@ class TilePicture:
         return cells
 
     def forget(self) -> None:
-        """Assume that the terminal has nothing of it."""
-        self._tiles.clear()
+        """Assume that the terminal has nothing of it, but perhaps images under the numbers of its tiles."""
+        for tile, (_, image) in self._tiles.items():
+            self._tiles[tile] = _NEVER, image
+
+    def images(self) -> Callable[[], str]:
+        """Return what returns the codes that delete everything of it that the terminal has, also after its end."""
+        return partial(_deleted, self.graphics, self._tiles)
 
     def row(self, row: int) -> list[PictureCell]:
         """Return the cells of a row."""
@@ -238,7 +244,7 @@ class TilePicture:
             cursor, pen = (cell.row, cell.col + 1), image
         parts.append("\x1b[0m")
         parts += [self._passed_on(kitty.delete(image)) for image in stale]
-        return "".join(parts)
+        return "".join(parts) + self._drop_tiles()
 
     def _send(self, tile: tuple[int, int]) -> tuple[str, list[int]]:
         """Return the codes that send a tile if the terminal does not have it, and images that are no longer needed."""
@@ -255,8 +261,24 @@ class TilePicture:
         codes = kitty.encode(self._part(some), image, some.right - some.left, some.bottom - some.top)
         return self._passed_on(codes), [had[1]] if had is not None else []
 
+    def _drop_tiles(self) -> str:
+        """Return the codes that delete the tiles beyond its size."""
+        rows, cols = self.size
+        beyond = {tile: kept for tile, kept in self._tiles.items() if tile[0] >= rows or tile[1] >= cols}
+        for tile in beyond:
+            del self._tiles[tile]
+        return _deleted(self.graphics, beyond)
+
     def _passed_on(self, codes: str) -> str:
-        return kitty.through_tmux(codes) if self.graphics.in_tmux else codes
+        return _passed_on(self.graphics, codes)
+
+
+def _passed_on(graphics: Graphics, codes: str) -> str:
+    return kitty.through_tmux(codes) if graphics.in_tmux else codes
+
+
+def _deleted(graphics: Graphics, tiles: Mapping[tuple[int, int], tuple[int, int]]) -> str:
+    return "".join(_passed_on(graphics, kitty.delete(image)) for _, image in tiles.values())
 
 
 Run = tuple[int, int, int]
@@ -266,6 +288,8 @@ Mask = np.ndarray[tuple[int, int], np.dtype[np.bool_]]
 """Some cells of a picture, shape (rows, columns)."""
 
 _TILE_ROWS, _TILE_COLS = 4, 8
+_NEVER = -1
+"""The version of a tile that the terminal does not have."""
 _COUNT = count()
 _MOST_PICTURES, _MOST_IMAGES = 255, 1 << 16
 """Numbers of images have 24 bits; each picture has its own."""

@@ -7,10 +7,10 @@ where it changes, a cursor jump over unchanged cells.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache, partial
 from typing import NamedTuple
-from weakref import WeakSet
+from weakref import WeakSet, finalize
 
 from rich.cells import cell_len, split_graphemes
 from rich.color import Color, ColorSystem
@@ -68,6 +68,8 @@ class FrameBuffer:
         self._rows: dict[int, list[Cell | None]] = {}
         self._pictures: WeakSet[TilePicture] = WeakSet()
         """Those that have been drawn, and still are in use."""
+        self._gone: list[Callable[[], str]] = []
+        """What returns the codes that delete pictures that are no longer in use."""
 
     def forget(self) -> None:
         """Assume nothing about the terminal's content: the next update is sent completely."""
@@ -97,10 +99,16 @@ class FrameBuffer:
         for y, x, strip in pieces:
             for col, cell in self._put(pen, y, x, _cells(strip, mode)):
                 places.setdefault(cell.picture, []).append((y, col, cell))
-        self._pictures.update(places)
-        return pen.finish() + "".join(
-            picture.draw(some, partial(self._shows, picture)) for picture, some in places.items()
-        )
+        for picture in places:
+            if picture not in self._pictures:
+                self._pictures.add(picture)
+                finalize(picture, self._gone.append, picture.images()).atexit = False
+        drawn = "".join(picture.draw(some, partial(self._shows, picture)) for picture, some in places.items())
+        return pen.finish() + drawn + self._deleted()
+
+    def _deleted(self) -> str:
+        gone = [self._gone.pop() for _ in range(len(self._gone))]
+        return "".join(codes() for codes in gone)
 
     def _shows(self, picture: TilePicture, y: int, x: int) -> bool:
         """Return whether a cell of the screen is a part of a picture."""
