@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -125,6 +125,8 @@ MONO = RobotColors(
     edge_mm=100.0,
 )  # fmt: skip
 """For a terminal of two colours: a black arrow on white within a black edge."""
+BOX = replace(MONO, marker=MONO.body)
+"""For a terminal of two colours and of signs only: a black edge, in which a pointer of signs is seen."""
 GHOST = RobotColors(edge=(255, 255, 255), body=(175, 0, 175), wheel=(95, 0, 95), marker=(255, 215, 255))
 """For a robot at an earlier pose."""
 GREY_GHOST = RobotColors(body=(158, 158, 158), wheel=(88, 88, 88), sensor=(88, 88, 88), marker=(0, 0, 0))

@@ -7,7 +7,7 @@ import pytest
 
 from tuisim.app.render.cells import all_cells
 from tuisim.app.render.mat import Pixels, whole_field
-from tuisim.app.render.mono import mono_cells
+from tuisim.app.render.mono import mono_cells, pointer
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState, visible_on
 from tuisim.charts.glyphs import GLYPHS, glyph_set
 from tuisim.charts.world_image import CellPoints
@@ -71,3 +71,28 @@ def test_a_line_shows_on_any_ground(ground: tuple[int, int, int], grey: bool) ->
     away = abs((shown - below) @ light)[0] if grey else np.sqrt(np.square(shown - below).sum())
     assert away > 50
     assert ground != (255, 255, 255) or shown.tolist() == [[255, 0, 0]]
+
+
+@pytest.mark.parametrize(
+    ("heading", "shown"),
+    [
+        pytest.param(0, ["O---->"], id="ahead"),
+        pytest.param(90, ["^", "|", "|", "O"], id="up"),
+        pytest.param(180, ["<----O"], id="back"),
+        pytest.param(-90, ["O", "|", "|", "v"], id="down"),
+        pytest.param(30, ["  ////", "O//"], id="ahead and up"),
+        pytest.param(135, ["\\\\", " \\\\\\", "   \\O"], id="back and up"),
+    ],
+)
+def test_a_pointer_of_signs_shows_the_heading(heading: float, shown: list[str]) -> None:
+    view = whole_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
+
+    signs = pointer(view, Pose(1181.0, 571.0, heading), 3.2 * 2 * view.mm_per_px, "O")
+
+    top, left = (min(at[axis] for at in signs) for axis in (0, 1))
+    bottom, right = (max(at[axis] for at in signs) for axis in (0, 1))
+    rows = [
+        "".join(GLYPHS[signs[row, col] >> 48] if (row, col) in signs else " " for col in range(left, right + 1))
+        for row in range(top, bottom + 1)
+    ]
+    assert [row.rstrip() for row in rows] == shown

@@ -104,10 +104,15 @@ async def test_without_colours_nothing_but_text_is_sent(
     assert styles <= {"", "0", "1", "2", "3", "4", "7", "9"}
 
 
-def _reversed_on(sent: str) -> list[str]:
-    """Return the texts in reverse video, by row."""
+def _screen(sent: str) -> pyte.Screen:
     screen = pyte.Screen(120, 40)
     pyte.Stream(screen).feed(re.sub(r"\x1b\[[<>=?][0-9;]*[a-zA-Z]|\x1b\[[?>]?[0-9;]*\$p", "", sent))
+    return screen
+
+
+def _reversed_on(sent: str) -> list[str]:
+    """Return the texts in reverse video, by row."""
+    screen = _screen(sent)
     rows = ("".join(screen.buffer[y][x].data for x in range(120) if screen.buffer[y][x].reverse) for y in range(40))
     return [row.strip() for row in rows]
 
@@ -133,3 +138,16 @@ async def test_without_colours_what_is_selected_is_seen(
         shown = _reversed_on("".join(wire_of(pilot).sent))
 
     assert lit in shown
+
+
+async def test_in_ascii_without_colours_signs_point_where_the_robot_is_heading(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    async with on_wire(LabApp(settings(LOGS), PictureMode(CellSet.ASCII))) as pilot:
+        await ready(pilot)
+        await until_quiet(pilot)
+        shown = ["\n".join(_screen("".join(wire_of(pilot).sent)).display)]
+        await pilot.press(*["a"] * 36)
+        await until_quiet(pilot)
+        shown.append("\n".join(_screen("".join(wire_of(pilot).sent)).display))
+
+    assert [("O-" in text, "-O" in text) for text in shown] == [(True, False), (False, True)]

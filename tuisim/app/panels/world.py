@@ -17,6 +17,7 @@ from tuisim.app.panels import PANELS
 from tuisim.app.panels.obstacles import BoxGrip, box_at
 from tuisim.app.render.cells import MONO
 from tuisim.app.render.mat import ZOOMS, Pixels, following
+from tuisim.app.render.mono import pointer
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesView, PixelView
@@ -40,6 +41,7 @@ _PAPER = (255, 255, 255)
 """Off the mat, where there are no colours: nothing is drawn there."""
 
 _TITLE = PANELS["world"].title
+_PIVOT, _GHOST_PIVOT = "O", "x"
 _ANY_PEN = PenSpec()
 
 _SHOWS_UNTIL_TAKEN = 10
@@ -150,6 +152,13 @@ class World(Widget, can_focus=True):
         self.time_bar.show(snapshot)
 
 
+def _pointers(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:
+    outline = outline_of(scene.robot)
+    reach_mm = outline.front_mm * drawn_scale(outline, port)
+    ghost = pointer(port, scene.ghost, reach_mm, _GHOST_PIVOT) if scene.ghost else {}
+    return ghost | pointer(port, scene.pose, reach_mm, _PIVOT)
+
+
 class WorldView(PixelView):
     """The picture itself; posts the messages of `World`."""
 
@@ -230,6 +239,8 @@ class WorldView(PixelView):
         self._scene, self._port, self._trace_drawn = scene, port, trace.count
         self._painter.trace = trace
         self.set_fine_picture(self._painter.paint(port, scene), graphics)
+        has_signs = self.cell_set is CellSet.ASCII and self.color_mode.depth == MONO
+        self.set_signs(_pointers(port, scene) if has_signs else {})
 
     def redraw(self) -> None:
         """Draw the image again: the app's glyphs or colours have changed."""

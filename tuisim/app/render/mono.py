@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,8 @@ from tuisim.config.options import CellSet
 
 if TYPE_CHECKING:
     from tuisim.app.render.cells import CellIndex, Cells
-    from tuisim.charts.world_image import Pixels
+    from tuisim.charts.world_image import Pixels, Viewport
+    from tuisim.core.geometry import Pose
 
 _LUMA = np.array([0.299, 0.587, 0.114], np.float32)
 _GREYS, _DARKNESS = (0, 128, 211, 220, 255), (1.0, 0.5, 0.25, 0.125, 0.0)
@@ -48,3 +50,35 @@ def mono_cells(picture: Pixels, glyphs: GlyphSet, at: CellIndex, cell_set: CellS
         numbers = np.where(even, ramp[steps], nearest_signs(ink))
     cells: Cells = numbers.astype(np.int64) << 48 | _INK_ON_PAPER
     return cells
+
+
+_LINES, _TIPS = "-/|\\", {0: ">", 2: "^", 4: "<", 6: "v"}
+"""Signs for the eight directions, counter-clockwise from the right; a line looks the same backwards."""
+_STEPS_PER_CELL = 4
+_AHEAD_CELLS = 2.0
+
+
+def pointer(view: Viewport, pose: Pose, reach_mm: float, pivot: str) -> dict[tuple[int, int], int]:
+    """Return signs for the place and the heading of a robot, as cells by row and column.
+
+    Args:
+        view: The visible part of the field.
+        pose: Where the robot is.
+        reach_mm: How far it reaches ahead, as it is drawn; the pointer is longer.
+        pivot: The sign of its place.
+    """
+    width_mm, height_mm = view.mm_per_px * view.cell.cols, view.mm_per_row * view.cell.rows
+    heading = math.radians(pose.heading_deg)
+    # From the middle of a cell, so that it does not change while the robot drives on straight.
+    col = math.floor((pose.x_mm - view.left_mm) / width_mm) + 0.5
+    row = math.floor((view.top_mm - pose.y_mm) / height_mm) + 0.5
+    length = reach_mm / width_mm + _AHEAD_CELLS
+    direction = round(math.degrees(heading) / 45) % 8
+    steps = (step / _STEPS_PER_CELL for step in range(1, math.ceil(length * _STEPS_PER_CELL) + 1))
+    down = width_mm / height_mm
+    path = [(math.floor(row - step * math.sin(heading) * down), math.floor(col + step * math.cos(heading)))
+            for step in steps]  # fmt: skip
+    signs = dict.fromkeys(path, _LINES[direction % 4])
+    signs[path[-1]] = _TIPS.get(direction, _LINES[direction % 4])
+    signs[math.floor(row), math.floor(col)] = pivot
+    return {at: sign_number(sign) << 48 | _INK_ON_PAPER for at, sign in signs.items()}

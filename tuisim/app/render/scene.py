@@ -10,7 +10,7 @@ from itertools import groupby
 import numpy as np
 
 from tuisim.app.render.mat import MatPictures, Pixels
-from tuisim.charts.world_image import COLORED, GHOST, GREY, GREY_GHOST, MONO, Viewport, draw_robot
+from tuisim.charts.world_image import BOX, COLORED, GHOST, GREY, GREY_GHOST, MONO, Viewport, draw_robot
 from tuisim.core.css_colors import Rgb, css_rgb
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import outline_of
@@ -64,7 +64,8 @@ class ScenePainter:
     ) -> None:
         self.trace = trace
         self._mat = MatPictures(mat, outside_rgb)
-        self._robot_colors = MONO if mono else GREY if grey else COLORED
+        without_colors = BOX if coarse else MONO
+        self._robot_colors = without_colors if mono else GREY if grey else COLORED
         self._grey = grey or mono
         self._detail_cols = 1 if coarse else None
         self._ghost_colors = GREY_GHOST if grey else GHOST

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -91,6 +91,8 @@ class PixelView(RowsView):
         """The image, while it is drawn with pixels."""
         self._sharpness = Sharpness(self, self._refine_some)
         self._strips: list[Strip | None] = []
+        self._signs: Mapping[tuple[int, int], int] = {}
+        """Cells above those of the image, by row and column."""
 
     @property
     def color_mode(self) -> ColorMode:
@@ -248,9 +250,23 @@ class PixelView(RowsView):
             return self._blank()
         strip = self._strips[y]
         if strip is None:
-            strip = CellStrip(self._cells[y].tolist()) if self._tiles is None else PictureStrip(self._tiles.row(y))
+            strip = CellStrip(self._row(y)) if self._tiles is None else PictureStrip(self._tiles.row(y))
             self._strips[y] = strip
         return strip
+
+    def _row(self, y: int) -> list[int]:
+        cells: list[int] = self._cells[y].tolist()
+        for (row, col), cell in self._signs.items():
+            if row == y and 0 <= col < len(cells):
+                cells[col] = cell
+        return cells
+
+    def set_signs(self, signs: Mapping[tuple[int, int], int]) -> None:
+        """Show other cells above those of the image, by row and column; not above pixels."""
+        rows, cols = self._cells.shape
+        changed = {at for at, _ in self._signs.items() ^ signs.items()}
+        self._signs = signs
+        self._refresh_runs((row, col, 1) for row, col in changed if 0 <= row < rows and 0 <= col < cols)
 
     def _blank(self) -> Strip:
         # A strip without a style would break Textual's filter for terminals without colours.
