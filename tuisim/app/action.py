@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, ClassVar, Generic, TypeVar
 
+from rich.console import Console
 from rich.style import Style
 from rich.table import Table
 from rich.text import Text
@@ -301,15 +302,22 @@ COLUMN_CELLS = 50
 """A column of keys is not made narrower than this to fit another one next to it."""
 
 
-def key_table(groups: Mapping[str, Iterable[KeyWord]], width: int) -> Table:
-    """Return every key by group, in as many columns as fit; a group without a name has no heading."""
+def key_table(groups: Mapping[str, Iterable[KeyWord]], width: int) -> Text:
+    """Return every key by group, in as many columns as fit; a group without a name has no heading.
+
+    Text that is laid out already: Textual would measure and draw a nested table several times.
+    """
     rows = [(group, list(keys)) for group, keys in groups.items()]
     count = max(1, min(width // COLUMN_CELLS, len(rows)))
     columns = Table.grid(padding=(0, 2), expand=True)
     for _ in range(count):
         columns.add_column(ratio=1)
     columns.add_row(*map(_column, _in_columns(rows, count)))
-    return columns
+    text = Text(no_wrap=True)
+    for segment in Console(width=width, color_system="truecolor").render(columns):
+        text.append(segment.text, segment.style)
+    text.right_crop(1)
+    return text
 
 
 _Group = tuple[str, list[KeyWord]]

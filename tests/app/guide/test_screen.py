@@ -80,6 +80,14 @@ async def test_the_page_of_the_panel_with_the_focus(panel: str, place: str, word
             await until_shown(pilot, word)
 
 
+async def test_the_scroll_bar_covers_no_letter() -> None:
+    async with LabApp(settings()).run_test(size=SMALL) as pilot:
+        screen = await opened(pilot, "G")
+        drawn_for = screen._width
+        await until(pilot, lambda: screen._page.max_scroll_y > 0)
+        assert screen._page.scrollable_content_region.width == drawn_for
+
+
 @pytest.mark.parametrize("question", list(QUESTIONS)[::12])
 async def test_a_question_is_answered_by_its_page(question: str) -> None:
     async with LabApp(settings()).run_test(size=SMALL) as pilot:

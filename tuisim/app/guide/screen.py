@@ -6,7 +6,6 @@ from collections.abc import Callable
 from functools import partial
 from typing import ClassVar, TypeAlias
 
-from rich.console import Group
 from rich.text import Text
 from textual import events, on
 from textual.app import ComposeResult
@@ -181,13 +180,13 @@ class GuideScreen(Dialog[None]):
         name, heading = place
         text = self.query_one("#text", Static)
         if not name:
-            text.update(Group(Text(self._keys.start), Text(), key_table(self._keys.groups, width)))
+            text.update(Text(f"{self._keys.start}\n\n").append_text(key_table(self._keys.groups, width)))
             self._page.scroll_home(animate=False)
             return
         lines = page_lines(pages()[name], width)
         drawn = _text_of(lines)
         groups = {group: self._keys.groups[group] for group in self._topic.groups if with_keys}
-        text.update(Group(key_table(groups, width), drawn) if groups else drawn)
+        text.update(key_table(groups, width).append("\n").append_text(drawn) if groups else drawn)
         rows = [number for number, line in enumerate(lines) if heading == "".join(part for part, _ in line).strip()]
         row = rows[0] if heading and rows else 0
         self.call_after_refresh(self._page.scroll_to, y=row, animate=False)
