@@ -6,12 +6,14 @@ import gc
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import suppress
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from tests.running import PATIENCE_S, Done, Run, Start, over
 from tuisim.atomic import make_private_folder
@@ -29,6 +31,12 @@ ROOT = Path(__file__).resolve().parent.parent
 MATS = {name: getattr(mat_cache, name) for name in ("_in_use", "_store")}
 """How mats are looked for and stored by users."""
 
+settings.register_profile(
+    "quick", max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+settings.register_profile("thorough", settings.get_profile("quick"), max_examples=100)
+settings.load_profile("quick")
+
 # Hundreds of commands and children import the same modules: where bytecode is kept, each is compiled once.
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -42,6 +50,27 @@ def pytest_collection_finish() -> None:
     gc.freeze()
     gc.set_threshold(50_000, 20, 20)
     gc.enable()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_pycollect_makeitem() -> Generator[None, Any, Any]:
+    """Mark the slow cases of a table: `quick_cases` names those that are quick, or `slow_cases` those that are not."""
+    made = yield
+    if isinstance(made, list):
+        for kind in ("quick_cases", "slow_cases"):
+            if made and (mark := made[0].get_closest_marker(kind)):
+                _mark_slow_cases(made, mark)
+    return made
+
+
+def _mark_slow_cases(cases: list[pytest.Function], mark: pytest.Mark) -> None:
+    ids = [case.callspec.id for case in cases]
+    if missing := [name for name in mark.args if not any(fnmatchcase(at, name) for at in ids)]:
+        raise pytest.UsageError(f"{cases[0].originalname}: no case {', '.join(missing)} among {', '.join(ids)}")
+    for case, at in zip(cases, ids, strict=True):
+        is_named = any(fnmatchcase(at, name) for name in mark.args)
+        if is_named == (mark.name == "slow_cases"):
+            case.add_marker(pytest.mark.slow)
 
 
 Command = Callable[..., "subprocess.CompletedProcess[str]"]

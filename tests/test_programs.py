@@ -45,6 +45,7 @@ def test_example_introduces_itself(name: str) -> None:
     assert path.read_text(encoding="utf-8").isascii()
 
 
+@pytest.mark.quick_cases("*-robolab")
 @pytest.mark.parametrize("profile", ["robolab", "nbev3devsim", "ev3"])
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_example_finishes(name: str, profile: str, here: Command) -> None:
@@ -55,6 +56,7 @@ def test_example_finishes(name: str, profile: str, here: Command) -> None:
     assert facts.items() >= {**EXAMPLES[name], **other}.items()
 
 
+@pytest.mark.quick_cases("calm")
 @pytest.mark.parametrize(
     "words", [[], ["-N", 20, "-M", 50], ["-N", 20, "-M", 50, "--seed", 3]], ids=["calm", "noise", "seed"]
 )
@@ -72,6 +74,7 @@ def test_square_comes_back_to_where_it_began(here: Command) -> None:
     assert facts["heading_deg"] == pytest.approx(-360, abs=1)
 
 
+@pytest.mark.quick_cases("100-White-6", "500-Green-3")
 @pytest.mark.parametrize(
     ("x_mm", "name", "code"),
     [

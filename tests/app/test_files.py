@@ -106,6 +106,7 @@ def with_magic(words: str) -> str:
     return f"# %%sim_magic_preloaded -b Loop{words}\nprint('A: 1')\n"
 
 
+@pytest.mark.quick_cases("chart")
 @pytest.mark.parametrize(
     ("words", "panel", "shown"),
     [(" -c", "chart", True), (" -X", "positioning", True), (" -W", "world", False), (" -O", "output", True)],
@@ -126,6 +127,7 @@ async def test_panels_of_a_magic_line_come_and_go_as_it_is_saved(
         await until(pilot, lambda: app.panel_area.shown(panel) is before)
 
 
+@pytest.mark.slow
 async def test_panels_of_a_magic_line_come_as_a_program_is_opened(folder: Path) -> None:
     (folder / "mine.py").write_text(with_magic(" -cu --speed 2"))
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
@@ -159,6 +161,7 @@ async def test_a_world_is_saved_and_an_old_file_only_after_a_question(folder: Pa
         assert not any("changed on disk" in notice for notice in notices(app))
 
 
+@pytest.mark.slow
 async def test_what_cannot_be_written_is_told(folder: Path) -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
@@ -191,6 +194,7 @@ async def test_a_changed_program_is_reloaded_at_once(folder: Path) -> None:
         assert app.run_controller.pose == Pose(500, 500, 0)
 
 
+@pytest.mark.slow
 async def test_the_timer_looks_by_itself(folder: Path) -> None:
     path = folder / "mine.py"
     async with LabApp(with_file(path)).run_test(size=(120, 40)) as pilot:
@@ -215,6 +219,7 @@ async def test_a_changed_magic_line_applies_what_is_new_in_it(folder: Path) -> N
         await until(pilot, lambda: app.loader.mat_is_ready)
 
 
+@pytest.mark.slow
 async def test_a_program_changed_during_a_run_waits_for_its_end(folder: Path) -> None:
     path = folder / "mine.py"
     path.write_text(ENDLESS)
@@ -242,6 +247,7 @@ WRONG = [
 ]
 
 
+@pytest.mark.quick_cases("mine.toml")
 @pytest.mark.parametrize(("name", "text", "said"), WRONG, ids=[name for name, _, _ in WRONG])
 async def test_a_file_that_became_wrong_is_told_and_the_former_stays(
     name: str, text: str, said: str, folder: Path
@@ -277,6 +283,7 @@ async def test_robot_obstacles_and_world_are_reloaded(folder: Path) -> None:
         assert app.run_controller.next_run.spec.robot.wheel_diameter_mm == 44
 
 
+@pytest.mark.slow
 async def test_the_command_opens_a_world_that_is_watched(folder: Path) -> None:
     from tuisim.commands.resolve import prepare_app
     from tuisim.config.command_line import Arguments
@@ -297,6 +304,7 @@ async def test_the_command_opens_a_world_that_is_watched(folder: Path) -> None:
         assert app.run_controller.next_run.spec.seed == 6
 
 
+@pytest.mark.slow
 async def test_an_example_is_opened_by_its_name_and_the_footer_shows_the_keys_again(folder: Path) -> None:
     async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)

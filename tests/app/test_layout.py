@@ -27,6 +27,7 @@ def assert_fills(boxes: dict[str, PanelBox], width: int, height: int) -> None:
     assert (covered == 1).all()
 
 
+@pytest.mark.quick_cases("60x18")
 @pytest.mark.parametrize(("width", "height"), SIZES, ids=[f"{w}x{h}" for w, h in SIZES])
 def test_any_panels_fill_the_screen(width: int, height: int) -> None:
     for count in range(1, len(PANELS) + 1):

@@ -87,6 +87,7 @@ async def test_a_run_is_searched_for_and_chosen() -> None:
         assert app.run_controller.snapshot().past
 
 
+@pytest.mark.slow
 async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
     from PIL import Image
 
@@ -131,6 +132,7 @@ def _torn_pack(name: str) -> Callable[[Path], str]:
     return damage
 
 
+@pytest.mark.quick_cases("output")
 @pytest.mark.parametrize(
     "damage", [_no_run_file, _torn_pack("telemetry.bin"), _torn_pack("output.bin")], ids=["file", "ticks", "output"]
 )
@@ -146,6 +148,7 @@ async def test_a_damaged_run_is_a_notice(damage: Callable[[Path], str]) -> None:
         assert not app.run_controller.run_id
 
 
+@pytest.mark.quick_cases("a mat too")
 @pytest.mark.parametrize(
     ("words", "said"),
     [

@@ -30,6 +30,7 @@ async def test_a_run_shows_its_output_and_its_end() -> None:
         assert app.run_controller.pose.x_mm > 1400
 
 
+@pytest.mark.slow
 async def test_the_same_run_again_gives_the_same_log(tmp_path: Path) -> None:
     files = [tmp_path / f"{number}.csv" for number in (1, 2)]
     async with LabApp(settings(LOGS, speed=0.0)).run_test(size=(120, 40)) as pilot:
@@ -112,6 +113,7 @@ async def test_an_error_is_shown_with_its_line() -> None:
         await until(pilot, lambda: any("NameError" in notice for notice in notices(app)))
 
 
+@pytest.mark.quick_cases("text")
 @pytest.mark.parametrize(
     ("keys", "printed"),
     [(["a", "n", "n", "enter"], "got ann"), (["ctrl+d"], "nothing more")],
@@ -141,6 +143,7 @@ async def test_a_flood_of_prints_leaves_the_app_usable() -> None:
         await until(pilot, lambda: "line 199999" in screen_text(app))
 
 
+@pytest.mark.slow
 async def test_quit_during_a_run_asks_and_leaves_no_child() -> None:
     async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)

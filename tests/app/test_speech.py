@@ -30,6 +30,7 @@ def test_a_tone_has_its_length_pitch_and_pause() -> None:
     assert not any(made[RATE_HZ:])
 
 
+@pytest.mark.slow
 def test_silence_and_the_longest_sound() -> None:
     assert not any(samples(wav_of([[0.0, 100.0, 0.0]])))
     assert len(samples(wav_of([[100.0, 1e9, 1e9], [100.0, 1e9, 0.0]]))) == int(MAX_SOUND_S * RATE_HZ)

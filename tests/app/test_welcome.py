@@ -26,6 +26,7 @@ def is_closed(app: LabApp) -> bool:
     return not isinstance(app.screen, Welcome)
 
 
+@pytest.mark.slow_cases("(120, 40)")
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=str)
 async def test_the_welcome_appears_once(size: tuple[int, int], home: Path) -> None:
     for is_first in (True, False):
@@ -46,6 +47,7 @@ CHOICES: dict[str, tuple[list[str], Any]] = {
 }
 
 
+@pytest.mark.quick_cases("example by number", "open")
 @pytest.mark.parametrize(("keys", "is_done"), CHOICES.values(), ids=CHOICES)
 async def test_each_choice_of_the_welcome_begins(keys: list[str], is_done: Any, home: Path) -> None:
     async with LabApp(FIRST).run_test(size=(80, 24)) as pilot:
@@ -70,6 +72,7 @@ def test_the_welcome_is_for_those_who_name_nothing(given: dict[str, Any], is_emp
     assert opened.is_empty is is_empty
 
 
+@pytest.mark.slow_cases("(120, 40)")
 @pytest.mark.parametrize("size", [(80, 24), (120, 40), (59, 14)], ids=str)
 async def test_a_program_with_a_syntax_error_opens_at_its_line(size: tuple[int, int]) -> None:
     async with LabApp(settings(WRONG)).run_test(size=size) as pilot:

@@ -94,6 +94,7 @@ def test_pixels_known_from_the_numbers(name: str, column: int, row: int, rgb: tu
     assert stored(name).getpixel((column, row)) == rgb
 
 
+@pytest.mark.slow
 def test_write_replaces_a_picture_and_leaves_nothing_else(tmp_path: Path) -> None:
     (tmp_path / "Square.png").write_bytes(b"no picture")
     draw.write("Square", tmp_path)
@@ -125,6 +126,7 @@ def test_the_command_checks_names(capsys: pytest.CaptureFixture[str]) -> None:
     assert "Gray_bands" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_the_command_checks_a_copy_of_the_folder(tmp_path: Path) -> None:
     for path in FOLDER.glob("*.py"):
         shutil.copy(path, tmp_path)

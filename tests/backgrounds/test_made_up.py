@@ -28,6 +28,7 @@ def tile(sheet_picture: np.ndarray, row: int, column: int) -> np.ndarray:
     return ink.astype(int)
 
 
+@pytest.mark.quick_cases("MNIST_Digits")
 @pytest.mark.parametrize("name", SHEET_IDS)
 def test_sheet_layout(name: str) -> None:
     sheet, ground = SHEETS[name]
@@ -41,6 +42,8 @@ def test_sheet_layout(name: str) -> None:
     assert np.array_equal(drawn[:, :, 0][free], expected[free])
 
 
+@pytest.mark.slow
+@pytest.mark.quick_cases("MNIST_Digits")
 @pytest.mark.parametrize("name", SHEET_IDS)
 def test_each_digit_is_as_bright_and_as_large_as_its_cell_says(name: str) -> None:
     sheet, _ = SHEETS[name]
@@ -54,6 +57,7 @@ def test_each_digit_is_as_bright_and_as_large_as_its_cell_says(name: str) -> Non
         assert np.abs(np.subtract(found, (x0, y0, x1, y1))).max() <= 2
 
 
+@pytest.mark.slow
 def test_digits_of_one_sheet_teach_those_of_the_other() -> None:
     drawn = {name: picture(name) for name in SHEET_IDS}
     learnt = [(label, tile(drawn["MNIST_Digits"], row, column)) for row, column, label in cells(WHITE_SHEET)]
@@ -71,6 +75,7 @@ def test_another_hand_writes_otherwise() -> None:
     assert not np.array_equal(first, second)
 
 
+@pytest.mark.slow
 def test_the_land_has_the_palette_and_no_cliffs() -> None:
     drawn = picture("Topo_map")
     x0, y0, x1, y1 = MAP_BOX
@@ -84,6 +89,7 @@ def test_the_land_has_the_palette_and_no_cliffs() -> None:
     assert (drawn == 255).all()
 
 
+@pytest.mark.slow
 def test_the_noise_is_of_the_measured_kind() -> None:
     noisy = picture("Noisy_Lollipop").astype(float)
     ground = noisy[850:1100, 200:2200]
@@ -116,6 +122,7 @@ def test_the_places_of_the_own_mats_have_their_colours(name: str, column: int, r
     assert COLOR_NAMES[color_code(*picture(name)[row, column].tolist())] == color
 
 
+@pytest.mark.quick_cases("A", "Z", "7", "-")
 @pytest.mark.parametrize("letter", [*"ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789", "x", "y", ":", ",", ".", "-"])
 def test_a_letter_keeps_to_its_place(letter: str) -> None:
     canvas = shapes.blank()
@@ -125,6 +132,7 @@ def test_a_letter_keeps_to_its_place(letter: str) -> None:
     assert rows.min() >= 168 and rows.max() <= 212
 
 
+@pytest.mark.slow
 def test_no_two_letters_look_the_same() -> None:
     looks = set()
     for letter in "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789xy:,.-":

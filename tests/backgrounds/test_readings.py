@@ -96,6 +96,7 @@ def allowed(name: str, kind: str) -> Allowed:
     return {"letters": LETTERS, "tile": DIGIT}.get(kind) or ALLOWED.get((name, kind), EXACT)
 
 
+@pytest.mark.slow_cases("Noisy_Lollipop", "Grey_and_black")
 @pytest.mark.parametrize("name", sorted({name for name, _ in READINGS}))
 def test_the_sensor_reads_what_it_must(name: str) -> None:
     with Image.open(Path(draw.__file__).parent / f"{name}.png") as image:

@@ -45,6 +45,7 @@ def test_rect_off_the_mat_paints_nothing() -> None:
     assert canvas.min() == INK
 
 
+@pytest.mark.quick_cases("hard-*")
 @pytest.mark.parametrize(
     ("shape", "expected"),
     [

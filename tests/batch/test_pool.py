@@ -94,6 +94,7 @@ def test_a_prepared_mat_that_was_deleted_is_prepared_again(tmp_path: Path, monke
         shutil.rmtree(tmp_path / home)
 
 
+@pytest.mark.slow_cases("output_limit", "stalled")
 @pytest.mark.parametrize("end", ENDS)
 def test_each_end_is_a_result(end: str, tmp_path: Path) -> None:
     text, code, error = ENDS[end]

@@ -43,6 +43,7 @@ def test_the_part_of_the_field_holds_every_pose(found: EndPoses, limits: object)
     assert found.limits() == limits
 
 
+@pytest.mark.quick_cases("size1-*")
 @pytest.mark.parametrize("found", [NEAR, FAR, OFF, NONE], ids=["near", "far", "off the field", "none"])
 @pytest.mark.parametrize("size", [(960, 600), (200, 150)])
 def test_end_poses_are_written_as_svg_and_png(found: EndPoses, size: tuple[int, int]) -> None:

@@ -44,6 +44,7 @@ def log_of(columns: dict[str, object]) -> Model:
     return model_of(Log("title\x1b]0;\n<title>", table, guess_columns(table)))
 
 
+@pytest.mark.quick_cases("two scales-*", "no number-*")
 @pytest.mark.parametrize("view", VIEWS.values(), ids=VIEWS)
 @pytest.mark.parametrize("columns", COLUMNS.values(), ids=COLUMNS)
 def test_every_format_is_whole(columns: dict[str, object], view: View) -> None:

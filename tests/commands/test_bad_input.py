@@ -91,6 +91,7 @@ def test_bad_input(words: str, said: str, folder: Path, home: Path, here: Comman
     assert sorted(folder.rglob("*")) == before
 
 
+@pytest.mark.slow
 def test_home_that_cannot_be_used(folder: Path, tuisim: Command) -> None:
     (folder / "occupied").write_text("a file")
     done = tuisim("run", "prog.py", TUISIM_HOME=str(folder / "occupied"))

@@ -186,6 +186,7 @@ def test_an_interrupted_batch_keeps_what_is_done(
     assert "interrupted after 2 of 5 runs; rows.csv has these rows, and --resume goes on" in capsys.readouterr().err
 
 
+@pytest.mark.quick_cases("csv")
 @pytest.mark.parametrize("suffix", ["csv", "parquet"])
 def test_a_resumed_batch_runs_the_rest_and_gives_the_same_bytes(
     batch: Batch, suffix: str, monkeypatch: pytest.MonkeyPatch
@@ -216,6 +217,7 @@ def test_a_complete_batch_keeps_a_column_that_is_empty(batch: Batch) -> None:
     assert Path("rows.csv").read_bytes() == whole
 
 
+@pytest.mark.quick_cases("csv")
 @pytest.mark.parametrize("suffix", ["csv", "parquet", "jsonl", "arrow"])
 def test_a_complete_batch_is_not_run_again_for_another_picture(
     batch: Batch, suffix: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

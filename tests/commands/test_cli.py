@@ -223,6 +223,7 @@ def start(folder: Path, *words: str) -> subprocess.Popen[str]:
     )
 
 
+@pytest.mark.quick_cases("ctrl-C")
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["ctrl-C", "terminate"])
 def test_signal_stops_the_run_and_exports_its_rows(number: signal.Signals, code: int, tmp_path: Path) -> None:
     (tmp_path / "prog.py").write_text(FIVE + "while True:\n    pass\n")
@@ -237,6 +238,7 @@ def test_signal_stops_the_run_and_exports_its_rows(number: signal.Signals, code:
     assert len(pd.read_csv(tmp_path / "rows.csv")) == 5
 
 
+@pytest.mark.slow
 def test_closed_pipe_is_quiet_and_stops_the_run(tmp_path: Path) -> None:
     (tmp_path / "prog.py").write_text("number = 0\nwhile True:\n    print(number)\n    number += 1\n")
     running = start(tmp_path, "run", "prog.py", "--timeout", "1000000")

@@ -72,6 +72,7 @@ def test_a_script_is_printed(shell: str, here: Command) -> None:
     assert (done.returncode, f"{shell}_complete" in done.stdout) == (0, True)
 
 
+@pytest.mark.slow
 def test_bash_completes_with_the_script(tmp_path: Path) -> None:
     (tmp_path / "tuisim").write_text(f'#!/bin/sh\nexec "{sys.executable}" -m tuisim "$@"\n')
     (tmp_path / "tuisim").chmod(0o755)

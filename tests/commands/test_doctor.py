@@ -149,6 +149,7 @@ def test_asks_the_terminal(environment: dict[str, str], expected: tuple[str, ...
         assert words in text
 
 
+@pytest.mark.slow
 def test_a_terminal_that_shows_questions_as_text_is_not_asked(home: Path) -> None:
     shown, code, _ = in_terminal(["doctor"], {"TERM": "dumb"}, {})
     assert (code, b"\x1b" in shown) == (0, False)

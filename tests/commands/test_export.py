@@ -97,6 +97,7 @@ def test_runs_come_back_from_the_log(here: Command, tmp_path: Path, kept: dict[s
     kept[table].check(tmp_path / f"x{suffix}")
 
 
+@pytest.mark.quick_cases("*-samples")
 @each_table
 @each_format
 def test_files_become_each_other(here: Command, tmp_path: Path, kept: dict[str, Kept], table: str,

@@ -98,6 +98,7 @@ def test_export_keeps_the_values(here: Command, tmp_path: Path, suffix: str) -> 
     assert (found[0]["variable"], found[0]["count"], found[0]["min"]) == ("Colour", 51, 0.0)
 
 
+@pytest.mark.slow
 def test_a_pipe(tmp_path: Path) -> None:
     command = f"{sys.executable} -m tuisim run log_greys | {sys.executable} -m tuisim log summary - --json"
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}

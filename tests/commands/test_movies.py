@@ -77,6 +77,7 @@ def view(width_px: int, height_px: int) -> Viewport:
     return fitting_view(ROBOT, width_px, height_px)
 
 
+@pytest.mark.quick_cases(".webp")
 @pytest.mark.parametrize("suffix", [".gif", ".webp", ".apng"])
 def test_a_movie_follows_the_robot(here: Command, run: StoredRun, tmp_path: Path, suffix: str) -> None:
     done = here("runs", "movie", "last", "--out", f"a{suffix}", "--fps", "10")
@@ -91,6 +92,7 @@ def test_a_movie_follows_the_robot(here: Command, run: StoredRun, tmp_path: Path
     assert (after - before) * mm_per_px == pytest.approx(last.x_mm - START.x_mm, abs=2 * mm_per_px)
 
 
+@pytest.mark.slow
 def test_colours_of_the_mat_are_exact_in_a_gif(here: Command, tmp_path: Path) -> None:
     here("runs", "movie", "last", "--out", "a.gif", "--fps", "5", "--panels", "world")
     for frame in frames_of(tmp_path / "a.gif")[0]:
@@ -120,6 +122,7 @@ def replayed(path: Path, until_s: float) -> tuple[pyte.Screen, float]:
     return screen, events[-1][0]
 
 
+@pytest.mark.quick_cases("80x36-world", "100x30-chart", "80x36-arrays")
 @pytest.mark.parametrize("panels", ["world", "world,chart", "chart", "arrays", "world,chart,arrays"])
 @pytest.mark.parametrize("size", ["80x36", "100x30"])
 def test_a_cast_shows_in_a_terminal_what_was_drawn(
@@ -142,6 +145,7 @@ def test_a_cast_shows_in_a_terminal_what_was_drawn(
             assert [fg for fg, _ in inks] == [ink for _, ink in inks]
 
 
+@pytest.mark.slow
 def test_a_cast_has_the_robot_the_chart_and_the_value(here: Command, tmp_path: Path) -> None:
     assert here("runs", "movie", "last", "--out", "a.cast").returncode == 0
     screen, _ = replayed(tmp_path / "a.cast", 100)
@@ -181,6 +185,7 @@ def test_without_a_file_it_is_named_after_the_program(here: Command, tmp_path: P
     assert (tmp_path / "log-picture.png").is_file()
 
 
+@pytest.mark.slow
 def test_a_small_movie_of_a_long_run_is_faster() -> None:
     made = small_movie(Recorded(record(*[100, -100] * 25)))
     assert made is not None
@@ -189,6 +194,7 @@ def test_a_small_movie_of_a_long_run_is_faster() -> None:
     assert len(content) < SMALL_BYTES
 
 
+@pytest.mark.slow_cases("too large")
 @pytest.mark.parametrize(("speed_dps", "most"), [(0, SMALL_BYTES), (100, 1000)], ids=["stands still", "too large"])
 def test_no_small_movie(monkeypatch: pytest.MonkeyPatch, speed_dps: float, most: int) -> None:
     monkeypatch.setattr("tuisim.movies.files.SMALL_BYTES", most)
@@ -251,6 +257,7 @@ def test_a_run_without_ticks(here: Command, run: StoredRun, tmp_path: Path) -> N
     assert "run 1 has no recorded tick" in done.stderr
 
 
+@pytest.mark.quick_cases("x_mm-nan")
 @pytest.mark.parametrize(
     ("field", "value"), [("x_mm", math.nan), ("y_mm", 1e30), ("heading_deg", math.inf), ("left_speed_dps", math.nan)]
 )

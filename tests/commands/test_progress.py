@@ -150,6 +150,7 @@ def test_commands_tell_how_far_they_are(
     assert not missing, heard
 
 
+@pytest.mark.slow
 def test_rich_is_not_loaded_for_what_is_quick() -> None:
     check = "import sys, tuisim.commands.run, tuisim.commands.runs, tuisim.commands.log; print('rich' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", check], capture_output=True, text=True, check=True)

@@ -146,6 +146,7 @@ def test_a_small_movie_shows_the_run(driven: Driven) -> None:
         assert (movie.format, getattr(movie, "n_frames", 1)) == ("WEBP", driven.run.telemetry.count // 10 + 2)
 
 
+@pytest.mark.slow
 def test_the_same_run_gives_the_same_bytes(here: Command, tmp_path: Path, driven: Driven) -> None:
     for name in ("one.html", "two.html"):
         here("log", "report", driven.run.id, "--out", name)
@@ -190,6 +191,7 @@ def test_a_mat_that_is_gone_costs_only_its_picture(here: Command, home: Path, tm
     assert "Bands" in page.section
 
 
+@pytest.mark.slow
 def test_the_page_is_called_after_the_program(here: Command, tmp_path: Path, driven: Driven) -> None:
     done = here("log", "report", driven.run.id)
     assert (done.returncode, done.stdout, done.stderr) == (0, "greys-report.html\n", "")

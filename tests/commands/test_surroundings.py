@@ -24,6 +24,7 @@ SIBLINGS = {
 }
 
 
+@pytest.mark.slow_cases("missing name")
 @pytest.mark.parametrize(("text", "code", "out", "told"), SIBLINGS.values(), ids=SIBLINGS)
 def test_a_module_called_as_one_of_pythons(
     here: Command, tmp_path: Path, text: str, code: int, out: str, told: str
@@ -35,6 +36,7 @@ def test_a_module_called_as_one_of_pythons(
     assert told in done.stderr
 
 
+@pytest.mark.slow
 def test_the_command_itself_does_not_mind_such_a_module(tuisim: Command, tmp_path: Path) -> None:
     for name in ("random", "json", "select"):
         (tmp_path / f"{name}.py").write_text("x = 1\n")

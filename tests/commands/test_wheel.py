@@ -35,6 +35,7 @@ def tuisim_in(installed: Path, folder: Path, *words: str) -> subprocess.Complete
     )
 
 
+@pytest.mark.slow
 def test_installed_copy_runs_its_own_programs(installed: Path, tmp_path: Path) -> None:
     listed = tuisim_in(installed, tmp_path, "programs")
     assert str(installed) in listed.stdout

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.config.makers import boxes, mm, presses, robots
@@ -42,7 +42,6 @@ from tuisim.guide.catalogue import pages as guide_pages
 Write = Callable[[str, str], str]
 
 # Files are made anew by every example, so one folder may serve them all.
-EXAMPLES = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
 @pytest.fixture
@@ -56,7 +55,6 @@ def write(tmp_path: Path) -> Write:
     return write
 
 
-@EXAMPLES
 @given(robot=robots())
 def test_a_robot_reads_back_to_the_last_bit(robot: RobotSpec, tmp_path: Path) -> None:
     (tmp_path / "robot.toml").unlink(missing_ok=True)
@@ -64,7 +62,6 @@ def test_a_robot_reads_back_to_the_last_bit(robot: RobotSpec, tmp_path: Path) ->
     assert load_robot(str(tmp_path / "robot.toml")) == robot
 
 
-@EXAMPLES
 @given(found=st.lists(boxes, max_size=5).map(tuple))
 def test_obstacles_read_back_to_the_last_bit(found: tuple[Obstacle, ...], tmp_path: Path) -> None:
     (tmp_path / "boxes.toml").unlink(missing_ok=True)
@@ -78,7 +75,6 @@ own_profiles = st.builds(
 )  # fmt: skip
 
 
-@EXAMPLES
 @given(
     robot=robots() | st.sampled_from(list(ROBOTS)),
     background=st.sampled_from(["Empty_Map", "Radial_grey"]),

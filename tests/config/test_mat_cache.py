@@ -66,6 +66,7 @@ def test_sums_equal_naive_sums_everywhere(home: Path) -> None:
             assert list(field.disc_sums(diameter, col, row)) == naive_sums(pixels, diameter, col, row)
 
 
+@pytest.mark.quick_cases("2", "7")
 @pytest.mark.parametrize("diameter", [2, 7, 100, 128])
 def test_sums_of_unusual_diameters(diameter: int, home: Path) -> None:
     files = mat_cache.prepare(mats.background("Radial_red").image, [diameter])
@@ -159,6 +160,7 @@ def test_a_file_that_is_used_while_others_are_dropped_is_kept(
     assert cached(home) == sorted([first, last])
 
 
+@pytest.mark.slow
 def test_a_mat_with_many_diameters_is_kept_whole(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(mat_cache, "MAX_CACHED_FILES", 1)
     files = mat_cache.prepare(picture(tmp_path), (10, 20))
@@ -176,6 +178,7 @@ def test_parts_of_killed_processes_are_cleared(home: Path, tmp_path: Path) -> No
     assert cached(home, "*.tmp") == [new]
 
 
+@pytest.mark.slow
 def test_several_at_once_make_the_same_files(home: Path, tmp_path: Path) -> None:
     image = picture(tmp_path, fill="navy")
     with ThreadPoolExecutor(3) as pool:

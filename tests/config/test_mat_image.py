@@ -185,6 +185,7 @@ def test_stretch_fills_the_field() -> None:
     assert field[0, -1].tolist() == field[-1, 1400].tolist() == [0, 0, 255]
 
 
+@pytest.mark.quick_cases("square")
 @pytest.mark.parametrize(
     ("size", "box"),
     [
@@ -201,6 +202,7 @@ def test_fit_keeps_the_proportions(size: tuple[int, int], box: tuple[int, int, i
     assert (field[field.any(axis=2)] == 255).all()
 
 
+@pytest.mark.slow_cases("size2-*")
 @pytest.mark.parametrize(
     ("size", "dark"), [((100, 50), 5000), ((3000, 50), WIDTH * 50), ((3000, 2000), WIDTH * HEIGHT)]
 )
@@ -212,6 +214,7 @@ def test_centre_is_pixel_for_pixel(size: tuple[int, int], dark: int) -> None:
     assert middle(field) == [9, 8, 7]
 
 
+@pytest.mark.slow
 def test_a_picture_of_the_fields_size_is_left_alone() -> None:
     image = Image.effect_noise((WIDTH, HEIGHT), 90).convert("RGB")
     content = saved(image, compress_level=1)
@@ -219,6 +222,7 @@ def test_a_picture_of_the_fields_size_is_left_alone() -> None:
         assert np.array_equal(decoded(content, fit), np.asarray(image)), fit
 
 
+@pytest.mark.quick_cases("black-*", "white-PNG-*")
 @pytest.mark.parametrize(
     ("kind", "mode"),
     [
@@ -299,6 +303,7 @@ def test_the_first_frame_of_a_film_counts() -> None:
     assert middle(decoded(saved(frames[0], "GIF", save_all=True, append_images=frames[1:]))) == [255, 0, 0]
 
 
+@pytest.mark.quick_cases("0", "1", "2", "3", "4", "5")
 @pytest.mark.parametrize("seed", range(25))
 def test_damaged_bytes_never_escape_as_something_else(seed: int) -> None:
     dice = np.random.default_rng(seed)

@@ -112,6 +112,7 @@ def test_a_run_on_our_mat_stays_on_it_when_the_user_brings_another(own: Path) ->
     assert build_run_spec(settings_of(settings_from(spec))) == spec
 
 
+@pytest.mark.slow
 def test_a_stored_run_is_repeated_on_the_mat_that_it_was_made_on(here: Command, own: Path, tmp_path: Path) -> None:
     (tmp_path / "p.py").write_text(READ)
     assert here("run", "p.py", "-b", "Loop", "-x", "1000").stdout == "(255, 255, 255)\n"

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.config.makers import robots
@@ -22,8 +22,6 @@ from tuisim.config.robots import ROBOTS, load_robot, save_robot
 from tuisim.config.worlds import load_world, save_world
 from tuisim.core.spec import Obstacle, RobotSpec, RunSpec
 from tuisim.errors import ConfigError
-
-EXAMPLES = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
 def saved(kind: str, old: str, thing: Any, folder: Path) -> str:
@@ -102,7 +100,6 @@ def test_a_robot_reads_back_from_a_file_that_was_another(old: str, robot: RobotS
 
 
 @pytest.mark.slow
-@EXAMPLES
 @given(old=st.sampled_from(list(ROBOT_FILES.values())), robot=robots())
 def test_any_robot_reads_back_from_any_file(old: str, robot: RobotSpec, tmp_path: Path) -> None:
     saved("robot", old, robot, tmp_path)

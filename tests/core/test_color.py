@@ -89,6 +89,7 @@ def test_rainbow_bands(
     assert (seen.red_percent, seen.mean_percent) == pytest.approx((red_percent, mean_percent))
 
 
+@pytest.mark.slow_cases("far off, other side")
 @pytest.mark.parametrize(
     ("name", "x_mm", "red"),
     [
@@ -118,6 +119,7 @@ def glow(inner: int, outer: int, col: int, row: int) -> int:
     return int(inner * (1 - mix) + outer * mix)
 
 
+@pytest.mark.quick_cases("20-*")
 @pytest.mark.parametrize(
     ("name", "red_at"),
     [

@@ -56,6 +56,7 @@ def _model(name: str) -> Any:
     return Lab(PROGRAMS[name], *START)  # type: ignore[no-untyped-call]
 
 
+@pytest.mark.slow_cases("pairs made anew")
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_program_under_both_models(name: str, lab: Mapping[str, Course]) -> None:
     done, model = lab[name], _model(name)

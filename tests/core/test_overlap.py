@@ -58,6 +58,7 @@ def leaves(sim: Simulation) -> bool:
     return False
 
 
+@pytest.mark.quick_cases("open-*")
 @pytest.mark.parametrize("motion", MOTIONS)
 @pytest.mark.parametrize("profile", ["robolab", *(slow(profile) for profile in PROFILES if profile != "robolab")])
 @pytest.mark.parametrize(
@@ -92,6 +93,7 @@ PLACES = {
 }
 
 
+@pytest.mark.quick_cases("on a post-*")
 @pytest.mark.parametrize(
     ("motion", "noise"),
     [(motion, 0) for motion in MOTIONS]

@@ -203,6 +203,7 @@ def test_noise_does_not_push_through_a_wall() -> None:
     assert drive(sim, [("forever", 900.0, 880.0, 600)]) <= ALLOWED_MM
 
 
+@pytest.mark.quick_cases("on")
 @pytest.mark.parametrize("straight", [-1, 0, 1], ids=["back", "anyhow", "on"])
 def test_the_way_said_to_be_free_is_free(straight: int) -> None:
     obstacles = tuple(Obstacle(100.0 * i, 60.0 * (i % 9), 30.0, 30.0) for i in range(20))

@@ -77,6 +77,7 @@ DRAWN: dict[str, tuple[str, tuple[Step, ...], str, str]] = {
 }
 
 
+@pytest.mark.slow_cases("image*")
 @pytest.mark.parametrize(("keys", "steps", "state", "reason"), DRAWN.values(), ids=DRAWN)
 def test_draw(keys: str, steps: tuple[Step, ...], state: str, reason: str, home: Path, tmp_path: Path) -> None:
     for name, corners in (("square", (500, 443, 700, 643)), ("part", (500, 443, 600, 643))):

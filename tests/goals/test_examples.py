@@ -38,6 +38,7 @@ def checked(here: Command, *words: object) -> list[dict[str, Any]]:
     return goals
 
 
+@pytest.mark.slow_cases("*noise*", "*, ev3", "*, nbev3devsim")
 @pytest.mark.parametrize(("name", "words"), CASES.values(), ids=CASES)
 def test_example_meets_its_goals(name: str, words: tuple[object, ...], here: Command) -> None:
     assert here("run", EXAMPLES[name], *words).returncode == 0
@@ -128,6 +129,13 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
 }
 
 
+@pytest.mark.quick_cases(
+    "stop_at_wall, too late",
+    "draw_house, no roof",
+    "follow_line, straight on",
+    "log_greys, too rarely",
+    "square, wrong corners",
+)
 @pytest.mark.parametrize(("name", "changes", "missed"), WRONG.values(), ids=WRONG)
 def test_wrong_program_misses_goals(
     name: str, changes: dict[str, str], missed: dict[str, str], here: Command, tmp_path: Path

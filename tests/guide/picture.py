@@ -12,6 +12,7 @@ from textual.widgets._toast import Toast
 from tests.app.app_help import ready, until
 from tests.conftest import ROOT
 from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.editor.area import CodeArea
 from tuisim.app.snapshot import RunPhase
 from tuisim.app.terminal.screenshot import screen_cells
 from tuisim.charts.cell_image import svg_of_cells
@@ -35,6 +36,9 @@ async def drawn() -> str:
         app = await ready(pilot)
         await pilot.press("R")
         await until(pilot, lambda: app.situation().has_run and app.situation().state is RunPhase.ENDED)
+        # During the run it has scrolled to those lines only that were drawn just then: from its top, it shows the same
+        # rows each time.
+        app.query_one(CodeArea).scroll_to(y=0, animate=False, force=True)
         await pilot.press("less_than_sign", "less_than_sign")
         await until(pilot, lambda: app.situation().looks_back)
         app.clear_notifications()

@@ -40,13 +40,7 @@ RUN_ELSEWHERE = {
     "toml": "tests/config/test_config_files.py",
 }
 """Where blocks are run that need a fresh environment, several processes, a notebook or the other files of the guide."""
-SLOW = {"README", "experiments"}
-"""Documents whose blocks take more than two seconds."""
-WITH_BLOCKS = [
-    pytest.param(name, marks=pytest.mark.slow if name in SLOW else ())
-    for name in DOCUMENTS
-    if any(one.kind in ("sh", "sh app", "python") for one in blocks(name))
-]
+WITH_BLOCKS = [name for name in DOCUMENTS if any(one.kind in ("sh", "sh app", "python") for one in blocks(name))]
 
 
 @pytest.fixture
@@ -63,6 +57,7 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     return found
 
 
+@pytest.mark.slow_cases("README", "experiments", "marking", "measuring-bands", "motion-and-drift")
 @pytest.mark.parametrize("name", WITH_BLOCKS)
 def test_each_block_runs(name: str, tmp_path: Path, here: Command, home: Path, opened: list[Any]) -> None:
     if prepare := PREPARED.get(name):

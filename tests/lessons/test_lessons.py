@@ -20,6 +20,7 @@ from tuisim.lessons.trial import faults, task_of
 LESSONS = {name: load_lesson(path) for name, path in shipped_paths().items()}
 
 
+@pytest.mark.quick_cases("first-run", "exact-moves", "band-values", "stop-and-look", "log-period")
 @pytest.mark.parametrize("name", LESSONS)
 def test_model_answers_pass_and_wrong_answers_do_not(name: str) -> None:
     assert faults(LESSONS[name]) == []

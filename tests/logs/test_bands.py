@@ -67,6 +67,7 @@ def hits(made: Made, found: list[Plateau]) -> int:
     return count
 
 
+@pytest.mark.slow
 def test_score_on_held_logs(capsys: pytest.CaptureFixture[str]) -> None:
     true = right = extra = 0
     for seed in HELD_SEEDS:

@@ -57,6 +57,7 @@ def test_samples_come_back_to_the_last_bit(
     pd.testing.assert_frame_equal(read_log(target), samples_frame([run, run]), check_exact=True)
 
 
+@pytest.mark.quick_cases(".csv", ".parquet")
 @each_format
 def test_telemetry_comes_back_to_the_last_bit(
     record: Callable[..., Recorder], noisy_spec: RunSpec, field: Field, tmp_path: Path, suffix: str
@@ -108,6 +109,7 @@ OTHER_FRAMES: dict[str, tuple[dict[str, object], str]] = {
 """Columns, and the types with which they come back, after `;` those of a format that has no such types."""
 
 
+@pytest.mark.quick_cases("*-.csv", "*-.parquet")
 @each_format
 @pytest.mark.parametrize(("columns", "types"), OTHER_FRAMES.values(), ids=OTHER_FRAMES)
 def test_other_frames_come_back(tmp_path: Path, suffix: str, columns: dict[str, object], types: str) -> None:
@@ -130,6 +132,7 @@ def test_frame_without_rows_comes_back_with_its_types(
     pd.testing.assert_frame_equal(read_log(tmp_path / f"x{suffix}"), samples_frame([run]))
 
 
+@pytest.mark.quick_cases("samples-*")
 @each_format
 @pytest.mark.parametrize("table", ["samples", "telemetry"])
 def test_identical_runs_give_identical_files(
@@ -290,6 +293,7 @@ def test_log_that_cannot_be_read(tmp_path: Path, name: str, message: str) -> Non
 # Imports
 
 
+@pytest.mark.quick_cases("logs.export", "runs.store")
 @pytest.mark.parametrize(
     "module", ["runs.records", "runs.samples", "runs.side_files", "runs.views", "runs.store", "logs.export"]
 )

@@ -71,6 +71,7 @@ TEXTS = {
 }
 
 
+@pytest.mark.quick_cases("names that repeat")
 @pytest.mark.parametrize(("text", "kind"), TEXTS.values(), ids=TEXTS)
 def test_texts_of_several_blocks(tmp_path: Path, text: Callable[[int], str], kind: str) -> None:
     lines = [f"{at},{text(at)},5" for at in range(LONG)]
@@ -83,6 +84,7 @@ def test_texts_of_several_blocks(tmp_path: Path, text: Callable[[int], str], kin
 LATE = {"numbers": ("5.5", 5.5), "texts": ("five", "five")}
 
 
+@pytest.mark.quick_cases(".csv-*")
 @pytest.mark.parametrize(("cell", "value"), LATE.values(), ids=LATE)
 @pytest.mark.parametrize("suffix", [".csv", ".jsonl"])
 def test_a_column_that_begins_empty(tmp_path: Path, suffix: str, cell: str, value: object) -> None:

@@ -14,6 +14,7 @@ from tuisim.logs import plateaus as plateaus_module
 from tuisim.logs.plateaus import plateaus, plateaus_in_subprocess
 
 
+@pytest.mark.slow
 def test_finds_the_same_as_here() -> None:
     rng = np.random.default_rng(4)
     values = np.repeat(rng.uniform(0.0, 100.0, 30), 40) + rng.normal(0.0, 0.3, 1200)

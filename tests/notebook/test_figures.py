@@ -129,6 +129,7 @@ def test_a_robot_is_filled_and_has_all_its_parts(robot: str) -> None:
             assert np.abs(np.subtract(found, color)).max() < 60, (color, place)
 
 
+@pytest.mark.quick_cases("0-Small_Robot")
 @pytest.mark.parametrize("robot", ROBOTS)
 @pytest.mark.parametrize("heading", [0, *(pytest.param(turned, marks=pytest.mark.slow) for turned in (90, 180, -90))])
 def test_the_robot_is_drawn_as_large_as_what_collides(robot: str, heading: int) -> None:
@@ -152,6 +153,7 @@ def test_the_pen_is_where_the_simulation_has_it() -> None:
     assert np.transpose(pen_points_mm(robot, records)) == pytest.approx(np.array(expected))
 
 
+@pytest.mark.quick_cases("Small_Robot")
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_a_robot_on_the_edge_is_not_cut_off(robot: str) -> None:
     spec = at(robot)

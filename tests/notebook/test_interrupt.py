@@ -42,11 +42,12 @@ def check_that_all_is_well(cell: Cell) -> None:
     assert cell("%sim_robot_state").result["x_mm"] == 700
 
 
+@pytest.mark.slow_cases("among its lines")
 @pytest.mark.parametrize(
     ("holder", "name"),
     [
         pytest.param(cell_run, "start_run", id="as it starts"),
-        pytest.param(cell_run, "show_rows", id="among its lines", marks=pytest.mark.slow),
+        pytest.param(cell_run, "show_rows", id="among its lines"),
         pytest.param(Stage, "show", id="in the display"),
     ],
 )

@@ -102,12 +102,12 @@ MISTAKES = [
         "lambda text: {1j: 2}",
         "roboSim.responder: the program cannot get keys must be str",
         id="a key",
-        marks=pytest.mark.slow,
     ),
     pytest.param("'no function'", "roboSim.responder: must be a function, got 'no function'", id="no function"),
 ]
 
 
+@pytest.mark.slow_cases("a key")
 @pytest.mark.parametrize(("responder", "told"), MISTAKES)
 def test_a_wrong_responder_is_one_line(responder: str, told: str, cell: Cell) -> None:
     cell(f"roboSim.responder = {responder}")
@@ -119,6 +119,7 @@ def test_a_wrong_responder_is_one_line(responder: str, told: str, cell: Cell) ->
     assert cell("%%sim_magic -RW\nprint('next')").out == "next\n"
 
 
+@pytest.mark.slow
 def test_an_error_of_the_responder_is_the_users_own(cell: Cell) -> None:
     cell("roboSim.responder = lambda text: 1 / 0")
     with pytest.raises(ZeroDivisionError):

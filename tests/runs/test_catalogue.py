@@ -140,6 +140,7 @@ def test_a_catalogue_that_another_process_has_made_meanwhile_is_kept(
     assert Catalogue(home, lambda: ()).add(_info("b")) == 2
 
 
+@pytest.mark.slow
 def test_two_processes_start_runs_at_once(tmp_path: Path) -> None:
     command = [sys.executable, "-c", MANY, str(tmp_path / "home")]
     children = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(2)]

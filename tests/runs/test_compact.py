@@ -95,6 +95,7 @@ def _recorded(folder: Path, way: str, profile: str = "robolab", noise: int = 0) 
     return spec
 
 
+@pytest.mark.quick_cases("*-robolab-*")
 @pytest.mark.parametrize("noise", [0, 50], ids=["quiet", "noisy"])
 @pytest.mark.parametrize("profile", PROFILES)
 @pytest.mark.parametrize("way", WAYS)

@@ -35,6 +35,7 @@ def settle() -> None:
         waiting.join()
 
 
+@pytest.mark.slow
 def test_a_long_run_is_packed_when_it_is_over(start: Start) -> None:
     handle = start(LONG, time_limit_s=100.0)
     over(handle)

@@ -289,6 +289,7 @@ CASES: dict[str, Case] = {
 }
 
 
+@pytest.mark.slow_cases("a line of 100 MB", "nothing but a line of 100 MB")
 @pytest.mark.parametrize(("name", "content", "expected"), CASES.values(), ids=CASES)
 def test_input(tmp_path: Path, name: str, content: bytes | Callable[[], bytes], expected: Read | str) -> None:
     check_input(tmp_path / name, content, expected)

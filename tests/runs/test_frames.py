@@ -194,6 +194,7 @@ def reading_at(run: StoredRun, files: FieldFiles) -> float:
     return reading(run.spec.robot.color_sensors[0], instant, open_field(files)).red
 
 
+@pytest.mark.quick_cases("never said")
 @pytest.mark.parametrize("known", [True, False], ids=["dropped from the cache", "never said"])
 def test_mat_is_prepared_again(record: Callable[..., Recorder], spec: RunSpec, grey: FieldFiles, known: bool) -> None:
     lost = replace(grey, pixels=grey.pixels.parent.parent / "gone" / grey.pixels.name)

@@ -108,6 +108,7 @@ def _check(number: int, start: Start, scratch: Path) -> None:
     assert found.same, (way, text, found)
 
 
+@pytest.mark.quick_cases("1", "2", "3")
 @pytest.mark.parametrize("number", range(10))
 def test_runs_again(number: int, start: Start, tmp_path: Path) -> None:
     _check(number, start, tmp_path)

@@ -124,6 +124,7 @@ print(array["tick"].sum(), telemetry.record(19_999).tick, telemetry.count, sum(1
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [0, 10, HEADER_BYTES, 5000], ids=["empty", "half a header", "header", "some"])
 def test_recording_that_shrinks_under_its_reader_stays_read(tmp_path: Path, size: int) -> None:
     telemetry, output = TelemetryWriter(tmp_path), OutputWriter(tmp_path)
@@ -195,6 +196,7 @@ def test_other_file_is_refused_by_name(tmp_path: Path, content: bytes) -> None:
         _ = TelemetryView(tmp_path).count
 
 
+@pytest.mark.slow
 def test_reader_beside_a_writing_process_sees_whole_records_only(tmp_path: Path) -> None:
     total = 60_000
     command = [sys.executable, "-c", CHILD, str(tmp_path), str(total)]

@@ -46,6 +46,7 @@ def _printed(text: str, of_many: bool = False, prelude: str = "none") -> list[st
     return [row.text for row in handle.output.all_rows()]
 
 
+@pytest.mark.quick_cases("modules-preloaded", "environment-preloaded", "random-preloaded")
 @pytest.mark.parametrize("prelude", ["none", "preloaded"])
 @pytest.mark.parametrize("name", SURROUNDINGS)
 def test_a_program_cannot_tell_how_it_was_started(name: str, prelude: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -103,6 +104,7 @@ def test_a_run_is_forked_from_the_process_that_an_earlier_one_has_prepared(warm:
             assert (_parent(first), _parent(second)) == (warm._process.pid, template._process.pid)
 
 
+@pytest.mark.slow
 def test_a_process_that_was_forked_does_not_use_the_warm_process_of_the_other(warm: WarmProcess) -> None:
     pid = os.fork()
     if not pid:

@@ -59,6 +59,7 @@ def walk(start: Start, name: str, how: LineStep) -> None:
     assert ended.end == ENDS.get(name, "time_limit" if name in ENDLESS else "finished"), ended
 
 
+@pytest.mark.quick_cases("generators", "repr that raises")
 @pytest.mark.parametrize("name", QUICK)
 def test_awkward_programs_are_stepped_into(start: Start, name: str) -> None:
     walk(start, name, LineStep.INTO)
@@ -99,6 +100,7 @@ LOOKS: dict[str, tuple[str, str | tuple[str, ...]]] = {
 }
 
 
+@pytest.mark.slow_cases("repr that loops", "repr of 20 MB")
 @pytest.mark.parametrize(("name", "shown"), LOOKS.items(), ids=LOOKS)
 def test_hostile_values_are_cut_safely(start: Start, name: str, shown: tuple[str, str | tuple[str, ...]]) -> None:
     text = PROGRAMS[name]
@@ -112,6 +114,7 @@ def test_hostile_values_are_cut_safely(start: Start, name: str, shown: tuple[str
     assert driver.run.output.all_rows()[-1].text in ("on", "0", "49995000", "10000000")
 
 
+@pytest.mark.quick_cases("repr that ends the program")
 @pytest.mark.parametrize("name", ["repr that cannot be stopped", "repr stuck in C", "repr that ends the program"])
 def test_values_that_never_come_do_not_hold_up_the_rest(start: Start, name: str) -> None:
     text = PROGRAMS[name]

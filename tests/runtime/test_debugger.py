@@ -322,6 +322,7 @@ HELD_THEN_STOPPED = {
 }
 
 
+@pytest.mark.slow_cases("with a loop around")
 @pytest.mark.parametrize(("text", "how"), HELD_THEN_STOPPED.values(), ids=HELD_THEN_STOPPED)
 def test_stop_works_wherever_it_holds(debug: Callable[..., Driver], text: str, how: dict[str, object]) -> None:
     driver = debug(text, **how)
@@ -335,10 +336,11 @@ def test_stop_works_wherever_it_holds(debug: Callable[..., Driver], text: str, h
 BUSY = [
     pytest.param("3 if n < 0", id="plain"),
     # Each call is worked out in a process of its own.
-    pytest.param("3 if len(str(n)) > 99", id="with a call", marks=pytest.mark.slow),
+    pytest.param("3 if len(str(n)) > 99", id="with a call"),
 ]
 
 
+@pytest.mark.slow_cases("with a call")
 @pytest.mark.parametrize("text", BUSY)
 def test_a_break_in_a_busy_loop_leaves_the_run_in_hand(debug: Callable[..., Driver], text: str) -> None:
     driver = debug("n = 0\nwhile True:\n    n += 1\n", breaks=(text,), speed=1.0)

@@ -41,6 +41,16 @@ ENDS = {
 }
 
 
+@pytest.mark.quick_cases(
+    "nothing to do",
+    "exit status",
+    "undefined name",
+    "not Python",
+    "2 GiB at once",
+    "deadlock",
+    "spin",
+    "a line without an end",
+)
 @pytest.mark.parametrize(("text", "end", "exit_code"), ENDS.values(), ids=ENDS)
 @pytest.mark.usefixtures("real_start")
 def test_end_of_a_program(run: Run, text: str, end: str, exit_code: int) -> None:
@@ -115,6 +125,7 @@ def test_misuse_raises_the_librarys_own_error(run: Run, text: str, words: str) -
     assert done.ended.error_line == text.count("\n") + 1
 
 
+@pytest.mark.slow
 def test_stall_in_python_code_names_the_line(run: Run) -> None:
     text = "import re\nprint('A: 1')\nre.match(r'(a+)+$', 'a' * 40 + 'b')"
     done = run(text, stall_limit_s=0.3)
@@ -123,6 +134,7 @@ def test_stall_in_python_code_names_the_line(run: Run) -> None:
     assert done.lines == ["A: 1"]
 
 
+@pytest.mark.slow
 def test_stall_in_a_c_call_is_killed_and_names_the_line(run: Run) -> None:
     done = run("print('A: 1')\nsum(range(10**12))", stall_limit_s=0.3)
     assert done.ended.end == "stalled"
@@ -138,6 +150,7 @@ def test_a_million_lines_are_all_kept(run: Run) -> None:
     assert done.lines[-1] == "A: 999999"
 
 
+@pytest.mark.slow
 def test_too_much_output_ends_the_run(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     done = run("x = 'y' * 10_000_000\nwhile True: print(x)")
     assert (done.ended.end, done.ended.error_line) == ("output_limit", 2)
@@ -209,6 +222,7 @@ def test_every_kind_of_chance_comes_from_the_seed(run: Run) -> None:
     assert run(CHANCE, seed=1).lines != run(CHANCE, seed=2).lines
 
 
+@pytest.mark.slow
 def test_pandas_and_a_thread_pool_work_in_programs(run: Run) -> None:
     done = run(
         "import datetime, time\nimport pandas as pd\nfrom multiprocessing.pool import ThreadPool\n"

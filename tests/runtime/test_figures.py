@@ -82,6 +82,7 @@ MOVES = {
 }  # fmt: skip
 
 
+@pytest.mark.quick_cases("*-ev3")
 @pytest.mark.parametrize("profile", [OLD, *TRUE])
 @pytest.mark.parametrize("move", MOVES.values(), ids=MOVES)
 def test_move(run: Run, move: Move, profile: str) -> None:
@@ -109,6 +110,7 @@ TIMES = {
 }
 
 
+@pytest.mark.quick_cases("*-robolab", "*-ev3")
 @pytest.mark.parametrize("profile", [OLD, *TRUE])
 @pytest.mark.parametrize(("text", "old_s", "true_s"), TIMES.values(), ids=TIMES)
 def test_cost_of_a_call(run: Run, text: str, old_s: float, true_s: float, profile: str) -> None:
@@ -116,6 +118,7 @@ def test_cost_of_a_call(run: Run, text: str, old_s: float, true_s: float, profil
     assert done.ended.time_ns / 1e9 == pytest.approx(old_s if profile == OLD else true_s, abs=1e-6)
 
 
+@pytest.mark.quick_cases("*-ev3-*")
 @pytest.mark.parametrize(("profile", "seconds"), [(OLD, 0.02), ("robolab", 0.02), ("ev3", 0.01)])
 @pytest.mark.parametrize("call", ["colorLeft.color", "colorLeft.color_name", "gyro.angle", "gyro.rate"])
 def test_calls_that_cost_twice_as_much(run: Run, profile: str, seconds: float, call: str) -> None:
@@ -138,6 +141,7 @@ STANDS = {
 }
 
 
+@pytest.mark.quick_cases("*-robolab")
 @pytest.mark.parametrize("profile", [OLD, *TRUE])
 @pytest.mark.parametrize(("text", "old", "true"), STANDS.values(), ids=STANDS)
 def test_stopping(run: Run, text: str, old: tuple[int, int], true: tuple[int, int], profile: str) -> None:
@@ -208,6 +212,7 @@ PROPERTIES = (
 GREYS = {125: 255, 325: 220, 725: 211, 1125: 128, 1525: 0}
 
 
+@pytest.mark.quick_cases("*-robolab")
 @pytest.mark.parametrize("profile", [OLD, *TRUE])
 @pytest.mark.parametrize(("x_mm", "grey"), GREYS.items())
 def test_all_properties_of_a_grey(run: Run, profile: str, x_mm: int, grey: int) -> None:

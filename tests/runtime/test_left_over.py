@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from _pytest.mark.structures import ParameterSet
 
 from tests.conftest import ROOT
 from tests.running import PATIENCE_S, Start, over, until
@@ -81,21 +80,18 @@ def program(text: str, file: Path, then: str) -> str:
     return f"{start}import os\n{wait}\nprint('A: 1')\n{then}"
 
 
-def ways(first: object, second: object) -> list[ParameterSet]:
-    """All that is left, in a first way, and one of them in a second; the others in the second way are slow."""
-    rows = [pytest.param(name, first) for name in LEFT]
-    rows += [pytest.param(name, second, marks=() if name == "session" else pytest.mark.slow) for name in LEFT]
-    return rows
-
-
-@pytest.mark.parametrize(("name", "live"), ways(False, True))
+@pytest.mark.quick_cases("command-False")
+@pytest.mark.parametrize("live", [False, True])
+@pytest.mark.parametrize("name", LEFT)
 def test_nothing_is_left_after_the_end(start: Start, file: Path, name: str, live: bool) -> None:
     done = over(start(program(LEFT[name], file, ""), prelude="none", live=live, time_limit_s=0.0))
     assert (done.ended.end, done.lines) == ("finished", ["A: 1"])
     assert gone(left(file))
 
 
-@pytest.mark.parametrize(("name", "how"), ways("stop", "kill"))
+@pytest.mark.quick_cases("session-kill")
+@pytest.mark.parametrize("how", ["stop", "kill"])
+@pytest.mark.parametrize("name", LEFT)
 def test_nothing_is_left_after_a_stop(start: Start, file: Path, name: str, how: str) -> None:
     seen: list[Ended] = []
     handle = start(program(LEFT[name], file, "while True: time.sleep(1)"), prelude="none", live=True)

@@ -64,6 +64,7 @@ PROGRAMS = {
 }
 
 
+@pytest.mark.slow_cases("pandas")
 @pytest.mark.parametrize(("text", "lines"), PROGRAMS.values(), ids=PROGRAMS)
 def test_it_is_the_runs(run: Run, text: str, lines: list[str] | None) -> None:
     first = run(text, prelude="none")

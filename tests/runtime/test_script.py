@@ -72,6 +72,7 @@ SCRIPTS: dict[str, tuple[str, tuple[Message, ...]]] = {
 }
 
 
+@pytest.mark.quick_cases("drive")
 @pytest.mark.parametrize(("text", "actions"), SCRIPTS.values(), ids=SCRIPTS)
 def test_what_a_user_did_can_be_done_again(start: Start, run: Run, text: str, actions: tuple[Message, ...]) -> None:
     live = start(text, live=True, speed=4.0, asks_user=True, noise=(5, 5))

@@ -34,6 +34,7 @@ HARD_TO_STOP = {
 }
 
 
+@pytest.mark.slow_cases("C call")
 @pytest.mark.parametrize("text", HARD_TO_STOP.values(), ids=HARD_TO_STOP)
 def test_stop_always_works_and_keeps_what_was_printed(start: Start, text: str) -> None:
     run = start("print('Before: 1')\n" + text, live=True)
@@ -143,10 +144,11 @@ def spec() -> object:
     return RunSpec(RobotSpec(), WorldSpec(background="Grey_bands"), ROBOLAB)
 
 
+@pytest.mark.quick_cases("C call")
 @pytest.mark.parametrize(
     "text",
     [
-        pytest.param("while True: print('A: 1')", id="python", marks=pytest.mark.slow),
+        pytest.param("while True: print('A: 1')", id="python"),
         pytest.param("print('A: 1')\nsum(range(10**12))", id="C call"),
     ],
 )

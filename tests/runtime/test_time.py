@@ -78,6 +78,7 @@ PROGRAMS = {
 }
 
 
+@pytest.mark.quick_cases("sleep", "spinning threads", "error in a thread", "event", "queue", "clock loop")
 @pytest.mark.parametrize(("text", "lines"), PROGRAMS.values(), ids=PROGRAMS)
 def test_time_and_threads(run: Run, text: str, lines: list[str] | None) -> None:
     first = run(text)
@@ -105,6 +106,7 @@ tank_drive.on_for_rotations(50, 50, 0.5)
 """
 
 
+@pytest.mark.quick_cases("quiet")
 @pytest.mark.parametrize("noise", [(0, 0), (20, 50)], ids=["quiet", "noisy"])
 def test_live_and_headless_runs_record_the_same_bits(run: Run, noise: tuple[int, int]) -> None:
     headless = run(STEERS_AND_LOGS, noise=noise)

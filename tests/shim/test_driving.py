@@ -31,6 +31,7 @@ for _ in range(40):
 """
 
 
+@pytest.mark.quick_cases("90-square", "30-plain")
 @pytest.mark.parametrize("robot", ["square", "plain"])
 @pytest.mark.parametrize("speed", [30, 60, 90])
 def test_ten_squares_end_where_they_began(run_on: RunOn, robot: str, speed: int) -> None:
@@ -41,6 +42,7 @@ def test_ten_squares_end_where_they_began(run_on: RunOn, robot: str, speed: int)
     assert heading_deg == pytest.approx(-3600.0, abs=0.1)
 
 
+@pytest.mark.quick_cases("5-square", "30-default")
 @pytest.mark.parametrize("robot", ["square", "default"])
 @pytest.mark.parametrize("speed", [5, 30, 60, 90, 100])
 def test_a_quarter_turn_is_right_at_any_speed(run_on: RunOn, robot: str, speed: int) -> None:
@@ -64,6 +66,7 @@ drive.odometry_stop()
 """
 
 
+@pytest.mark.slow
 def test_odometry_agrees_after_ten_metres(run_on: RunOn) -> None:
     done = run_on(DRIVE.format(spacing=168) + ODOMETRY, "square")
     x_mm, y_mm, heading_deg = map(float, done.lines[0].split())
@@ -84,6 +87,7 @@ drive.odometry_stop()
 """
 
 
+@pytest.mark.slow
 def test_odometry_agrees_after_ten_metres_on_an_arc(run_on: RunOn) -> None:
     done = run_on(DRIVE.format(spacing=168) + ARC, "square")
     x_mm, y_mm, _ = map(float, done.lines[0].split())

@@ -59,6 +59,7 @@ TABLES: dict[str, tuple[Table, str, str]] = {
 """By name: table, robot, world."""
 
 
+@pytest.mark.slow_cases("display", "remote control", "fonts", "battery")
 @pytest.mark.parametrize(("table", "robot", "world"), TABLES.values(), ids=TABLES)
 def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
     done = run_on(table.program, robot, world, presses=table.presses)

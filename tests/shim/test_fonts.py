@@ -42,6 +42,7 @@ def test_bold_letters_have_more_ink(lighter: str, bolder: str) -> None:
     assert ink(drawn(FACES[bolder]), "Hello") > 1.2 * ink(drawn(FACES[lighter]), "Hello")
 
 
+@pytest.mark.quick_cases("helvR")
 @pytest.mark.parametrize("family", ["charI", "helvR", "ncenB"])
 def test_letters_are_as_high_as_the_name_says(family: str) -> None:
     heights = [drawn(FACES[f"{family}{size:02}"]).getmask("H").getbbox() for size in (8, 12, 18, 24)]
@@ -59,6 +60,7 @@ def test_slanted_letters_lean_to_the_right() -> None:
     assert top > bottom + 2
 
 
+@pytest.mark.quick_cases("ev3")
 @pytest.mark.parametrize("profile", ["robolab", "ev3"])
 def test_fonts_that_are_drawn_are_told_once(run_on: RunOn, profile: str) -> None:
     done = run_on(

@@ -65,6 +65,14 @@ MISUSES = {
 }
 
 
+@pytest.mark.quick_cases(
+    "steering",
+    "volume cannot be told",
+    "wrong kind of motor",
+    "wrong kind of sensor",
+    "negative seconds",
+    "unknown font",
+)
 @pytest.mark.parametrize(("text", "error"), MISUSES.values(), ids=MISUSES)
 def test_misuse(run_on: RunOn, text: str, error: str) -> None:
     done = run_on(SETUP + text, "default")

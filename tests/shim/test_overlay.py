@@ -114,6 +114,7 @@ EXERCISED = {"ev3dev2.sound:Sound.set_volume", "ev3dev2.sound:Sound.get_volume",
 """Items that only these tests exercise."""
 
 
+@pytest.mark.quick_cases("robolab-*")
 @pytest.mark.parametrize(
     ("profile", "robot"),
     [

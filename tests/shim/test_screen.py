@@ -89,6 +89,7 @@ def test_a_font_that_is_not_there_is_told(run_on: RunOn) -> None:
     assert (done.lines, done.errors) == (["14"], ["setfont: cannot find the font 'nonsense'"])
 
 
+@pytest.mark.slow_cases("volume-*", "console-nbev3devsim")
 @pytest.mark.parametrize("profile", ["ev3", "nbev3devsim"])
 @pytest.mark.parametrize(
     "text",

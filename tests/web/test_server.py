@@ -106,6 +106,7 @@ STRANGERS: dict[str, tuple[str, Mapping[str, str]]] = {
 }
 
 
+@pytest.mark.quick_cases("*-script")
 @pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
 @pytest.mark.parametrize(("path", "headers"), STRANGERS.values(), ids=STRANGERS)
 async def test_a_stranger_gets_nothing(path: str, headers: Mapping[str, str], place: str, visited: Visited) -> None:

@@ -71,12 +71,13 @@ async def _nothing(pilot: Pilot[Any], app: LabApp) -> None:
     await pilot.press("y")
 
 
+@pytest.mark.quick_cases("branch key")
 @pytest.mark.parametrize(
     ("deed", "kind"),
     [
         (_nudge, "set_pose"),
-        pytest.param(_noise, "set_noise", marks=pytest.mark.slow),
-        pytest.param(_pen, "set_pen", marks=pytest.mark.slow),
+        (_noise, "set_noise"),
+        (_pen, "set_pen"),
         (_nothing, ""),
     ],
     ids=["nudge", "noise", "pen", "branch key"],
@@ -135,6 +136,7 @@ async def test_a_paused_run_branches_paused_and_is_kept() -> None:
         await stop(pilot, app)
 
 
+@pytest.mark.slow
 async def test_an_edited_program_says_where_it_went_another_way() -> None:
     async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await with_a_past(pilot)
@@ -166,6 +168,7 @@ async def test_from_the_past_the_program_can_be_run_from_its_start() -> None:
         await stop(pilot, app)
 
 
+@pytest.mark.slow
 async def test_a_program_that_ends_before_the_instant_is_told() -> None:
     async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await with_a_past(pilot, ticks=100)

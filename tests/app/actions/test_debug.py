@@ -107,6 +107,7 @@ async def test_one_line_back_and_on_again(home: object) -> None:
         await press(pilot, app, "n", 3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", ["n", "u"], ids=["a line on", "on to the end of the program"])
 async def test_going_on_from_the_past_ends_at_now(home: object, key: str) -> None:
     app = LabApp(settings(COUNTS))
@@ -138,6 +139,7 @@ async def test_into_and_out_of_calls(home: object) -> None:
         await stands(pilot, app, 5)
 
 
+@pytest.mark.slow
 async def test_a_breakpoint_holds_and_is_kept_with_the_program(home: object) -> None:
     async with LabApp(settings(COUNTS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
@@ -157,6 +159,7 @@ async def test_a_breakpoint_holds_and_is_kept_with_the_program(home: object) -> 
         await until(pilot, lambda: [one.text for one in app.debugger.breaks] == ["5"])
 
 
+@pytest.mark.slow
 async def test_breaks_and_watches_are_listed_added_switched_and_deleted(home: object) -> None:
     app = LabApp(settings(COUNTS))
     async with app.run_test(size=(120, 40)) as pilot:
@@ -183,6 +186,7 @@ async def test_breaks_and_watches_are_listed_added_switched_and_deleted(home: ob
         assert [(watch.text, watch.value) for watch in looked(app).watches] == [("total * 2", "6")]
 
 
+@pytest.mark.slow
 async def test_the_variables_of_any_former_instant(home: object) -> None:
     app = LabApp(settings(COUNTS, speed=0.0))
     async with app.run_test(size=(120, 40)) as pilot:

@@ -110,6 +110,7 @@ def noises(app: LabApp) -> list[int]:
     return [one.command.light for one in recording.actions() if isinstance(one.command, SetNoise)]
 
 
+@pytest.mark.slow
 async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:
     shown = frozenset({"noise"})
     async with LabApp(settings(STEPS, autorun=True, speed=8.0, panels_on=shown)).run_test(size=(120, 40)) as pilot:
@@ -155,6 +156,7 @@ async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:
         assert noises(app) == [30]
 
 
+@pytest.mark.slow
 async def test_a_run_paused_while_it_asks_goes_on() -> None:
     asks = settings("name = input('Name? ')\nprint('A: 1')\nwhile True:\n    pass\n", autorun=True)
     async with LabApp(asks).run_test(size=(120, 40)) as pilot:

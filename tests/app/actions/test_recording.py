@@ -67,6 +67,7 @@ def test_new_levels_and_errors_stand_out_once(tmp_path: Path) -> None:
     assert index.marks == [(20, Mark.SAMPLE), (30, Mark.SAMPLE), (60, Mark.SAMPLE), (90, Mark.ERROR)]
 
 
+@pytest.mark.slow
 def test_a_flood_of_changes_leaves_few_marks(tmp_path: Path) -> None:
     rows = [(tick, Stream.STDOUT, f"Flips: {tick % 2}") for tick in range(20_000)]
     assert len(index_of(tmp_path, rows).marks) < 4000
@@ -79,6 +80,7 @@ def stored(text: str, **choices: Any) -> StoredRun:
     return RunStore().load_run(run.run_id)
 
 
+@pytest.mark.quick_cases("near")
 @pytest.mark.parametrize("ticks", [(0, 20, 59), (59, 20, 0), (30, 30, 31)], ids=["forward", "back", "near"])
 def test_sensors_see_what_the_pen_had_drawn_by_then(ticks: tuple[int, ...]) -> None:
     run = stored("tank_drive.on_for_seconds(50, 50, 0.6)\n", pen_down=True, pen_marks=True)

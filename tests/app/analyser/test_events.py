@@ -92,6 +92,7 @@ def two_runs() -> list[StoredRun]:
     return [RunStore().load_run(run_id) for run_id in ids]
 
 
+@pytest.mark.slow
 async def test_events_and_differences_by_keys(two_runs: list[StoredRun]) -> None:
     first, second = two_runs
     async with AnalyserApp(LogRequest(runs=(first.id,))).run_test(size=(120, 40)) as pilot:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+import pytest
 
 from tests.app.analyser.logs import model_of
 from tests.app.app_help import until
@@ -40,6 +41,7 @@ def test_of_many_bands_those_around_the_chosen_one_are_shown() -> None:
     assert "4 levels" in " ".join(shown)
 
 
+@pytest.mark.slow
 async def test_a_long_log_is_searched_beside_the_screen(tmp_path: Path) -> None:
     pq.write_table(stepped(30_000, 3000), tmp_path / "long.parquet")
     async with AnalyserApp(LogRequest(file=str(tmp_path / "long.parquet"))).run_test(size=(120, 40)) as pilot:

@@ -59,6 +59,7 @@ BAD = (
 )
 
 
+@pytest.mark.slow
 async def test_everything_leaves_as_it_is_shown(run: StoredRun, tmp_path: Path) -> None:
     svg, text, page, rows = (tmp_path / name for name in ("c.svg", "c.txt", "r.html", "rows.jsonl"))
     async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
@@ -89,6 +90,7 @@ async def test_everything_leaves_as_it_is_shown(run: StoredRun, tmp_path: Path) 
     assert "100.00 white" in page.read_text() and "<h2>Program prog.py</h2>" in page.read_text()
 
 
+@pytest.mark.quick_cases("e")
 @pytest.mark.parametrize("key", ["e", "S"])
 async def test_a_file_that_is_there_is_replaced_only_on_a_second_enter(
     run: StoredRun, tmp_path: Path, key: str

@@ -56,6 +56,7 @@ def text_of(pilot: Pilot[Any]) -> str:
     return "\n".join("".join(part.text for part in strip) for strip in pilot.app.screen._compositor.render_strips())
 
 
+@pytest.mark.slow_cases("(200, 60)")
 @pytest.mark.parametrize("size", SIZES, ids=str)
 async def test_everything_is_on_the_first_screen(run: StoredRun, size: tuple[int, int]) -> None:
     async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=size) as pilot:
@@ -99,6 +100,7 @@ async def test_the_mouse_reads_the_chart_without_a_press(run: StoredRun) -> None
         await until(pilot, lambda: not screen.chart.border_subtitle)
 
 
+@pytest.mark.slow
 async def test_a_long_note_goes_on_in_further_lines(run: StoredRun) -> None:
     words = " ".join(f"word{at}" for at in range(40))
     async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 30)) as pilot:
@@ -122,6 +124,7 @@ async def test_tab_takes_the_word_that_is_offered(run: StoredRun) -> None:
         assert field.value == "v=slope("
 
 
+@pytest.mark.slow
 async def test_the_bands_as_shown_are_exported(run: StoredRun, tmp_path: Path) -> None:
     target = tmp_path / "bands.csv"
     async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
@@ -149,6 +152,7 @@ async def test_a_pane_tells_which_row_is_selected_where_not_all_fit(
         assert (words in subtitle) if words else not subtitle
 
 
+@pytest.mark.slow
 async def test_runs_to_open_are_listed_and_several_may_be_marked(run: StoredRun) -> None:
     handle = start_run(program("print('Colour: 7')\n"), build_run_spec(Settings()), RunOptions(speed=0.0))
     handle.wait()
@@ -229,6 +233,7 @@ STEPS: list[tuple[list[str], Callable[[Analyser, Model], bool]]] = [
 ]
 
 
+@pytest.mark.slow
 async def test_what_the_keys_do(run: StoredRun) -> None:
     async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
         screen, model = await opened(pilot)
@@ -237,6 +242,7 @@ async def test_what_the_keys_do(run: StoredRun) -> None:
             assert so(screen, model), keys
 
 
+@pytest.mark.slow
 async def test_every_action_does_no_harm_to_an_empty_log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # A screenshot is saved where one is.
     monkeypatch.chdir(tmp_path)
@@ -285,6 +291,7 @@ async def test_what_cannot_be_opened_ends_the_app_with_the_reason(tmp_path: Path
     assert isinstance(app.failure, LogError)
 
 
+@pytest.mark.slow
 async def test_the_lab_below_hears_no_key(run: StoredRun) -> None:
     spec = build_run_spec(Settings(background="Grey_bands"))
     async with LabApp(AppSettings(spec=spec, program=program(LOGS))).run_test(size=(120, 40)) as pilot:
@@ -304,6 +311,7 @@ async def test_the_lab_below_hears_no_key(run: StoredRun) -> None:
         await until(pilot, lambda: lab.screen is below)
 
 
+@pytest.mark.slow
 async def test_the_rows_as_shown_are_exported(run: StoredRun, tmp_path: Path) -> None:
     file = tmp_path / "rows.parquet"
     async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 24)) as pilot:

@@ -29,6 +29,7 @@ STEPS: list[tuple[list[str], Callable[[Model], bool]]] = [
 ]
 
 
+@pytest.mark.slow
 async def test_long_logs_are_worked_on_beside_the_screen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(screen_module, "AT_ONCE", 0)
     lines = (f"{at / 10},{'ab'[at % 2]},{at // 2}" for at in range(200))

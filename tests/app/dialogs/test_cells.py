@@ -26,6 +26,7 @@ def glyphs(view: PixelView) -> set[str]:
     return {GLYPHS[cell >> 48] for cell in view._cells.ravel().tolist()}
 
 
+@pytest.mark.quick_cases("80x24")
 @pytest.mark.parametrize("size", [(80, 24), (60, 18), (120, 40)], ids=["80x24", "60x18", "120x40"])
 async def test_a_set_is_chosen_by_eye_and_kept(size: tuple[int, int]) -> None:
     async with LabApp(settings(LOGS), picture_mode_for(None)).run_test(size=size) as pilot:
@@ -47,6 +48,7 @@ async def test_a_set_is_chosen_by_eye_and_kept(size: tuple[int, int]) -> None:
     assert picture_mode_for("auto").cells is CellSet.SEXTANT
 
 
+@pytest.mark.slow
 async def test_on_a_slow_link_cells_are_coarse_while_something_moves() -> None:
     slow = True
     picture_mode = PictureMode(CellSet.OCTANT)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from textual.widget import Widget
 
 from tests.app.app_help import LOGS, ready, settings, until
@@ -13,6 +14,7 @@ from tuisim.app.panels.chart import Chart
 from tuisim.app.panels.world import WorldView
 
 
+@pytest.mark.slow
 async def test_no_drag_outlives_a_dialog() -> None:
     async with LabApp(settings(LOGS, panels_on=frozenset({"noise", "brick"}))).run_test(size=(120, 50)) as pilot:
         app = await ready(pilot)

@@ -15,7 +15,8 @@ from tuisim.app.terminal.cell_view import PixelView
 from tuisim.config.options import Settings
 
 
-@pytest.mark.parametrize("size", [(80, 24), pytest.param((120, 40), marks=pytest.mark.slow)], ids=["80x24", "120x40"])
+@pytest.mark.slow_cases("120x40")
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
 async def test_the_mat_at_hand_is_shown(size: tuple[int, int]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
         app = await ready(pilot)
@@ -41,6 +42,7 @@ async def enter_path(pilot: Pilot[None], path: Path) -> None:
     await pilot.press("enter")
 
 
+@pytest.mark.slow
 async def test_an_image_is_laid_out_by_its_path(tmp_path: Path) -> None:
     path = tmp_path / "red.png"
     Image.new("RGB", (300, 200), (200, 0, 0)).save(path)
@@ -55,6 +57,7 @@ async def test_an_image_is_laid_out_by_its_path(tmp_path: Path) -> None:
         assert app.run_controller.snapshot().colors["left"].rgb == (200, 0, 0)
 
 
+@pytest.mark.quick_cases("missing")
 @pytest.mark.parametrize("content", [None, "no picture"], ids=["missing", "text"])
 async def test_what_is_no_image_changes_nothing(content: str | None, tmp_path: Path) -> None:
     path = tmp_path / "none.png"
@@ -86,6 +89,7 @@ async def choose(pilot: Pilot[None], name: str) -> None:
     await pilot.press("enter")
 
 
+@pytest.mark.quick_cases("--mats")
 @pytest.mark.parametrize("named", [False, True], ids=["usual folder", "--mats"])
 async def test_mats_of_ones_own_are_listed_by_name(named: bool, home: Path, tmp_path: Path) -> None:
     folder = tmp_path / "pics" if named else home / "backgrounds"
@@ -101,6 +105,7 @@ async def test_mats_of_ones_own_are_listed_by_name(named: bool, home: Path, tmp_
         assert app.run_controller.next_run.spec.world.start.x_mm == 150
 
 
+@pytest.mark.slow
 async def test_a_mat_without_a_picture_says_which_file_to_bring(home: Path) -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)

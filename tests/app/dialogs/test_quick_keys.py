@@ -44,6 +44,7 @@ def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
+@pytest.mark.quick_cases("palette", "mat", "robot")
 @pytest.mark.parametrize("keys", IN_THE_LAB.values(), ids=list(IN_THE_LAB))
 async def test_a_key_too_many_leaves_the_lab_as_it_is(keys: str) -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
@@ -61,6 +62,7 @@ IN_THE_ANALYSER = {
 }
 
 
+@pytest.mark.quick_cases("note")
 @pytest.mark.parametrize("keys", IN_THE_ANALYSER.values(), ids=list(IN_THE_ANALYSER))
 async def test_a_key_too_many_leaves_the_analyser_as_it_is(keys: str) -> None:
     Path("log.txt").write_text("".join(f"Colour: {value}\n" for value in range(9)))
@@ -117,6 +119,7 @@ async def test_a_click_beside_the_list_of_a_dialog_leaves_the_keys_to_the_dialog
 NO_NAMES = {"too long": "x" * 300 + ".toml", "of nobody's home": "~no-such-user/lab.toml", "with a zero": "a\0b.toml"}
 
 
+@pytest.mark.quick_cases("ctrl+s")
 @pytest.mark.parametrize("key", ["ctrl+s", "o"])
 async def test_what_cannot_be_the_name_of_a_file_is_refused(key: str) -> None:
     async with LabApp(settings()).run_test(size=(80, 24), notifications=True) as pilot:
@@ -164,6 +167,7 @@ async def test_a_click_on_what_has_just_been_removed_does_nothing() -> None:
         await until(pilot, lambda: len(app.screen_stack) == 1)
 
 
+@pytest.mark.slow
 async def test_no_palette_opens_above_a_dialog() -> None:
     async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)

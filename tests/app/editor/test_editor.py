@@ -88,6 +88,7 @@ async def test_a_mistake_is_saved_and_marked(tmp_path: Path) -> None:
         assert "✗ 2 if print" in screen_text(app)
 
 
+@pytest.mark.slow
 async def test_text_with_a_mistake_does_not_run_and_leaves_the_world_alone(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
     async with LabApp(own(path, "# %%sim_magic_preloaded -x 300\n" + TEXT)).run_test(size=(120, 40)) as pilot:
@@ -115,6 +116,7 @@ async def test_a_small_panel_keeps_the_whole_place_where_the_text_cannot_run(tmp
         assert app.panel_area.alone == "code"
 
 
+@pytest.mark.slow
 async def test_an_example_is_saved_to_another_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     example = programs()[0]
@@ -131,6 +133,7 @@ async def test_an_example_is_saved_to_another_place(tmp_path: Path, monkeypatch:
         assert app.run_controller.program.path == str(tmp_path / example.name)
 
 
+@pytest.mark.slow
 async def test_a_small_panel_has_the_whole_place_while_one_types(tmp_path: Path) -> None:
     async with LabApp(own(tmp_path / "prog.py")).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
@@ -145,10 +148,8 @@ async def test_a_small_panel_has_the_whole_place_while_one_types(tmp_path: Path)
         assert app.document.dirty
 
 
-@pytest.mark.parametrize(
-    "size", [(80, 24), *(pytest.param(size, marks=pytest.mark.slow) for size in ((100, 30), (120, 40))), (200, 60)],
-    ids=str,
-)  # fmt: skip
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [(80, 24), (100, 30), (120, 40), (200, 60)], ids=str)
 async def test_editing_gets_the_room(size: tuple[int, int], tmp_path: Path) -> None:
     async with LabApp(own(tmp_path / "prog.py")).run_test(size=size) as pilot:
         app = await ready(pilot)
@@ -175,10 +176,8 @@ async def test_editing_gets_the_room(size: tuple[int, int], tmp_path: Path) -> N
 WRONG = "print('A: 1')\nfor n in range(3):\n    n.x\n"
 
 
-@pytest.mark.parametrize(
-    "size",
-    [pytest.param((80, 24), id="panel hidden"), pytest.param((120, 40), id="panel shown", marks=pytest.mark.slow)],
-)
+@pytest.mark.slow_cases("panel shown")
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["panel hidden", "panel shown"])
 async def test_after_an_error_typing_begins_on_its_line(size: tuple[int, int], tmp_path: Path) -> None:
     async with LabApp(own(tmp_path / "prog.py", WRONG)).run_test(size=size) as pilot:
         app = await ready(pilot)
@@ -212,6 +211,7 @@ async def test_ctrl_s_saves_the_world_outside_the_editor(tmp_path: Path) -> None
         await until(pilot, lambda: "Save the world" in screen_text(app))
 
 
+@pytest.mark.quick_cases("save")
 @pytest.mark.parametrize(("answer", "in_file"), [("s", "x" + TEXT), ("d", TEXT)], ids=["save", "discard"])
 async def test_leaving_with_unsaved_changes_asks(answer: str, in_file: str, tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
@@ -229,6 +229,7 @@ async def test_leaving_with_unsaved_changes_asks(answer: str, in_file: str, tmp_
             assert (find_draft(str(path)) is None) is left
 
 
+@pytest.mark.slow
 async def test_opening_another_program_with_unsaved_changes_asks(tmp_path: Path) -> None:
     path, other = tmp_path / "prog.py", tmp_path / "other.py"
     other.write_text("print('other')\n")
@@ -243,6 +244,7 @@ async def test_opening_another_program_with_unsaved_changes_asks(tmp_path: Path)
         assert not app.document.dirty
 
 
+@pytest.mark.quick_cases("later")
 @pytest.mark.parametrize(
     ("answer", "shown", "kept"),
     [("r", "draft = 1\n", True), ("d", TEXT, False), ("escape", TEXT, True)],
@@ -262,6 +264,7 @@ async def test_a_draft_is_offered(answer: str, shown: str, kept: bool, tmp_path:
     assert (find_draft(str(path)) is not None) is kept
 
 
+@pytest.mark.slow
 async def test_unsaved_text_is_kept_soon_and_forgotten_when_undone(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
     async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
@@ -273,6 +276,7 @@ async def test_unsaved_text_is_kept_soon_and_forgotten_when_undone(tmp_path: Pat
         assert not app.document.dirty
 
 
+@pytest.mark.quick_cases("mine")
 @pytest.mark.parametrize(("answer", "shown"), [("k", "x" + TEXT), ("t", "other = 1\n")], ids=["mine", "file"])
 async def test_a_file_that_changes_under_unsaved_edits(answer: str, shown: str, tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
@@ -315,6 +319,7 @@ async def test_a_new_program_runs_and_asks_for_its_file(tmp_path: Path, monkeypa
         assert (tmp_path / "new.py").read_text() == TEMPLATE
 
 
+@pytest.mark.slow
 async def test_an_edited_magic_line_changes_the_world_when_it_runs(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
     text = "%%sim_magic_preloaded -x 300\nprint('A: 1')\n"
@@ -344,6 +349,7 @@ async def test_the_text_may_be_edited_and_saved_during_a_run(tmp_path: Path) -> 
         await until(pilot, lambda: "running text differs" not in screen_text(app))
 
 
+@pytest.mark.slow
 async def test_a_file_that_may_not_be_written_is_saved_elsewhere(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
     async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:

@@ -67,6 +67,7 @@ async def _answered(pilot: Pilot[Any], answers: str) -> None:
     await until_quiet(pilot)
 
 
+@pytest.mark.quick_cases("kitty")
 @pytest.mark.parametrize("protocol", Protocol)
 async def test_what_the_terminal_shows_is_what_was_drawn(protocol: Protocol) -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
@@ -94,6 +95,7 @@ def _on_canvas(view: PlotView, points: np.ndarray[Any, Any]) -> np.ndarray[Any, 
     return np.concatenate(rows)
 
 
+@pytest.mark.quick_cases("kitty")
 @pytest.mark.parametrize("protocol", Protocol)
 async def test_the_chart_is_what_was_drawn(protocol: Protocol) -> None:
     async with on_wire(LabApp(settings(panels_on=frozenset({"chart"}))), "truecolor") as pilot:
@@ -113,6 +115,7 @@ async def test_the_chart_is_what_was_drawn(protocol: Protocol) -> None:
         assert 0 < wire_of(pilot).kilobytes - before < before / 10
 
 
+@pytest.mark.quick_cases("kitty-one chart")
 @pytest.mark.parametrize("facets", [False, True], ids=["one chart", "facets"])
 @pytest.mark.parametrize("protocol", Protocol)
 async def test_the_charts_of_the_analyser_are_what_was_drawn(protocol: Protocol, facets: bool, tmp_path: Path) -> None:
@@ -170,6 +173,7 @@ async def test_a_chart_falls_back_to_characters_and_returns_to_pixels() -> None:
         await until(pilot, lambda: view._tiles is not None)
 
 
+@pytest.mark.slow
 async def test_a_dialog_hides_a_part_of_the_picture_and_gives_it_back() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await _answered(pilot, ANSWERS[Protocol.SIXEL])
@@ -182,6 +186,7 @@ async def test_a_dialog_hides_a_part_of_the_picture_and_gives_it_back() -> None:
         assert np.array_equal(_part(_seen(pilot), world), _drawn(world, Protocol.SIXEL))
 
 
+@pytest.mark.slow
 async def test_a_resized_terminal_is_asked_for_the_size_of_its_cells() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await _answered(pilot, ANSWERS[Protocol.SIXEL])
@@ -213,6 +218,7 @@ async def test_glyphs_that_the_user_has_chosen_are_shown_instead() -> None:
         await _sharp(pilot, pilot.app.query_one(WorldView))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("protocol", Protocol)
 async def test_on_a_slow_link_half_blocks_are_sent_for_what_moves(protocol: Protocol) -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
@@ -256,6 +262,7 @@ async def test_kitty_keeps_no_images_of_pictures_that_have_gone() -> None:
         assert not _seen(pilot).images
 
 
+@pytest.mark.slow
 async def test_pictures_that_have_gone_take_no_memory() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await _answered(pilot, ANSWERS[Protocol.SIXEL])

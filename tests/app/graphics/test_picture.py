@@ -43,6 +43,7 @@ def _seen(points: Pixels, protocol: Protocol) -> Pixels:
     return np.rint(np.rint(points * (100 / 255)) * 255 / 100).astype(np.uint8) if protocol is Protocol.SIXEL else points
 
 
+@pytest.mark.slow_cases("sixel-tmux", "kitty-tmux")
 @pytest.mark.parametrize("in_tmux", [False, True], ids=["", "tmux"])
 @pytest.mark.parametrize("protocol", Protocol)
 def test_a_moving_picture_arrives_as_it_is(protocol: Protocol, in_tmux: bool) -> None:

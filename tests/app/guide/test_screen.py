@@ -41,6 +41,7 @@ def test_every_panel_has_a_topic() -> None:
     assert {topic.page for topic in TOPICS.values()} - {""} <= set(pages())
 
 
+@pytest.mark.quick_cases("small")
 @pytest.mark.parametrize("size", [SMALL, MEDIUM], ids=["small", "medium"])
 async def test_the_keys_come_first_and_enter_opens_a_page(size: tuple[int, int]) -> None:
     async with LabApp(settings()).run_test(size=size) as pilot:
@@ -54,6 +55,7 @@ async def test_the_keys_come_first_and_enter_opens_a_page(size: tuple[int, int])
         await until(pilot, lambda: not isinstance(pilot.app.screen, GuideScreen))
 
 
+@pytest.mark.slow
 async def test_a_long_page_scrolls_and_starts_at_its_top_again() -> None:
     async with LabApp(settings()).run_test(size=SMALL) as pilot:
         await opened(pilot)
@@ -64,6 +66,7 @@ async def test_a_long_page_scrolls_and_starts_at_its_top_again() -> None:
         await until_shown(pilot, "First steps")
 
 
+@pytest.mark.slow_cases("settings")
 @pytest.mark.parametrize(
     ("panel", "place", "words"),
     [
@@ -88,6 +91,7 @@ async def test_the_scroll_bar_covers_no_letter() -> None:
         assert screen._page.scrollable_content_region.width == drawn_for
 
 
+@pytest.mark.quick_cases("take a screenshot")
 @pytest.mark.parametrize("question", list(QUESTIONS)[::12])
 async def test_a_question_is_answered_by_its_page(question: str) -> None:
     async with LabApp(settings()).run_test(size=SMALL) as pilot:
@@ -99,6 +103,7 @@ async def test_a_question_is_answered_by_its_page(question: str) -> None:
         assert screen.place[0] == QUESTIONS[question]
 
 
+@pytest.mark.slow
 async def test_escape_leaves_the_search_first() -> None:
     async with LabApp(settings()).run_test(size=SMALL) as pilot:
         screen = await opened(pilot)
@@ -111,6 +116,7 @@ async def test_escape_leaves_the_search_first() -> None:
         await until(pilot, lambda: not isinstance(pilot.app.screen, GuideScreen))
 
 
+@pytest.mark.slow
 async def test_a_section_is_gone_to() -> None:
     async with LabApp(settings()).run_test(size=SMALL) as pilot:
         screen = await opened(pilot)
@@ -123,6 +129,7 @@ async def test_a_section_is_gone_to() -> None:
         await until(pilot, lambda: "This page takes you" not in screen_text(lab(pilot)))
 
 
+@pytest.mark.quick_cases("40x12", "80x24")
 @pytest.mark.parametrize(
     "size", [(40, 12), (60, 18), SMALL, MEDIUM, (200, 60)], ids=lambda size: f"{size[0]}x{size[1]}"
 )

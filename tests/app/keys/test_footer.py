@@ -31,6 +31,7 @@ def test_after_a_run_the_next_steps_of_a_student_come_first(width: int) -> None:
     assert [action.footer_key or action.key for action in shown][:5] == ["R", "l", "e", "c", "d"]
 
 
+@pytest.mark.slow
 async def test_the_footer_of_the_analyser_offers_what_works_and_a_click_runs_it() -> None:
     run = start_run(program("print('no sample')\n"), build_run_spec(Settings()), RunOptions(speed=0.0))
     run.wait()
@@ -64,6 +65,7 @@ def last_line(pilot: Pilot[Any]) -> str:
     return text_of(pilot).split("\n")[-1]
 
 
+@pytest.mark.slow
 async def test_letters_that_are_typed_are_not_offered_as_keys() -> None:
     shown = frozenset({"code", "noise"})
     async with LabApp(settings(LOGS, panels_on=shown)).run_test(size=(120, 40)) as pilot:

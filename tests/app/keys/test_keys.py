@@ -26,6 +26,7 @@ from tuisim.core.geometry import Pose
 SIZES = [(80, 24), (120, 40), (200, 60)]
 
 
+@pytest.mark.quick_cases("80x24")
 @pytest.mark.parametrize("size", SIZES, ids=[f"{w}x{h}" for w, h in SIZES])
 async def test_first_picture(size: tuple[int, int]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
@@ -51,6 +52,7 @@ async def test_every_panels_key_shows_and_hides_it() -> None:
                 assert bool(re.search(f"[─━] {panel.title}", screen_text(app))) is shown, panel.id
 
 
+@pytest.mark.slow
 async def test_a_panel_that_its_key_opens_takes_the_focus_and_gives_it_back() -> None:
     panels = PANELS.keys() - {"world", "output"}
     async with LabApp(settings(LOGS, panels_off=frozenset(panels))).run_test(size=(120, 40)) as pilot:
@@ -70,6 +72,7 @@ async def test_a_panel_that_its_key_opens_takes_the_focus_and_gives_it_back() ->
             assert not app.panel_area.shown(panel), panel
 
 
+@pytest.mark.slow
 async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
     app = LabApp(settings(LOGS, panels_on=frozenset({"chart", "output"}), autorun=True, speed=0.0))
     async with app.run_test(size=(120, 40)) as pilot:
@@ -82,6 +85,7 @@ async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
         assert any("Colour" in row.text for row in recording.rows.rows(0))
 
 
+@pytest.mark.slow
 async def test_help_has_as_many_columns_as_there_is_room_for() -> None:
     async with LabApp(settings(LOGS)).run_test(size=SIZES[0]) as pilot:
         app = await ready(pilot)
@@ -101,6 +105,7 @@ async def test_help_has_as_many_columns_as_there_is_room_for() -> None:
             await pilot.press("escape")
 
 
+@pytest.mark.slow
 async def test_a_panel_without_room_takes_the_place_of_another() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
@@ -113,6 +118,7 @@ async def test_a_panel_without_room_takes_the_place_of_another() -> None:
         assert app.panel_area.shown("instrumentation")
 
 
+@pytest.mark.slow
 async def test_resize_there_and_back() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
@@ -126,6 +132,7 @@ async def test_resize_there_and_back() -> None:
         await until(pilot, lambda: screen_text(app) == before)
 
 
+@pytest.mark.slow
 async def test_switched_off_stays_off_in_every_size() -> None:
     off = settings(LOGS, panels_off=frozenset({"world"}), panels_on=frozenset({"arrays", "no such panel"}))
     async with LabApp(off).run_test(size=(80, 24)) as pilot:
@@ -191,6 +198,7 @@ async def test_speed_steps_and_ends() -> None:
         assert app.run_controller.speed == 0
 
 
+@pytest.mark.slow
 async def test_pen_is_p_and_not_shift_p() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
@@ -217,6 +225,7 @@ async def test_help_lists_every_key() -> None:
         assert not isinstance(app.screen, GuideScreen)
 
 
+@pytest.mark.slow
 async def test_bad_position_is_refused_with_a_reason() -> None:
     async with LabApp(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
 from textual.command import DiscoveryHit, Hit
 
 from tests.app.app_help import ready, screen_text, settings, until
@@ -27,6 +28,7 @@ async def test_it_offers_every_key_and_finds_it_by_its_title() -> None:
         assert app.run_controller.pen_down
 
 
+@pytest.mark.slow
 async def test_above_the_analyser_it_offers_no_key_of_the_lab(tmp_path: Path) -> None:
     log = tmp_path / "log.txt"
     log.write_text("Colour: 1\nColour: 2\n")

@@ -34,6 +34,7 @@ async def drag(pilot: Pilot[Any], name: str, by: int) -> None:
     await pilot.pause()
 
 
+@pytest.mark.quick_cases("80x24-*")
 @pytest.mark.parametrize(
     ("size", "name", "by"),
     [
@@ -56,6 +57,7 @@ async def test_the_mouse_drags_a_border(size: tuple[int, int], name: str, by: in
         assert app.mouse_captured is None
 
 
+@pytest.mark.quick_cases("far-left")
 @pytest.mark.parametrize("by", [-300, 300], ids=["far-left", "far-right"])
 async def test_a_border_stops_where_a_panel_would_get_too_small(by: int) -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
@@ -80,6 +82,7 @@ async def test_a_border_under_the_mouse_is_marked_until_the_mouse_leaves_it() ->
         await until(pilot, lambda: not marked())
 
 
+@pytest.mark.quick_cases("enter-keeps", "right")
 @pytest.mark.parametrize(
     ("keys", "moved"),
     [
@@ -116,6 +119,7 @@ async def test_the_layout_mode_shows_its_keys_and_gives_the_focus_back() -> None
         assert app.run_controller.snapshot().instant.pose != before
 
 
+@pytest.mark.slow
 async def test_the_next_start_finds_the_arrangement_for_its_size() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)

@@ -45,6 +45,7 @@ def test_no_third_of_a_panel_is_empty(preset: Preset, size: tuple[int, int]) -> 
             assert box.height - 2 < 1.5 * (PANELS[panel].good_rows - 2), panel
 
 
+@pytest.mark.quick_cases("analyse")
 @pytest.mark.parametrize(("preset", "key"), KEYS.items(), ids=KEYS)
 async def test_a_key_shows_a_preset_and_again_the_standard_layout(preset: Preset, key: str) -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
@@ -57,6 +58,7 @@ async def test_a_key_shows_a_preset_and_again_the_standard_layout(preset: Preset
         assert set(app.panel_area.arrangement.boxes) == standard
 
 
+@pytest.mark.slow
 async def test_a_preset_leaves_the_run_alone() -> None:
     async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
@@ -67,6 +69,7 @@ async def test_a_preset_leaves_the_run_alone() -> None:
         assert app.run_controller.state == RunPhase.RUNNING
 
 
+@pytest.mark.slow
 async def test_the_palette_offers_every_preset() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)

@@ -62,6 +62,7 @@ async def test_nothing_is_cut_in_any_layout(size: tuple[int, int]) -> None:
             assert list(cut(app)) == [], keys
 
 
+@pytest.mark.quick_cases("80x24", "120x40", "40x12")
 @in_each_size
 async def test_the_world_is_as_large_as_its_panel(size: tuple[int, int]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=size) as pilot:

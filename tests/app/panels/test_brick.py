@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 
+import pytest
+
 from tests.app.app_help import notices, ready, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.panels.brick import Brick
@@ -78,6 +80,7 @@ async def test_keys_press_buttons_while_the_panel_has_the_focus() -> None:
         assert app.panel_area.brick.held == frozenset()
 
 
+@pytest.mark.slow
 async def test_a_run_may_end_while_a_pressed_button_is_about_to_be_released() -> None:
     app = LabApp(settings(WATCHES))
     async with app.run_test(size=(120, 40)) as pilot:
@@ -93,6 +96,7 @@ async def test_a_run_may_end_while_a_pressed_button_is_about_to_be_released() ->
         assert panel.held == frozenset()
 
 
+@pytest.mark.slow
 async def test_the_mouse_holds_a_button_as_long_as_it_is_down() -> None:
     app = LabApp(settings(WATCHES))
     async with app.run_test(size=(120, 40)) as pilot:
@@ -112,6 +116,7 @@ async def test_the_mouse_holds_a_button_as_long_as_it_is_down() -> None:
         await until(pilot, lambda: actions(app) == [["right"], []])
 
 
+@pytest.mark.slow
 async def test_a_former_instant_shows_the_brick_as_it_was() -> None:
     app = LabApp(settings(WATCHES))
     async with app.run_test(size=(120, 40)) as pilot:
@@ -128,6 +133,7 @@ async def test_a_former_instant_shows_the_brick_as_it_was() -> None:
         assert app.run_controller.snapshot().pressed == frozenset()
 
 
+@pytest.mark.slow
 async def test_plus_gives_the_panel_the_whole_desk_and_back() -> None:
     app = LabApp(settings(WATCHES))
     async with app.run_test(size=(120, 40)) as pilot:
@@ -144,6 +150,7 @@ async def test_plus_gives_the_panel_the_whole_desk_and_back() -> None:
         assert app.panel_area.shown("world")
 
 
+@pytest.mark.slow
 async def test_buttons_are_of_now_and_a_branch_begins_with_none_held() -> None:
     app = LabApp(settings(WATCHES, speed=4.0, panels_on=frozenset({"brick"})))
     async with app.run_test(size=(120, 40)) as pilot:

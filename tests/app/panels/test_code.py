@@ -43,6 +43,7 @@ async def alone(pilot: Pilot[Any], text: str = TEXT) -> tuple[Code, CodeArea]:
 Keys = list[str]
 
 
+@pytest.mark.quick_cases("after a colon", "indented line", "comment", "undo", "letters are no text")
 @pytest.mark.parametrize(
     ("keys", "after"),
     [

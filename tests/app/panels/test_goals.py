@@ -238,6 +238,7 @@ async def open_path(pilot: Pilot[Any], app: LabApp, path: str) -> None:
     await until(pilot, lambda: len(app.screen_stack) == 1 and app.loader.mat_is_ready)
 
 
+@pytest.mark.slow
 async def test_goals_are_opened_with_their_world_and_closed_with_the_next(task: Path) -> None:
     (task.parent / "lab.toml").write_text('background = "Loop"\n')
     app = LabApp(settings(DRIVES, speed=0.0))
@@ -261,6 +262,7 @@ async def test_goals_are_opened_with_their_world_and_closed_with_the_next(task: 
         await until(pilot, lambda: "No goals: o opens" in screen_text(app))
 
 
+@pytest.mark.slow
 async def test_examples_of_goals_are_offered_and_opened_by_name(task: Path) -> None:
     async with LabApp(settings()).run_test(size=SIZE) as pilot:
         app = await ready(pilot)
@@ -275,6 +277,7 @@ async def test_examples_of_goals_are_offered_and_opened_by_name(task: Path) -> N
         assert app.run_controller.program.name == "square.py"
 
 
+@pytest.mark.quick_cases("beside a world")
 @pytest.mark.parametrize("is_world", [True, False], ids=["as the world", "beside a world"])
 async def test_goals_that_change_on_disk_are_read_again(task: Path, is_world: bool) -> None:
     app = LabApp(replace(with_goals(task, DRIVES), world_file=task if is_world else None))

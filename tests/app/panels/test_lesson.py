@@ -109,6 +109,7 @@ def states(name: str = "try") -> dict[str, str]:
     return {step: each.state.value for step, each in load_progress()[name].steps.items()}
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("home")
 async def test_a_lesson_from_its_first_step_to_its_model_answer(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
@@ -139,6 +140,7 @@ async def test_lesson_that_found_no_room_is_drawn_later(tmp_path: Path) -> None:
         assert "1. Think" in shown(app)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("home")
 async def test_leaving_and_coming_back_to_the_step(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
@@ -214,6 +216,7 @@ async def test_run_that_misses_a_goal_says_why_and_counts_as_a_try(tmp_path: Pat
         assert load_progress()["try"].of("drive").tries == 1
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("home")
 async def test_run_from_elsewhere_does_not_count(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
@@ -285,6 +288,7 @@ DONE: dict[str, tuple[str, Callable[[Pilot[Any], LabApp], Awaitable[None]]]] = {
 }
 
 
+@pytest.mark.quick_cases("show", "breakpoint")
 @pytest.mark.usefixtures("home")
 @pytest.mark.parametrize("name", DONE)
 async def test_step_is_done_by_doing_it(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -324,6 +328,7 @@ async def test_typing_ends_when_the_program_is_run_from_the_editor(tmp_path: Pat
         assert app.panel_area.shown("lesson")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("home")
 async def test_program_is_saved_when_it_runs(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
@@ -336,6 +341,7 @@ async def test_program_is_saved_when_it_runs(tmp_path: Path) -> None:
         assert program_path(app.lesson.lesson).read_text() == f"y=2\n{PROGRAM}"  # type: ignore[arg-type]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("home")
 async def test_other_panels_do_not_replace_the_lesson(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
@@ -347,6 +353,7 @@ async def test_other_panels_do_not_replace_the_lesson(tmp_path: Path) -> None:
             await pilot.press("escape")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("home")
 async def test_page_keys_scroll_the_text_while_the_world_has_the_focus(tmp_path: Path) -> None:
     settings_ = opened(tmp_path)
@@ -361,6 +368,7 @@ async def test_page_keys_scroll_the_text_while_the_world_has_the_focus(tmp_path:
         await until(pilot, lambda: "Line 0\n" in shown(app))
 
 
+@pytest.mark.quick_cases("80")
 @pytest.mark.usefixtures("home")
 @pytest.mark.parametrize(("size", "columns"), [(SMALL, 40), (LARGE, 45), ((200, 60), 58)], ids=["80", "120", "200"])
 async def test_lesson_stands_beside_world_and_code(size: tuple[int, int], columns: int, tmp_path: Path) -> None:

@@ -36,6 +36,7 @@ async def test_a_slider_acts_on_the_readings_at_once() -> None:
         assert app.run_controller.pose.x_mm == 150
 
 
+@pytest.mark.quick_cases("seed-*")
 @pytest.mark.parametrize(
     ("field", "typed", "said"),
     [
@@ -57,6 +58,7 @@ async def test_a_wrong_number_is_refused_beside_it(field: str, typed: str, said:
         assert app.run_controller.next_run == before
 
 
+@pytest.mark.slow
 async def test_typed_numbers_and_the_seed_are_for_the_next_run_too() -> None:
     async with LabApp(settings("print('A: 1')\n", panels_on=SHOWN, speed=0.0)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)

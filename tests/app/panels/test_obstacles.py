@@ -48,6 +48,7 @@ async def drag(pilot: Pilot[Any], start: tuple[int, int], end: tuple[int, int]) 
     await pilot.pause()
 
 
+@pytest.mark.quick_cases("80x24")
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
 async def test_an_empty_list_says_how_to_begin(size: tuple[int, int]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
@@ -79,6 +80,7 @@ async def test_add_type_and_remove() -> None:
         assert "No obstacle to remove" in screen_text(app)
 
 
+@pytest.mark.slow
 async def test_no_box_is_lost_when_two_are_added_at_once() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await opened(pilot)
@@ -118,6 +120,7 @@ async def refused(pilot: Pilot[Any], said: str) -> None:
     await until(pilot, lambda: str(message.render()) == said)
 
 
+@pytest.mark.slow
 async def test_one_is_drawn_and_moved_with_the_mouse() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
@@ -134,6 +137,7 @@ async def test_one_is_drawn_and_moved_with_the_mouse() -> None:
         assert app.run_controller.pose.x_mm == 150
 
 
+@pytest.mark.slow
 async def test_a_click_chooses_and_the_mouse_draws_only_while_the_panel_is_shown() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
@@ -147,6 +151,7 @@ async def test_a_click_chooses_and_the_mouse_draws_only_while_the_panel_is_shown
         assert "drag to draw" not in screen_text(app)
 
 
+@pytest.mark.slow
 async def test_the_box_at_hand_is_marked_in_the_world() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
@@ -178,6 +183,7 @@ async def test_a_set_is_chosen_and_saved(tmp_path: Path, monkeypatch: pytest.Mon
         assert str(tmp_path / "mine.toml") in [option.id for option in sets.options]
 
 
+@pytest.mark.slow
 async def test_obstacles_are_not_changed_during_a_run() -> None:
     async with LabApp(settings(ENDLESS, autorun=True, panels_on=SHOWN)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
@@ -187,6 +193,7 @@ async def test_obstacles_are_not_changed_during_a_run() -> None:
         assert boxes(app) == ()
 
 
+@pytest.mark.slow
 async def test_a_blocked_motor_is_shown_as_stalled() -> None:
     wall = "tank_drive.on(SpeedPercent(50), SpeedPercent(50))\nimport time\ntime.sleep(60)\n"
     async with LabApp(settings(wall, background="Empty_Map", autorun=False)).run_test(size=(120, 40)) as pilot:

@@ -92,6 +92,7 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
         await until(pilot, lambda: not output._past_log.display and output._log.display)
 
 
+@pytest.mark.slow
 async def test_the_pen_has_drawn_no_more_than_then() -> None:
     async with LabApp(settings(ENDLESS, autorun=True, speed=0.0)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
@@ -115,6 +116,7 @@ async def test_the_pen_has_drawn_no_more_than_then() -> None:
         assert world._view.past_trace is None
 
 
+@pytest.mark.slow
 async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> None:
     async with LabApp(settings(ENDLESS, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
@@ -142,6 +144,7 @@ async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> 
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
 
 
+@pytest.mark.slow
 async def test_the_bar_is_clicked_and_dragged() -> None:
     async with a_run() as (pilot, app):
         world = app.panel_area.world
@@ -202,6 +205,7 @@ async def test_words_find_their_instants() -> None:
         assert find("sample", timeline) == min(r.tick for r in rows if r.tick > dark)
 
 
+@pytest.mark.slow
 async def test_the_dialog_says_what_is_wrong_and_the_keys_go_from_sample_to_sample() -> None:
     async with a_run() as (pilot, app):
         await pilot.press("g")

@@ -28,6 +28,7 @@ NOTICES = {
 }
 
 
+@pytest.mark.quick_cases("two")
 @pytest.mark.parametrize("texts", NOTICES.values(), ids=list(NOTICES))
 async def test_notices_cover_neither_mat_nor_readings_nor_keys(texts: list[str]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24), notifications=True) as pilot:

@@ -135,6 +135,7 @@ async def test_saved_poses_in_the_app() -> None:
         assert load_poses() == {}
 
 
+@pytest.mark.slow
 async def test_a_place_during_a_run_is_an_action_of_the_user() -> None:
     async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
@@ -147,6 +148,7 @@ async def test_a_place_during_a_run_is_an_action_of_the_user() -> None:
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
 
 
+@pytest.mark.slow
 async def test_the_cursor_of_the_chart_shows_where_the_robot_was() -> None:
     async with LabApp(settings(LOGS, autorun=True, speed=0.0)).run_test(size=(200, 60)) as pilot:
         app = await ready(pilot)

@@ -39,14 +39,8 @@ async def enter(pilot: Pilot[Any], field: str, text: str) -> None:
     await pilot.pause()
 
 
-@pytest.mark.parametrize(
-    "size",
-    [
-        pytest.param((80, 24), id="80x24"),
-        pytest.param((120, 40), id="120x40", marks=pytest.mark.slow),
-        pytest.param((200, 60), id="200x60", marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.quick_cases("80x24")
+@pytest.mark.parametrize("size", [(80, 24), (120, 40), (200, 60)], ids=["80x24", "120x40", "200x60"])
 async def test_it_opens_with_the_robots_values(size: tuple[int, int]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
         app = await opened(pilot)
@@ -76,6 +70,7 @@ async def test_a_value_is_taken_at_once() -> None:
         assert app.run_controller.snapshot().ultrasonic_mm is not None
 
 
+@pytest.mark.slow
 async def test_values_are_checked_and_entered_also_where_a_field_is_left_or_a_choice_stepped_quickly() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)

@@ -132,6 +132,7 @@ class Screen:
         self._come = self._come.partition(wanted)[2]
 
 
+@pytest.mark.slow
 def test_a_lost_terminal_ends_the_app_and_its_program(tmp_path: Path, root: Path) -> None:
     (tmp_path / "spin.py").write_text("tank_drive.on(20, 30)\nwhile True:\n    pass\n")
     with lab(tmp_path, root, "spin.py", "-R") as (app, outer):
@@ -147,6 +148,7 @@ def test_a_lost_terminal_ends_the_app_and_its_program(tmp_path: Path, root: Path
     wait(lambda: not any(alive(process) for process in program))
 
 
+@pytest.mark.slow
 def test_an_app_that_is_stopped_from_outside_and_not_by_ctrl_z_is_drawn_again_and_hears_every_key(
     tmp_path: Path, root: Path
 ) -> None:
@@ -171,6 +173,7 @@ def test_an_app_that_is_stopped_from_outside_and_not_by_ctrl_z_is_drawn_again_an
         os.close(outer)
 
 
+@pytest.mark.slow
 def test_ctrl_z_stops_the_app_and_it_goes_on_with_the_run_paused(tmp_path: Path, root: Path) -> None:
     (tmp_path / "spin.py").write_text("tank_drive.on(20, 30)\nwhile True:\n    pass\n")
     with lab(tmp_path, root, "spin.py", "-R", by=SHELL) as (shell, outer):
@@ -190,6 +193,7 @@ def test_ctrl_z_stops_the_app_and_it_goes_on_with_the_run_paused(tmp_path: Path,
         os.close(outer)
 
 
+@pytest.mark.quick_cases("a program while it is edited")
 @pytest.mark.parametrize(
     ("places", "suspends"),
     [(((), ("b",), ("escape", "ctrl+p"), ("escape", "d", "escape")), True), ((("d", "x"),), False)],

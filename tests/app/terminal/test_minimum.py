@@ -37,6 +37,7 @@ def test_the_message_says_as_much_as_fits(size: Size, expected: str) -> None:
     assert " ".join(message_lines(size)) == expected
 
 
+@pytest.mark.quick_cases("20x5")
 @pytest.mark.parametrize("size", [(20, 5), (1, 1), (300, 8)], ids=["20x5", "1x1", "300x8"])
 async def test_a_terminal_that_shrinks_and_grows_again_shows_what_it_showed(size: tuple[int, int]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:

@@ -81,6 +81,7 @@ def test_without_colours_no_blocks_are_taken(
     assert picture_mode_for("auto").cells is cells
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("cells", "most"), [pytest.param(CellSet.ASCII, 0x7F, id="ascii"), pytest.param(CellSet.BRAILLE, 0x28FF, id="dots")]
 )

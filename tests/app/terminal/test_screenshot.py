@@ -55,6 +55,7 @@ async def test_a_key_saves_the_screen_and_names_the_files(tmp_path: Path) -> Non
     assert {(255, 255, 255), GREY, (0, 0, 0)} <= colors
 
 
+@pytest.mark.slow
 async def test_a_dialog_and_the_screen_below_it(tmp_path: Path) -> None:
     async with LabApp(settings()).run_test(size=(100, 30)) as pilot:
         app = await ready(pilot)
@@ -67,6 +68,7 @@ async def test_a_dialog_and_the_screen_below_it(tmp_path: Path) -> None:
     }  # fmt: skip
 
 
+@pytest.mark.slow
 async def test_from_the_palette_the_palette_is_not_shown(tmp_path: Path) -> None:
     async with LabApp(settings()).run_test(size=(100, 30)) as pilot:
         app = await ready(pilot)
@@ -77,6 +79,7 @@ async def test_from_the_palette_the_palette_is_not_shown(tmp_path: Path) -> None
     assert "Saveascreenshot" not in words_in(tmp_path / "tuisim-1.svg")
 
 
+@pytest.mark.slow
 async def test_the_analyser(tmp_path: Path) -> None:
     (tmp_path / "log.txt").write_text("Colour: 1\nColour: 2\n")
     async with AnalyserApp(LogRequest(file="log.txt")).run_test(size=(100, 30)) as pilot:
@@ -86,6 +89,7 @@ async def test_the_analyser(tmp_path: Path) -> None:
     assert "Colour" in words_in(tmp_path / "tuisim-1.svg")
 
 
+@pytest.mark.slow
 async def test_a_folder_that_cannot_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     gone = tmp_path / "gone"
     monkeypatch.setattr(Path, "cwd", lambda: gone)

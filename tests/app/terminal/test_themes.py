@@ -65,6 +65,7 @@ def test_colours_that_a_sensor_sees_stay_as_they_are() -> None:
         assert shown(ThemeColors(LIGHT), swatch)[1].rgb == seen
 
 
+@pytest.mark.slow
 async def test_a_theme_is_chosen_from_the_list_and_kept() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)

@@ -27,7 +27,8 @@ BEATS = 20
 ATTEMPTS = 5
 
 
-@pytest.mark.parametrize("colors", ["256", pytest.param("truecolor", marks=pytest.mark.slow)])
+@pytest.mark.slow_cases("truecolor")
+@pytest.mark.parametrize("colors", ["256", "truecolor"])
 async def test_the_first_paint_shows_the_panels_before_the_mat(colors: str) -> None:
     async with on_wire(LabApp(settings()), colors) as pilot:
         await ready(pilot)
@@ -86,6 +87,7 @@ async def sent_for_a_while(pilot: Pilot[Any]) -> str:
     return "".join(wire_of(pilot).sent)
 
 
+@pytest.mark.slow
 async def test_where_nothing_happens_nothing_is_sent() -> None:
     async with on_wire(LabApp(settings(LOGS))) as pilot:
         await ready(pilot)
@@ -99,7 +101,8 @@ def has_state(app: LabApp, state: str) -> bool:
     return app.run_controller.state == state
 
 
-@pytest.mark.parametrize("panels", [pytest.param([], id="no chart", marks=pytest.mark.slow), ["chart"]], ids=str)
+@pytest.mark.slow_cases("no chart")
+@pytest.mark.parametrize("panels", [[], ["chart"]], ids=["no chart", "chart"])
 async def test_a_run_that_stands_still_or_is_over_sends_nothing(panels: list[str]) -> None:
     async with on_wire(LabApp(settings(ENDLESS, panels_on=frozenset(panels), autorun=True))) as pilot:
         app = await ready(pilot)
@@ -121,6 +124,7 @@ async def test_the_analyser_at_rest_sends_nothing(tmp_path: Path) -> None:
         assert await sent_at_rest(pilot) == ""
 
 
+@pytest.mark.slow
 async def test_the_app_rests_when_nothing_happens_and_wakes_at_a_key() -> None:
     async with on_wire(LabApp(settings())) as pilot:
         app = await ready(pilot)
@@ -144,6 +148,7 @@ async def test_what_the_robot_does_is_shown_while_the_program_prints(monkeypatch
         assert drawn
 
 
+@pytest.mark.quick_cases("n-*")
 @pytest.mark.parametrize(("key", "shown"), [("R", (RunPhase.RUNNING, True)), ("n", (RunPhase.PAUSED, False))])
 async def test_the_first_frame_of_a_run_waits_for_its_first_tick_unless_it_is_paused(
     monkeypatch: pytest.MonkeyPatch, key: str, shown: tuple[RunPhase, bool]
