@@ -53,7 +53,7 @@ async def drag(pilot: Pilot[Any], start: tuple[int, int], end: tuple[int, int]) 
 async def test_an_empty_list_says_how_to_begin(size: tuple[int, int]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
         app = await opened(pilot)
-        assert "none: drag to draw one" in screen_text(app)
+        assert "none: + or drag adds one" in screen_text(app)
         assert "drag to draw or move an obstacle" in screen_text(app)
         assert all(entry.disabled for entry in app.query("Obstacles Input"))
 

@@ -12,7 +12,7 @@ from textual.message import Message
 from textual.timer import Timer
 
 from tuisim.app.render.brick import BrickPicture, draw_brick
-from tuisim.app.snapshot import IN_RUN, Snapshot
+from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesPanel
 from tuisim.app.terminal.pacer import Throttle
 from tuisim.protocol import BUTTONS
@@ -61,13 +61,21 @@ class Brick(LinesPanel, can_focus=True):
 
     def on_blur(self) -> None:
         """Release the buttons that keys held; the keys belong to the app again."""
-        self.border_subtitle = ""
+        self.border_subtitle = self._idle_words
         self._let_go(*self._tapped)
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment; at most a few updates per second."""
         self._snapshot = snapshot
+        if not self.has_focus and self.border_subtitle != self._idle_words:
+            self.border_subtitle = self._idle_words
         self._throttle.ask()
+
+    @property
+    def _idle_words(self) -> str:
+        """What to say before the first run."""
+        is_idle = self._snapshot is not None and self._snapshot.state is RunPhase.IDLE
+        return "R: a program draws here" if is_idle else ""
 
     def _redraw(self) -> None:
         size = self._text.size

@@ -53,7 +53,7 @@ class Debug(LinesPanel, can_focus=True):
         self._lines: list[Line] = []
 
     def on_focus(self) -> None:
-        self.border_subtitle = "↑↓ scroll · ←→ calls · enter thread"
+        self.border_subtitle = "←→ call · enter thread"
 
     def on_blur(self) -> None:
         self.border_subtitle = ""

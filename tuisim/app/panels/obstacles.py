@@ -25,7 +25,7 @@ Boxes: TypeAlias = tuple[Obstacle, ...]
 
 _FIELDS = {"x_mm": "X", "y_mm": "Y", "width_mm": "W", "height_mm": "H"}
 _NEW_SIZE_MM = 200.0
-_NONE = "none: drag to draw one"
+_NONE = "none: + or drag adds one"
 
 
 def box_label(number: int, box: Obstacle) -> str:

@@ -19,9 +19,11 @@ from textual.strip import Strip
 from textual.widget import Widget
 from textual.widgets import Input, Static
 
-from tuisim.app.snapshot import Snapshot
+from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.errors import counted
 from tuisim.runs.records import OutputRow, Stream, line_of
+
+BEFORE_A_RUN = "What the program prints appears here: R runs it"
 
 
 class Answer(Input):
@@ -107,7 +109,8 @@ class Output(Vertical):
         self.post_message(self.Answered(None))
 
     def show(self, snapshot: Snapshot) -> None:
-        """Do nothing: rows arrive through `add`."""
+        """Say before the first run what appears here; rows arrive through `add`."""
+        self._log.say_if_empty(BEFORE_A_RUN if snapshot.state is RunPhase.IDLE else "")
 
 
 KEPT_LINES = 2000
@@ -172,8 +175,16 @@ class Log(Widget, can_focus=True):
         """First visible line; None follows the newest."""
         self._shown: list[tuple[Line, bool]] = []
         """For each row of the screen: its line, and whether the scroll thumb covers it."""
+        self._empty_words = ""
+        """What to say while there is no line."""
 
     # Content
+
+    def say_if_empty(self, words: str) -> None:
+        """Set what to say while there is no line."""
+        if words != self._empty_words:
+            self._empty_words = words
+            self._update()
 
     def clear(self) -> None:
         """Remove every line."""
@@ -239,6 +250,9 @@ class Log(Widget, can_focus=True):
             at = round((height - size) * top / last_top)
             thumb = range(at, at + size)
         shown = [(self._line(top + y), y in thumb) for y in range(height)]
+        if not self._all and self._empty_words:
+            words = shown_lines(OutputRow(self._empty_words, 0, 0, 0, Stream.NOTE), max(1, self.size.width - 1))
+            shown[: len(words)] = [((text, Stream.NOTE), False) for text in words[:height]]
         before, self._shown = self._shown, shown
         if len(before) != height:
             self.refresh()

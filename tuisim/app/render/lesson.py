@@ -115,8 +115,6 @@ def _page(view: LessonView, page: int, width: int) -> Iterator[Line]:
     if page == 0 and not (is_current and view.judgements):
         yield from markdown_lines(lesson.intro, width)
         yield []
-        yield from _wrapped(f"On a real robot: {lesson.why}", width, _PALE)
-        yield []
     yield from _wrapped(f"{page + 1}. {step.title}", width, _NAME)
     if is_current:
         yield from _result(view, step, width)
@@ -137,6 +135,10 @@ def _page(view: LessonView, page: int, width: int) -> Iterator[Line]:
     yield from _wrapped(_to_do(view, step), width, _PALE)
     if left := len(step.hints) - view.hints:
         yield from _wrapped(f"Y shows a hint ({left} left).", width, _PALE)
+    if page == 0 and not view.judgements and not view.hints:
+        # Last: in a low terminal, the task stays in view.
+        yield []
+        yield from _wrapped(f"On a real robot: {lesson.why}", width, _PALE)
 
 
 def _question(question: Question, width: int) -> Iterator[Line]:
