@@ -74,6 +74,7 @@ _LABELS = {
     "comma": ",",
     "colon": ":",
     "slash": "/",
+    "asterisk": "*",
     "plus": "+",
     "equals_sign": "=",
     "less_than_sign": "<",
@@ -208,6 +209,18 @@ TYPING_KEYS: tuple[KeyWord, ...] = (
     ("^/", "comment"),
 )  # fmt: skip
 """Keys while the user types in the program."""
+
+
+VIM_KEYS: tuple[KeyWord, ...] = (
+    ("esc", "done"), ("i", "insert"), ("^s", "save"), ("^r", "run"), ("/", "find"), ("^g", "line"), ("u", "undo"),
+    ("U", "redo"), ("^/", "comment"),
+)  # fmt: skip
+"""The same with the keys of vim, in the normal mode."""
+EMACS_KEYS: tuple[KeyWord, ...] = (
+    ("esc", "done"), ("^s", "save"), ("^r", "run"), ("M-s", "find"), ("^g", "line"), ("^z", "undo"), ("M-z", "redo"),
+    ("^y", "yank"), ("^/", "comment"),
+)  # fmt: skip
+"""The same with the keys of Emacs."""
 
 
 def fitting(actions: Sequence[Action[Any, Any]], width: int) -> list[Action[Any, Any]]:

@@ -15,7 +15,7 @@ from textual.timer import Timer
 from textual.widget import Widget
 from textual.widgets import Input
 
-from tuisim.app.action import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings
+from tuisim.app.action import FIELD_KEYS, KeyFooter, KeyWord, key_bindings
 from tuisim.app.actions import time_travel
 from tuisim.app.actions.app import welcome
 from tuisim.app.actions.keys import ACTIONS, working
@@ -521,7 +521,7 @@ class LabApp(PanelMessages):
             return FIELD_KEYS
         code = self.panel_area.code
         typing = code is not None and code.typing and focused is not None and code in focused.ancestors
-        return TYPING_KEYS if typing else ()
+        return code.typing_keys if typing and code else ()
 
     def _hint_at_brick(self, what: str) -> None:
         if not self.panel_area.shown("brick"):
@@ -561,6 +561,13 @@ class LabApp(PanelMessages):
         self.debugger.program_changed(self.run_controller.program)
 
     # What the user does
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Leave ctrl+p to the editor while the user types with the keys of Emacs."""
+        code = self.panel_area.code
+        if action == "command_palette" and code is not None and code.takes_palette_key:
+            return False
+        return super().check_action(action, parameters)
 
     def action_leave_field(self) -> None:
         """Leave an input field; from the world, return from the past."""

@@ -191,8 +191,8 @@ class Row(Vertical):
 
 
 _SIGNS = frozenset({
-    "colon", "equals_sign", "left_parenthesis", "left_square_bracket", "less_than_sign", "greater_than_sign",
-    "question_mark", "right_parenthesis", "right_square_bracket", "space",
+    "asterisk", "colon", "equals_sign", "left_parenthesis", "left_square_bracket", "less_than_sign",
+    "greater_than_sign", "question_mark", "right_parenthesis", "right_square_bracket", "space",
 })  # fmt: skip
 """Keys of punctuation that cannot be part of a number."""
 

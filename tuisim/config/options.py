@@ -384,7 +384,7 @@ OPTIONS: tuple[Option, ...] = (
     Option(APP, ("-R", "--autorun"), "autorun", "Run at once."),
     Option(APP, ("-C", "--clear"), "clear_trace", "Clear the trace at the start."),
     Option(APP, ("-u", "--ultrasound"), "rays", "Show the ultrasonic rays.", in_file=InFile(False, TRUE_FALSE)),
-    Option(APP, ("-q", "--quiet"), "quiet", "Make no sound.", in_file=InFile(False, TRUE_FALSE)),
+    Option(APP, ("-q", "--quiet"), "quiet", "Make no sound.", in_file=InFile(False, TRUE_FALSE, is_live=False)),
     Option(
         APP,
         ("--fps",),

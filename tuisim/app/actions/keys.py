@@ -11,7 +11,7 @@ from functools import lru_cache, partial
 from typing import TypeAlias
 
 from tuisim.app.action import Action
-from tuisim.app.actions import app, files, lesson, program, robot, time_travel
+from tuisim.app.actions import app, files, lesson, program, robot, settings, time_travel
 from tuisim.app.actions.files import analyse
 from tuisim.app.layout.arrangement import Preset
 from tuisim.app.panels import PANELS
@@ -213,6 +213,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("help", "question_mark", "Guide: keys, pages, search", APP, app.show_help, footer="help"),
         Action("cells", "V", "Glyphs of the world: choose by eye", APP, app.choose_cells),
         Action("theme", "f10", "Theme: light, high contrast and others", APP, app.choose_theme),
+        Action("settings", "asterisk", "Settings: your own defaults", APP, settings.show),
         Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, app.redraw),
         Action("screenshot", "I,f12", _SCREENSHOT, APP, app.screenshot, shown_key="I"),
         Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, app.suspend),

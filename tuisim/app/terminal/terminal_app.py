@@ -239,6 +239,11 @@ class TerminalApp(App[None]):
         self._choose_graphics()
         self.redraw_pictures()
 
+    def choose_pixels(self, pixels: str) -> None:
+        """Draw every picture with real pixels or with glyphs; one of `PIXELS`."""
+        self.pixels = pixels
+        self._choose_graphics()
+
     def painted(self, size: int) -> None:
         """Called with the number of characters after an update was sent to the terminal."""
 

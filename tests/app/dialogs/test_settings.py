@@ -1,0 +1,102 @@
+"""The settings screen: what it writes, and what applies at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import pytest
+from textual.widgets import Input, OptionList
+
+from tests.app.app_help import LOGS, ready, screen_text, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.dialogs.settings import SettingsScreen
+from tuisim.config.options import CellSet
+from tuisim.config.user_config import SETTINGS, load_config
+
+APPLIED: dict[str, tuple[list[str], object, Callable[[LabApp], bool]]] = {
+    "app.ultrasound": (["enter"], True, lambda app: app.panel_area.world.show_rays),
+    "app.theme": (["enter", "wait", "home", "end", "enter"], "light", lambda app: app.theme == "light"),
+    "app.cells": (["enter", "wait", "end", "enter"], "ascii", lambda app: app.picture_mode.cells is CellSet.ASCII),
+    "app.pixels": (["enter", "wait", "end", "enter"], "none", lambda app: app.pixels == "none"),
+    "app.speed": (["enter", "wait", "5", "enter"], 5, lambda app: app.run_controller.speed == 5.0),
+    "simulation.motornoise": (["enter", "wait", "7", "enter"], 7, lambda app: "next start" in screen_text(app)),
+    "editor.motions": (["enter", "wait", "down", "enter"], "vim", lambda app: "Written" in screen_text(app)),
+}
+
+
+@pytest.mark.parametrize("path", APPLIED)
+async def test_a_change_is_written_and_applies(path: str) -> None:
+    keys, value, applies = APPLIED[path]
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("asterisk")
+        await until(pilot, lambda: isinstance(app.screen, SettingsScreen) and app.screen.is_ready)
+        screen = app.screen
+        listed = screen.query_one(OptionList)
+        listed.highlighted = listed.get_option_index(path)
+        for key in keys:
+            if key == "wait":
+                await until(pilot, lambda: app.screen is not screen and app.screen.is_ready)
+            else:
+                await pilot.press(key)
+        await until(pilot, lambda: load_config().written.get(path) == value)
+        await until(pilot, lambda: applies(app))
+
+        await until(pilot, lambda: app.screen is screen)
+        await pilot.press("delete")
+        await until(pilot, lambda: path not in load_config().written)
+        await pilot.press("escape")
+        await until(pilot, lambda: len(app.screen_stack) == 1)
+
+
+async def test_a_wrong_value_is_told_and_can_be_corrected() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("asterisk")
+        await until(pilot, lambda: isinstance(app.screen, SettingsScreen) and app.screen.is_ready)
+        listed = app.screen.query_one(OptionList)
+        listed.highlighted = listed.get_option_index("app.fps")
+        await pilot.press("enter")
+        await until(pilot, lambda: bool(app.screen.query(Input)))
+        await pilot.press(*"99", "enter")
+        await until(pilot, lambda: "must be a whole number from 1 to 60" in " ".join(screen_text(app).split()))
+        assert not load_config().path.exists()
+        await pilot.press("9", "enter")
+        await until(pilot, lambda: load_config().written == {"app.fps": 9})
+
+
+@pytest.mark.parametrize("size", [(80, 24), (40, 12)], ids=str)
+async def test_every_setting_can_be_reached_and_says_what_it_is(size: tuple[int, int]) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        await pilot.press("asterisk")
+        await until(pilot, lambda: isinstance(app.screen, SettingsScreen) and app.screen.is_ready)
+        listed, seen = app.screen.query_one(OptionList), []
+
+        def is_shown(name: str) -> bool:
+            return name in screen_text(app)
+
+        def is_selected(path: str) -> bool:
+            return listed.get_option_at_index(listed.highlighted or 0).id == path
+
+        for path, one in SETTINGS.items():
+            await until(pilot, partial(is_selected, path), path)
+            await until(pilot, partial(is_shown, one.name), path)
+            seen.append(str(app.screen.query_one("#about").render()))
+            await pilot.press("down")
+        assert len(set(seen)) == len(SETTINGS)
+
+
+async def test_a_file_that_is_no_toml_is_told_and_stays(tmp_path: Path) -> None:
+    (tmp_path / "config.toml").write_text("[app\n")
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("asterisk")
+        await until(pilot, lambda: isinstance(app.screen, SettingsScreen) and app.screen.is_ready)
+        listed = app.screen.query_one(OptionList)
+        listed.highlighted = listed.get_option_index("app.ultrasound")
+        await pilot.press("enter")
+        await until(pilot, lambda: "is not TOML" in " ".join(screen_text(app).split()))
+        assert (tmp_path / "config.toml").read_text() == "[app\n"

@@ -1,0 +1,54 @@
+"""The key of the settings, and what a change does at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from tuisim.config.options import FileValue
+from tuisim.config.user_config import CELL_SET, THEME, Setting, load_config
+from tuisim.config.user_config_file import save_setting
+
+if TYPE_CHECKING:
+    from tuisim.app.workspace import Workspace
+
+
+def _theme(workspace: Workspace, value: str) -> None:
+    workspace.app.theme = value
+
+
+def _rays(workspace: Workspace, value: bool) -> None:
+    if world := workspace.panel_area.world:
+        world.show_rays = value
+
+
+_APPLY: Mapping[str, Callable[[Workspace, Any], None]] = {
+    "app.speed": lambda workspace, value: workspace.run_controller.set_speed(value),
+    "app.ultrasound": _rays,
+    CELL_SET: lambda workspace, value: workspace.app.choose_cells(value),
+    "app.pixels": lambda workspace, value: workspace.app.choose_pixels(value),
+    THEME: _theme,
+}
+"""What applies a setting to the app that is open, by its path. The editor reads its own when typing begins."""
+
+
+def change(workspace: Workspace, one: Setting, value: FileValue | None) -> None:
+    """Write a setting to `config.toml`, and apply it at once where the app can.
+
+    Raises:
+        ConfigError: the value is wrong, or the file cannot be written.
+    """
+    save_setting(one, value)
+    if apply := _APPLY.get(one.path):
+        apply(workspace, load_config().values.get(one.path, one.in_file.usual))
+        workspace.app.situation_changed()
+        workspace.app.draw(force=True)
+
+
+def show(workspace: Workspace) -> None:
+    """Open the settings screen."""
+    from tuisim.app.dialogs.settings import SettingsScreen
+    from tuisim.app.terminal.themes import theme_names
+
+    workspace.app.push_screen(SettingsScreen(partial(change, workspace), theme_names()))
