@@ -13,12 +13,13 @@ from textual._compositor import LayoutUpdate
 from textual.geometry import Region
 
 from tests.bench.figures import QUICK, Effort, Figure
-from tuisim.app.render.cells import Cells, all_cells, changed_cells, changed_runs, fit_cells
+from tuisim.app.render.cells import changed_cells, changed_runs
 from tuisim.app.render.mat import Pixels, shrink, whole_field
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
 from tuisim.app.setup.mat import prepare_mat
 from tuisim.app.terminal.cell_view import CellStrip
 from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
+from tuisim.charts.fitted_cells import Cells, all_cells, fit_cells
 from tuisim.charts.glyphs import glyph_set
 from tuisim.charts.world_image import COLORED, CellPoints, Viewport, draw_robot
 from tuisim.config.build import build_run_spec

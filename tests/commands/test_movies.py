@@ -16,7 +16,9 @@ from PIL import Image
 from tests.conftest import Command
 from tests.running import told
 from tests.runs.run_recorder import PROGRAM, Recorder
+from tuisim.charts.glyphs import GLYPHS, glyph_set
 from tuisim.charts.world_image import COLORED, Viewport, fitting_view, pen_trace
+from tuisim.config.options import CellSet
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.simulation import Simulation
@@ -146,6 +148,18 @@ def test_a_cast_shows_in_a_terminal_what_was_drawn(
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("cells", ["half", "quadrant", "sextant", "octant"])
+def test_a_cast_has_the_glyphs_of_a_set(here: Command, tmp_path: Path, cells: str) -> None:
+    here("runs", "movie", "last", "--out", "a.cast", "--fps", "5", "--panels", "world", "--cells", cells)
+    screen, _ = replayed(tmp_path / "a.cast", 100)
+    glyphs = glyph_set(CellSet(cells))
+    known = {" ", "▀", *(GLYPHS[number] for number in glyphs.numbers.tolist())}
+    shown = set("".join(screen.display[1:]))
+    assert shown <= known
+    assert len(shown) > (4 if glyphs.cols == 2 else 1)
+
+
+@pytest.mark.slow
 def test_a_cast_has_the_robot_the_chart_and_the_value(here: Command, tmp_path: Path) -> None:
     assert here("runs", "movie", "last", "--out", "a.cast").returncode == 0
     screen, _ = replayed(tmp_path / "a.cast", 100)
@@ -229,6 +243,11 @@ BAD = {
     "no room in a cast": (
         "movie last --out a.cast --size 20x10",
         "--size: 20x10 is too small (no room for all panels)",
+    ),
+    "glyphs of pixels": ("movie last --cells octant", "--cells: .gif is drawn with pixels (only a .cast has glyphs)"),
+    "no such glyphs": (
+        "movie last --out a.cast --cells ascii",
+        "--cells: no such set 'ascii' (one of half, quadrant, sextant, octant)",
     ),
     "no room": ("movie last --size 160x120", "--size: 160x120 is too small (no room for the panel world)"),
     "too large": (

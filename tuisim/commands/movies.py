@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.commands.echo import Progress, echo, echo_error, tell
 from tuisim.config.command_line import Value, argument, command, option
+from tuisim.config.options import CellSet
 from tuisim.errors import ConfigError, nearest
 from tuisim.runs.store import RunStore
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 _SIZE = re.compile(r"(\d{1,6})[x×](\d{1,6})")
 _PANELS = "world, chart, arrays"
+_BLOCKS = (CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT)
 _FAST_S = 60
 """A longer run is shown faster, unless the speed is given."""
 
@@ -42,6 +44,7 @@ _movie_size = option(
     option("--fps", type=float, default=20.0, metavar="N", help="Frames per second, 1 to 50 (20)."),
     _panels,
     _movie_size,
+    option("--cells", metavar="SET", help=f"Glyphs of the world in a .cast: {', '.join(_BLOCKS)} (half)."),
 )
 def movie(
     word: str,
@@ -52,6 +55,7 @@ def movie(
     fps: float,
     panels: str | None,
     size: str,
+    cells: str | None,
 ) -> int:
     """Save a run as a movie: the world, the chart, the sensor arrays, with time and values."""
     from tuisim.movies.files import MOVIE_FORMATS, Clip, check_target, save_movie
@@ -64,11 +68,12 @@ def movie(
     _check_number(fps, 1, 50, "--fps")
     kind = MOVIE_FORMATS[path.suffix.lower()]
     shown, sides = _panels_of(panels), _size_of(size, kind.least, kind.most, kind.unit)
+    cell_set = _cell_set_of(cells, path)
     with Progress(f"drawing {path.name}"):
         recorded = _recorded(run)
         span_s = recorded.span_s(start_s, stop_s)
         speed = speed or max(1, math.ceil((span_s[1] - span_s[0]) / _FAST_S))
-        clip = Clip(recorded, shown or _useful(recorded), span_s, speed, fps, sides)
+        clip = Clip(recorded, shown or _useful(recorded), span_s, speed, fps, sides, cell_set)
         size_bytes = save_movie(clip, path, partial(tell, f"drawing {path.name}"))
     shots = clip.shots
     lasts_s = sum(shot.duration_ms for shot in shots) / 1000
@@ -153,3 +158,13 @@ def _size_of(text: str, least: Size, most: Size, unit: str) -> Size | None:
         allowed = " to ".join(f"{width}x{height}" for width, height in (least, most))
         raise ConfigError(f"no such size {text!r}", f"width and height in {unit}, {allowed}", key="--size")
     return size
+
+
+def _cell_set_of(name: str | None, path: Path) -> CellSet:
+    if name is None:
+        return CellSet.HALF
+    if path.suffix.lower() != ".cast":
+        raise ConfigError(f"{path.suffix} is drawn with pixels", "only a .cast has glyphs", key="--cells")
+    if name not in _BLOCKS:
+        raise ConfigError(f"no such set {name!r}", f"one of {', '.join(_BLOCKS)}", key="--cells")
+    return CellSet(name)

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.style import Style
 
 from tuisim.charts.cell_image import PLAIN, Cell, Look, row_of_cells
+from tuisim.charts.fitted_cells import all_cells, fit_cells
+from tuisim.charts.glyphs import GLYPHS, glyph_set
 from tuisim.charts.text_chart import ChartPainter, ChartState
 from tuisim.charts.traces import Traces
-from tuisim.charts.world_image import Pixels, field_view
+from tuisim.charts.world_image import SQUARE, CellPoints, Pixels, field_view
+from tuisim.config.options import CellSet
 from tuisim.errors import ConfigError, printable
 from tuisim.movies.clip import Moment, Panel, Recorded
 from tuisim.movies.pictures import MovingWorld, SensorArrays
@@ -46,6 +51,28 @@ def picture_cells(pixels: Pixels) -> list[list[Cell]]:
     ]
 
 
+_FINE = CellPoints(4, 8)
+"""Square pixels of a cell that is drawn with finer glyphs than half blocks."""
+
+
+def fine_cells(picture: Image, columns: int, rows: int, cell_set: CellSet) -> list[list[Cell]]:
+    """Return a picture as so many cells with the glyphs of a set."""
+    from PIL import Image
+
+    glyphs = glyph_set(cell_set)
+    size = columns * glyphs.cols, rows * glyphs.rows
+    points = np.asarray(picture.resize(size, Image.Resampling.BOX))
+    cells = fit_cells(points, glyphs, all_cells(rows, columns)).reshape(rows, columns)
+    return [[_cell(number) for number in row] for row in cells.tolist()]
+
+
+@lru_cache(maxsize=8192)
+def _cell(number: int) -> Cell:
+    """Return a cell of `charts.fitted_cells.Cells`."""
+    ink, ground = ((number >> at >> 16 & 255, number >> at >> 8 & 255, number >> at & 255) for at in (24, 0))
+    return (" ", Look(PLAIN.ink, ground)) if ink == ground else (GLYPHS[number >> 48], Look(ink, ground))
+
+
 class CellPainter:
     """Draws a recorded run as character cells at one instant after the other.
 
@@ -54,6 +81,7 @@ class CellPainter:
         panels: What is shown, at least one.
         span_s: Range of simulated time of the chart.
         size: Columns and rows; None for the size that fits the panels.
+        cell_set: The glyphs of the world, a set of blocks.
 
     Raises:
         ConfigError: the panels do not fit the size.
@@ -61,13 +89,18 @@ class CellPainter:
     """
 
     def __init__(
-        self, recorded: Recorded, panels: Sequence[Panel], span_s: tuple[float, float], size: Size | None = None
+        self,
+        recorded: Recorded,
+        panels: Sequence[Panel],
+        span_s: tuple[float, float],
+        size: Size | None = None,
+        cell_set: CellSet = CellSet.HALF,
     ) -> None:
         has_world, has_strip = Panel.WORLD in panels, Panel.CHART in panels or Panel.ARRAYS in panels
         if size is None:
             rows = _CAPTION_ROWS + _STRIP_ROWS * has_strip
             size = WIDTH, rows + -(-field_view(WIDTH, 2 * MOST[1]).height_px // 2) * has_world
-        self.size = size
+        self.size, self._cell_set = size, cell_set
         self._recorded, self._panels = recorded, panels
         self._strip_rows = 0
         if has_strip:
@@ -78,7 +111,9 @@ class CellPainter:
         if (has_world and self._world_rows < 6) or (has_strip and self._strip_rows < 4):
             raise ConfigError(f"{size[0]}x{size[1]} is too small", "no room for all panels", key="--size")
         if has_world:
-            self._world = MovingWorld(recorded, field_view(size[0], 2 * self._world_rows))
+            cell = SQUARE if cell_set is CellSet.HALF else _FINE
+            view = field_view(cell.cols * size[0], cell.rows * self._world_rows)
+            self._world = MovingWorld(recorded, replace(view, cell=cell))
         if Panel.ARRAYS in panels:
             self._arrays = SensorArrays(recorded)
         self._traces, self._charted = Traces(), 0
@@ -89,7 +124,7 @@ class CellPainter:
         columns = self.size[0]
         grid = [self._caption(moment)]
         if Panel.WORLD in self._panels:
-            grid += _centred(picture_cells(_even(self._world.at(moment))), columns, self._world_rows)
+            grid += _centred(self._world_at(moment), columns, self._world_rows)
         if self._strip_rows:
             below = self._arrays_at(moment) if Panel.ARRAYS in self._panels else [[] for _ in range(self._strip_rows)]
             if Panel.CHART in self._panels:
@@ -97,6 +132,13 @@ class CellPainter:
                 below = [left + right for left, right in zip(below, chart, strict=True)]
             grid += below
         return grid
+
+    def _world_at(self, moment: Moment) -> list[list[Cell]]:
+        picture = self._world.at(moment)
+        if self._cell_set is CellSet.HALF:
+            return picture_cells(_even(picture))
+        columns, rows = round(picture.width / _FINE.cols), round(picture.height / _FINE.rows)
+        return fine_cells(picture, max(columns, 1), max(rows, 1), self._cell_set)
 
     def _caption(self, moment: Moment) -> list[Cell]:
         values = "  ".join(f"{name}: {value:.5g}" for name, value in moment.values)

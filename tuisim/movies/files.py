@@ -13,6 +13,7 @@ import numpy as np
 
 from tuisim.charts.cell_image import CellGrid
 from tuisim.charts.files import svg_of, write_whole
+from tuisim.config.options import CellSet
 from tuisim.errors import ConfigError, ExportError, printable
 from tuisim.logs.export import check_place
 from tuisim.movies import cell_painter, image_files
@@ -45,6 +46,8 @@ class Clip:
     fps: float = 20.0
     size: Size | None = None
     """In the unit of the format; None for the size that fits the panels."""
+    cell_set: CellSet = CellSet.HALF
+    """The glyphs of the world, in a format of characters."""
 
     @property
     def shots(self) -> tuple[Shot, ...]:
@@ -110,7 +113,7 @@ def _apng(clip: Clip, watch: Watch) -> bytes:
 
 def _cast(clip: Clip, watch: Watch) -> bytes:
     shots, recorded = clip.shots, clip.recorded
-    painter = CellPainter(recorded, clip.panels, clip.span_s, clip.size)
+    painter = CellPainter(recorded, clip.panels, clip.span_s, clip.size, clip.cell_set)
 
     def frames() -> Iterator[CellGrid]:
         for at, shot in enumerate(shots):

@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tuisim.app.render.cells import Cells, all_cells, changed_cells, changed_runs, fit_cells
+from tuisim.app.render.cells import changed_cells, changed_runs
 from tuisim.app.render.mat import Pixels
+from tuisim.charts.fitted_cells import Cells, all_cells, fit_cells
 from tuisim.charts.glyphs import GLYPHS, glyph_set, half_block_of
 from tuisim.config.options import CellSet
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tuisim.app.render.cells import all_cells
 from tuisim.app.render.mat import Pixels, whole_field
 from tuisim.app.render.mono import mono_cells, pointer
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState, visible_on
+from tuisim.charts.fitted_cells import all_cells
 from tuisim.charts.glyphs import GLYPHS, glyph_set
 from tuisim.charts.world_image import CellPoints
 from tuisim.config.options import CellSet

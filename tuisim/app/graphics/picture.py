@@ -55,7 +55,7 @@ class PictureCell(NamedTuple):
     version: int
     """Number of its last change."""
     half_block: int | None = None
-    """What is drawn in place of its pixels, see `render.cells.Cells`: on a slow link it has far fewer bytes."""
+    """What is drawn in place of its pixels, see `charts.fitted_cells.Cells`: on a slow link it has far fewer bytes."""
 
 
 class Rectangle(NamedTuple):
@@ -148,7 +148,7 @@ class TilePicture:
         return _runs(some)
 
     def half_blocks(self, row: int) -> list[int]:
-        """Return the cells of a row as half blocks (see `render.cells.Cells`), for what cannot show pixels."""
+        """Return the cells of a row as half blocks (see `charts.fitted_cells.Cells`), for what cannot show pixels."""
         width, height = self.graphics.cell_points
         points = self._points[row * height : (row + 1) * height].astype(np.float32)
         upper, lower = (half.reshape(len(half), -1, width, 3).mean(axis=(0, 2)) for half in np.array_split(points, 2))

@@ -12,7 +12,7 @@ from tuisim.charts.glyphs import BRAILLE_FROM, Covered, GlyphSet, nearest_signs,
 from tuisim.config.options import CellSet
 
 if TYPE_CHECKING:
-    from tuisim.app.render.cells import CellIndex, Cells
+    from tuisim.charts.fitted_cells import CellIndex, Cells
     from tuisim.charts.world_image import Pixels, Viewport
     from tuisim.core.geometry import Pose
 

@@ -21,21 +21,11 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from tuisim.app.graphics.picture import Graphics, PictureCell, TilePicture
-from tuisim.app.render.cells import (
-    MONO,
-    CellIndex,
-    Cells,
-    ColorMode,
-    all_cells,
-    changed_cells,
-    changed_runs,
-    fit_cells,
-    reduce_cells,
-    reduce_pixels,
-)
+from tuisim.app.render.cells import MONO, ColorMode, changed_cells, changed_runs, reduce_cells, reduce_pixels
 from tuisim.app.render.mono import mono_cells
 from tuisim.app.terminal.picture_mode import BLOCKS, color_depth, picture_mode_of
 from tuisim.app.terminal.sharpness import Sharpness
+from tuisim.charts.fitted_cells import CellIndex, Cells, all_cells, fit_cells
 from tuisim.charts.glyphs import GLYPHS, GlyphSet, glyph_set, half_block_of
 from tuisim.charts.text_runs import Run, cut_line
 from tuisim.charts.world_image import CellPoints
@@ -462,7 +452,7 @@ class LazyStrip(Strip):
 
 
 class CellStrip(LazyStrip):
-    """A row of half-block cells, see `render.cells.Cells`.
+    """A row of half-block cells, see `charts.fitted_cells.Cells`.
 
     Args:
         cells: One number per cell.
