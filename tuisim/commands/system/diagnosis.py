@@ -88,11 +88,22 @@ _POINTS = {
 }
 
 
-def cells_finding(cells: CellSet) -> Finding:
-    """Judge the finest glyphs that the terminal is known to show."""
+def cells_finding(cells: CellSet, term: str = "", variable: str = "") -> Finding:
+    """Judge the finest glyphs that the terminal is known to show.
+
+    Args:
+        cells: The glyphs.
+        term: The variable TERM if it alone limits them, else empty.
+        variable: The variable that decides the locale, see `locale_finding`.
+    """
     value = f"{cells} ({_POINTS[cells]})"
     if cells is CellSet.ASCII:
-        return Finding("cells", value, State.ADVICE, "Finer glyphs need UTF-8: export LANG=C.UTF-8")
+        advice = (
+            f"TERM={term} promises no more; if the terminal shows more: --cells half"
+            if term
+            else f"Finer glyphs need UTF-8: {_use_utf8(variable)}"
+        )
+        return Finding("cells", value, State.ADVICE, advice)
     if cells in (CellSet.HALF, CellSet.QUADRANT):
         return Finding("cells", value, State.OK, "Press V in the app to see whether the font shows finer ones")
     return Finding("cells", value)
@@ -127,8 +138,13 @@ def locale_finding(variable: str, encoding: str) -> Finding:
     """
     value = f"{variable or 'not set'} ({encoding})"
     if encoding.lower().replace("-", "") != "utf8" or (variable and "utf" not in variable.lower()):
-        return Finding("locale", value, State.ADVICE, "Use UTF-8: export LANG=C.UTF-8")
+        return Finding("locale", value, State.ADVICE, f"Use UTF-8: {_use_utf8(variable)}")
     return Finding("locale", value)
+
+
+def _use_utf8(variable: str) -> str:
+    """Return the command that sets the variable which decides the locale: LC_ALL hides the others."""
+    return f"export {variable.partition('=')[0] or 'LANG'}=C.UTF-8"
 
 
 def latency_finding(latency_s: float | None) -> Finding:

@@ -129,13 +129,16 @@ def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) ->
             return [diagnosis.no_terminal_finding(), _locale_finding(environment)]
     has_colors = _colors_without_asking(environment) != "none"
     cells = cells_without_asking({**first_environment(), "TERM": term}, has_colors=has_colors)
+    limit = "" if cells_without_asking({**first_environment(), "TERM": "xterm"}) is cells else term
     graphics = graphics_of(answers.facts, AUTO if has_colors else NO_PIXELS, cell_size_px(fd))
     size = os.get_terminal_size(fd)
     return [
         diagnosis.terminal_finding(answers.facts.name, term, is_remote=is_remote),
         diagnosis.size_finding(size.columns, size.lines),
         _colors_finding(environment, is_remote),
-        diagnosis.cells_finding(cells or cells_of(answers.facts.name, answers.octant_cols)),
+        diagnosis.cells_finding(
+            cells or cells_of(answers.facts.name, answers.octant_cols), limit, _locale_variable(first_environment())
+        ),
         diagnosis.graphics_finding(graphics.protocol if graphics else "", has_colors=has_colors),
         *([] if term in SILENT else [diagnosis.latency_finding(answers.latency_s)]),
         _locale_finding(environment),
@@ -164,9 +167,13 @@ def _colors_finding(environment: Mapping[str, str], is_remote: bool) -> Finding:
 
 
 def _locale_finding(environment: Mapping[str, str]) -> Finding:
+    return diagnosis.locale_finding(_locale_variable(environment), locale.getencoding())
+
+
+def _locale_variable(environment: Mapping[str, str]) -> str:
+    """Return the variable that decides the locale with its value; empty if none is set."""
     names = (name for name in ("LC_ALL", "LC_CTYPE", "LANG") if environment.get(name))
-    variable = next((f"{name}={environment[name]}" for name in names), "")
-    return diagnosis.locale_finding(variable, locale.getencoding())
+    return next((f"{name}={environment[name]}" for name in names), "")
 
 
 def _machine_findings() -> list[Finding]:
