@@ -52,7 +52,9 @@ def numbers_of(words: Sequence[str], folder: Path, calls: str, place: Path | Non
         place: Only those that name this folder, or a file in it.
     """
     log = folder / "strace.log"
-    run(words, folder, ["-e", f"trace={calls}", "-e", "signal=none", "-o", str(log)])
+    ended = run(words, folder, ["-e", f"trace={calls}", "-e", "signal=none", "-o", str(log)])
+    if ended.code:
+        raise FaultError(f"the calls of {' '.join(words)} cannot be counted: {ended.err}")
     found = [match for line in log.read_text(errors="replace").splitlines() if (match := _CALL.match(line))]
     log.unlink()
     first = [match["rest"] for match in found if match["process"] == found[0]["process"]]

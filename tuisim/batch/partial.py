@@ -50,7 +50,7 @@ class PartialTable:
             raise ConfigError("is of another batch", hint, file=str(self._path))
         # The last line of a killed process may be incomplete.
         found = [row for line in lines if isinstance(row := _decoded(line), dict) and RUN in row]
-        return {int(row[RUN]) - 1: row for row in found}
+        return _started(found)
 
     def open(self, rows: Mapping[int, Row]) -> Self:
         """Begin a file with rows that are done; close it with `close` or `remove`.
@@ -114,10 +114,22 @@ def rows_of_table(path: Path, identity: Mapping[str, Any], columns: Iterable[str
     kept = frame[[name for name in frame.columns if name in usual or is_statistic(name)]]
     rows: list[Row] = [
         # A run has no statistics of what it has not printed; of the other columns some texts are empty.
-        {str(name): value if value == value else None for name, value in row.items() if value == value or name in usual}
+        {str(name): _read(str(name), value) for name, value in row.items() if value == value or name in usual}
         for row in kept.to_dict("records")
     ]
-    return {int(row[RUN]) - 1: row for row in rows}
+    return _started(rows)
+
+
+def _read(name: str, value: Any) -> Any:
+    """Return a cell as it was written: beside an empty cell, whole numbers are read as floats."""
+    if value != value:
+        return None
+    return int(value) if name.endswith("_count") and isinstance(value, float) else value
+
+
+def _started(rows: Iterable[Row]) -> dict[int, Row]:
+    """Return rows by the index of their task, without those of runs that could not be started: they may now."""
+    return {int(row[RUN]) - 1: row for row in rows if row.get("end")}
 
 
 def _encoded(row: Mapping[str, Any]) -> bytes:

@@ -176,7 +176,7 @@ def rerun_runs(words: Sequence[str], as_json: bool) -> int:
 
 def _rerun(run: StoredRun, *, as_json: bool) -> int:
     """Run it again and print whether the result is the same; return the exit code."""
-    with TemporaryDirectory(prefix="tuisim-") as home:
+    with TemporaryDirectory(prefix="tuisim-", ignore_cleanup_errors=True) as home:
         scratch = RunStore(Path(home))
         handle = rerun(run, scratch)
         what, ticks = f"rerunning run {run.number}: {run.program.name}", run.telemetry.count
