@@ -6,10 +6,12 @@ from tests.proof.crashes import CRASHES
 from tests.proof.damage import DAMAGE
 from tests.proof.failures import FAILURES
 from tests.proof.kind import Kind
+from tests.proof.monkey import MONKEY
 
 KINDS: dict[str, Kind] = {
     "damage": DAMAGE,
     "crashes": CRASHES,
     "failures": FAILURES,
+    "monkey": MONKEY,
 }
 """Every kind by name."""

@@ -50,6 +50,14 @@ sys.exit(os.waitstatus_to_exitcode(os.waitpid(job, 0)[1]))
 """
 """The least of a shell: runs the app as a job, says when it stops, and lets it go on at Enter."""
 
+DEAF = """\
+import fcntl, os, signal, sys, termios
+fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+signal.signal(signal.SIGHUP, signal.SIG_IGN)
+sys.exit(os.spawnv(os.P_WAIT, sys.executable, sys.argv[1:]))
+"""
+"""A shell that does not tell its job when the terminal is lost."""
+
 pytestmark = [pytest.mark.usefixtures("home")]
 
 
@@ -146,6 +154,29 @@ def test_a_lost_terminal_ends_the_app_and_its_program(tmp_path: Path, root: Path
             os.close(outer)
         assert app.wait(PATIENCE_S) == 129
     wait(lambda: not any(alive(process) for process in program))
+
+
+@pytest.mark.slow
+def test_a_lost_terminal_ends_the_app_also_if_no_signal_tells_it(tmp_path: Path, root: Path) -> None:
+    (tmp_path / "empty.py").touch()
+    with lab(tmp_path, root, "empty.py", by=DEAF) as (shell, outer):
+        Screen(outer).wait(b"quit")
+        os.close(outer)
+        assert shell.wait(PATIENCE_S) == 129
+
+
+@pytest.mark.slow
+def test_bytes_that_are_no_utf_8_do_not_end_the_app(tmp_path: Path, root: Path) -> None:
+    (tmp_path / "empty.py").touch()
+    with lab(tmp_path, root, "empty.py") as (app, outer):
+        screen = Screen(outer)
+        screen.wait(b"quit")
+        os.write(outer, b"\x1b[200~\xe4\x1b[201~\xff?")
+        screen.wait(b"Guide")
+        os.write(outer, b"\x11")
+        screen.wait(b"\x1b[?1049l")
+        assert app.wait(PATIENCE_S) == 0
+        os.close(outer)
 
 
 @pytest.mark.slow

@@ -6,9 +6,11 @@ import asyncio
 import os
 import re
 import signal
+import sys
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
+from encodings import utf_8
 from functools import partial
 from io import TextIOWrapper
 from pathlib import Path
@@ -404,8 +406,26 @@ class ResilientOutput:
         return self._file.fileno()
 
 
-# The driver makes its parser itself.
+class InputDecoder(utf_8.IncrementalDecoder):
+    """Decodes what the terminal sends: bytes that are no UTF-8, as from a faulty line, must not end the app."""
+
+    def __init__(self) -> None:
+        super().__init__("replace")
+
+    def decode(self, data: bytes, final: bool = False) -> str:  # type: ignore[override]
+        """Return the characters that are complete.
+
+        Raises:
+            EOFError: the terminal is gone; it would be read again and again, in vain.
+        """
+        if not data and not final and not sys.stdin.isatty():
+            raise EOFError
+        return super().decode(data, final)
+
+
+# The driver makes its parser and its decoder itself.
 linux_driver.XTermParser = AnswerParser  # type: ignore[attr-defined]
+linux_driver.getincrementaldecoder = lambda _: InputDecoder  # type: ignore[attr-defined, assignment]
 
 
 class TerminalDriver(LinuxDriver):
@@ -416,6 +436,14 @@ class TerminalDriver(LinuxDriver):
     ) -> None:
         super().__init__(app, debug=debug, mouse=mouse, size=size)
         self._file = cast(TextIOWrapper, ResilientOutput(cast(TextIO, self._file)))
+
+    def run_input_thread(self) -> None:
+        """Take in what is typed; end the app when the terminal is gone."""
+        try:
+            super().run_input_thread()
+        except (EOFError, OSError):
+            # Not every shell tells its jobs.
+            self._app.call_later(self._app.exit, return_code=128 + signal.SIGHUP)
 
     def start_application_mode(self) -> None:
         """Take the terminal over, and ask what it can do."""
