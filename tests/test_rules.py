@@ -207,7 +207,7 @@ def test_ruff_finds_nothing() -> None:
     assert tool("ruff", "check", "--no-cache", ".") == ""
 
 
-@pytest.mark.quick_cases("package")
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "words",
     # Tests and drawings may import what only the tests need, and need not use everything.

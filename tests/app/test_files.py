@@ -203,6 +203,7 @@ async def test_the_timer_looks_by_itself(folder: Path) -> None:
         await until(pilot, lambda: "By itself: 2" in screen_text(app))
 
 
+@pytest.mark.slow
 async def test_a_changed_magic_line_applies_what_is_new_in_it(folder: Path) -> None:
     path = folder / "mine.py"
     async with LabApp(settings()).run_test(size=(120, 40)) as pilot:

@@ -49,6 +49,7 @@ async def test_the_same_run_again_gives_the_same_log(tmp_path: Path) -> None:
     assert frame["value"].iloc[-1] == 0
 
 
+@pytest.mark.slow
 async def test_export_asks_before_it_replaces_a_file(tmp_path: Path) -> None:
     target = tmp_path / "old.csv"
     target.write_text("mine")

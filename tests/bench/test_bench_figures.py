@@ -38,6 +38,7 @@ def test_the_bare_loop_drives_a_left_bend() -> None:
     assert 95 < x_mm < 101 and 0 < y_mm < 5 and 0 < heading < 0.1
 
 
+@pytest.mark.quick_cases("bare_start")
 @pytest.mark.parametrize("reference", [one_tick, bare_start, bare_paint], ids=lambda made: made.__name__)
 def test_each_reference_costs_something(reference: Callable[[], Cost]) -> None:
     cost = reference()

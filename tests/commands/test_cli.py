@@ -223,7 +223,7 @@ def start(folder: Path, *words: str) -> subprocess.Popen[str]:
     )
 
 
-@pytest.mark.quick_cases("ctrl-C")
+@pytest.mark.slow
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["ctrl-C", "terminate"])
 def test_signal_stops_the_run_and_exports_its_rows(number: signal.Signals, code: int, tmp_path: Path) -> None:
     (tmp_path / "prog.py").write_text(FIVE + "while True:\n    pass\n")

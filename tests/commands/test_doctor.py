@@ -141,6 +141,7 @@ ASKED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("environment", "expected"), ASKED.values(), ids=ASKED)
 def test_asks_the_terminal(environment: dict[str, str], expected: tuple[str, ...], home: Path) -> None:
     where = {"TERM": "xterm-256color", "COLORTERM": "truecolor", **environment}

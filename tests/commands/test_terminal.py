@@ -73,6 +73,7 @@ def start(screen: Screen, folder: Path, *words: str, stdin: int | None = None) -
         )
 
 
+@pytest.mark.slow
 def test_app_is_drawn_on_stdout_and_q_leaves_it(screen: Screen, tmp_path: Path) -> None:
     app = start(screen, tmp_path, "log_greys", "-W")
     screen.until(b"Instrumentation")

@@ -75,6 +75,7 @@ def test_sums_of_unusual_diameters(diameter: int, home: Path) -> None:
         assert list(field.disc_sums(diameter, col, row)) == naive_sums(pixels, diameter, col, row)
 
 
+@pytest.mark.slow
 def test_white_discs_do_not_overflow(home: Path, tmp_path: Path) -> None:
     files = mat_cache.prepare(picture(tmp_path, fill="white"), [mat_cache.MAX_DIAMETER_PX])
     pixels = sum(map(sum, disc_mask(mat_cache.MAX_DIAMETER_PX)))
@@ -105,6 +106,7 @@ def test_the_key_is_the_content_not_the_name(home: Path, tmp_path: Path) -> None
     assert mat_cache.prepare(picture(tmp_path, fill="red"), ()) != first
 
 
+@pytest.mark.slow
 def test_a_torn_file_is_made_again(home: Path, tmp_path: Path) -> None:
     image = picture(tmp_path)
     files = mat_cache.prepare(image, [20])

@@ -121,6 +121,7 @@ def test_a_stored_run_is_repeated_on_the_mat_that_it_was_made_on(here: Command, 
     assert [here("runs", "rerun", number).returncode for number in (1, 2)] == [0, 0]
 
 
+@pytest.mark.slow
 def test_the_switch_works_in_a_magic_line_from_the_programs_folder(here: Command, home: Path, tmp_path: Path) -> None:
     paint(tmp_path / "course" / "pics" / "maze.png")
     program = tmp_path / "course" / "p.py"

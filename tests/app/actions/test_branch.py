@@ -71,7 +71,7 @@ async def _nothing(pilot: Pilot[Any], app: LabApp) -> None:
     await pilot.press("y")
 
 
-@pytest.mark.quick_cases("branch key")
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("deed", "kind"),
     [

@@ -89,6 +89,7 @@ async def test_steps_from_the_first_line(home: object) -> None:
         assert "line 4" in drawn(app)
 
 
+@pytest.mark.slow
 async def test_one_line_back_and_on_again(home: object) -> None:
     app = LabApp(settings(COUNTS))
     async with app.run_test(size=(120, 40)) as pilot:

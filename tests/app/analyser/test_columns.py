@@ -49,6 +49,7 @@ async def asked(pilot: Pilot[Any]) -> Analyser:
     return screen
 
 
+@pytest.mark.slow
 async def test_a_doubtful_table_is_asked_about_and_drawn_as_told(foreign: Path) -> None:
     async with AnalyserApp(LogRequest(str(foreign))).run_test(size=(80, 24)) as pilot:
         screen = await asked(pilot)

@@ -180,6 +180,7 @@ async def test_the_source_shows_a_magic_line_that_is_no_comment() -> None:
         await until(pilot, lambda: "%%sim_magic_preloaded -b Grey" in text_of(pilot))
 
 
+@pytest.mark.slow
 async def test_one_cursor_moves_all(run: StoredRun) -> None:
     async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
         _, model = await opened(pilot)
@@ -263,6 +264,7 @@ async def test_every_action_does_no_harm_to_an_empty_log(tmp_path: Path, monkeyp
         await until(pilot, lambda: "telemetry" in text_of(pilot))
 
 
+@pytest.mark.slow
 async def test_a_file_is_read_on_when_it_grows(tmp_path: Path) -> None:
     file = tmp_path / "log.txt"
     file.write_text("Colour: 1\nColour: 2\n")

@@ -15,7 +15,7 @@ from tuisim.app.terminal.cell_view import PixelView
 from tuisim.config.options import Settings
 
 
-@pytest.mark.slow_cases("120x40")
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
 async def test_the_mat_at_hand_is_shown(size: tuple[int, int]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=size) as pilot:

@@ -302,6 +302,7 @@ async def test_a_change_of_the_plan_leaves_edits_alone(tmp_path: Path) -> None:
         assert app.document.dirty
 
 
+@pytest.mark.slow
 async def test_a_new_program_runs_and_asks_for_its_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     async with LabApp(settings(speed=0.0)).run_test(size=(120, 40)) as pilot:
@@ -333,6 +334,7 @@ async def test_an_edited_magic_line_changes_the_world_when_it_runs(tmp_path: Pat
         assert app.run_controller.timeline.recording.spec.world.start.x_mm == 500
 
 
+@pytest.mark.slow
 async def test_the_text_may_be_edited_and_saved_during_a_run(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
     async with LabApp(own(path, "# %%sim_magic_preloaded\n" + ENDLESS)).run_test(size=(120, 40)) as pilot:

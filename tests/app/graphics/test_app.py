@@ -146,6 +146,7 @@ def _characters(pilot: Pilot[Any], view: PlotView) -> str:
     return "".join(line[x : x + width] for line in lines[y : y + height])
 
 
+@pytest.mark.slow
 async def test_a_screenshot_of_a_chart_has_its_characters() -> None:
     async with on_wire(LabApp(settings(panels_on=frozenset({"chart"}))), "truecolor") as pilot:
         await _answered(pilot, "\x1b[?1;2c")
@@ -158,6 +159,7 @@ async def test_a_screenshot_of_a_chart_has_its_characters() -> None:
         assert _characters(pilot, view) == expected
 
 
+@pytest.mark.slow
 async def test_a_chart_falls_back_to_characters_and_returns_to_pixels() -> None:
     async with on_wire(LabApp(settings(panels_on=frozenset({"chart"}))), "truecolor") as pilot:
         await _answered(pilot, ANSWERS[Protocol.KITTY])

@@ -274,6 +274,7 @@ async def test_choosing_a_mat_lays_it_out_with_its_start() -> None:
         assert app.run_controller.program is not None
 
 
+@pytest.mark.slow
 async def test_opening_a_program_by_its_path(tmp_path: Path) -> None:
     path = tmp_path / "mine.py"
     path.write_text("# %%sim_magic_preloaded -b Square -x 500\nprint(1)\n")

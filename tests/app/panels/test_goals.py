@@ -166,6 +166,7 @@ async def test_a_run_is_judged_when_it_has_ended(task: Path) -> None:
         assert "R runs the program" not in screen_text(app)
 
 
+@pytest.mark.slow
 async def test_goals_are_judged_while_the_program_runs(task: Path) -> None:
     app = LabApp(with_goals(task, f"{DRIVES}input('more?')\nprint('done')\n"))
     async with app.run_test(size=SIZE) as pilot:

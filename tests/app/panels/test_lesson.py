@@ -231,6 +231,7 @@ async def test_run_from_elsewhere_does_not_count(tmp_path: Path) -> None:
         await until(pilot, lambda: "✓ Drive" in shown(app))
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("home")
 async def test_run_before_the_step_does_not_count(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:

@@ -75,6 +75,7 @@ async def test_typed_numbers_and_the_seed_are_for_the_next_run_too() -> None:
         assert app.run_controller.run.spec.seed == 7
 
 
+@pytest.mark.slow
 async def test_noise_set_during_a_run_is_recorded_and_shown_from_its_tick_on() -> None:
     async with LabApp(settings(ENDLESS, autorun=True, panels_on=SHOWN)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)

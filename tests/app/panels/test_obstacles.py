@@ -91,6 +91,7 @@ async def test_no_box_is_lost_when_two_are_added_at_once() -> None:
         assert boxes(app)[0] != boxes(app)[1]
 
 
+@pytest.mark.slow
 async def test_a_wrong_number_is_refused() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)

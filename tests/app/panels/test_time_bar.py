@@ -53,6 +53,7 @@ async def test_keys_go_back_and_forward() -> None:
         assert "This is the start of the run" in notices(app)
 
 
+@pytest.mark.slow
 async def test_a_former_instant_is_shown_as_it_was() -> None:
     async with a_run(size=(200, 60)) as (pilot, app):
         recording, mat = app.run_controller.timeline.recording, app.run_controller.mat

@@ -39,7 +39,7 @@ async def enter(pilot: Pilot[Any], field: str, text: str) -> None:
     await pilot.pause()
 
 
-@pytest.mark.quick_cases("80x24")
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(80, 24), (120, 40), (200, 60)], ids=["80x24", "120x40", "200x60"])
 async def test_it_opens_with_the_robots_values(size: tuple[int, int]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=size) as pilot:

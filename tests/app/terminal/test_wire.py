@@ -101,7 +101,7 @@ def has_state(app: LabApp, state: str) -> bool:
     return app.run_controller.state == state
 
 
-@pytest.mark.slow_cases("no chart")
+@pytest.mark.slow
 @pytest.mark.parametrize("panels", [[], ["chart"]], ids=["no chart", "chart"])
 async def test_a_run_that_stands_still_or_is_over_sends_nothing(panels: list[str]) -> None:
     async with on_wire(LabApp(settings(ENDLESS, panels_on=frozenset(panels), autorun=True))) as pilot:
