@@ -43,6 +43,8 @@ CHOICES: dict[str, tuple[list[str], Any]] = {
     "example by number": (["1"], lambda app: app.run_controller.state in {*IN_RUN, RunPhase.ENDED}),
     "example by enter": (["enter"], lambda app: app.run_controller.state in {*IN_RUN, RunPhase.ENDED}),
     "learn": (["down", "enter"], lambda app: isinstance(app.screen, Chooser) and "Lessons" in app.screen.TITLE_TEXT),
+    "help by its key": (["question_mark"], lambda app: "Search: words" in screen_text(app)),
+    "quit by its key": (["q"], lambda app: not app.is_running or app._exit),
     "open": (["3"], lambda app: isinstance(app.screen, Chooser) and "Lessons" not in app.screen.TITLE_TEXT),
 }
 
@@ -81,6 +83,8 @@ async def test_a_program_with_a_syntax_error_opens_at_its_line(size: tuple[int, 
         assert app.panel_area.code is not None
         assert app.panel_area.code.error_line == 61
         assert any("line 61" in text for text in notices(app))
+        # The notice goes; the reason stays at the mark.
+        assert "line 61" in str(app.panel_area.code.border_subtitle)
 
 
 async def test_a_right_program_opens_as_before() -> None:

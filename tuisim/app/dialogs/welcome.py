@@ -31,7 +31,9 @@ _CHOICES = {
     Begin.LEARN: ("Learn", "Lessons, from the first run to a line follower"),
     Begin.OPEN: ("Open a file", "A program of your own, or one of the examples"),
 }
-_LATER = "Later: o opens a file, M the lessons, ? shows all keys, q quits."
+_KEYS = {"o": "open", "M": "lesson-menu", "question_mark": "help", "q": "quit"}
+"""Keys of the app that work here as well, with their actions."""
+_KEY_WORDS = "At any time: o opens a file, M the lessons, ? shows all keys, q quits."
 _NAME_CELLS = 18
 
 
@@ -41,8 +43,11 @@ class Welcome(Dialog[Begin]):
     TITLE_TEXT: str = "Welcome to tuisim"
     HINT: str = "1 2 3, or ↑ ↓ and Enter · Escape closes"
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(str(number), f"begin('{what}')", _CHOICES[what][0], show=False)
-        for number, what in enumerate(Begin, start=1)
+        *(
+            Binding(str(number), f"begin('{what}')", _CHOICES[what][0], show=False)
+            for number, what in enumerate(Begin, start=1)
+        ),
+        *(Binding(key, f"leave_for('{action}')", action, show=False) for key, action in _KEYS.items()),
     ]
 
     def content(self) -> ComposeResult:
@@ -55,7 +60,7 @@ class Welcome(Dialog[Begin]):
             markup=False,
         )
         yield Static()
-        yield Static(_LATER, markup=False)
+        yield Static(_KEY_WORDS, markup=False)
 
     def on_mount(self) -> None:
         self.query_one(OptionList).focus()
@@ -63,6 +68,11 @@ class Welcome(Dialog[Begin]):
     @on(OptionList.OptionSelected)
     def _chosen(self, event: OptionList.OptionSelected) -> None:
         self.dismiss(Begin(event.option.id or ""))
+
+    def action_leave_for(self, action: str) -> None:
+        """Close, and do what the key does in the app."""
+        self.dismiss(None)
+        self.app.call_later(self.app.run_action, f"app.act('{action}')")
 
     def action_begin(self, what: str) -> None:
         self.dismiss(Begin(what))

@@ -66,6 +66,8 @@ class Document:
         self._draft_pending = self._asking = False
         self._error_line = 0
         """Line of the current run's text at which it ended with an error; 0 for none, or once the text has changed."""
+        self._error_words = ""
+        """The syntax error at that line; empty for an error of a run."""
         self._ran: tuple[Recording, str] | None = None
         """A recording, and the text that it ran, as it was in the editor."""
 
@@ -87,7 +89,7 @@ class Document:
         """Show the line of a syntax error in the program that has been opened, if there is one."""
         if self._program is None or not (mistake := self._mistake()):
             return
-        self._error_line = mistake.line
+        self._error_line, self._error_words = mistake.line, mistake.message
         self._seeks_error = True
         self._panel_area.open("code")
         self.show()
@@ -140,7 +142,7 @@ class Document:
             code.set_title(self._name, self.dirty)
             self.run_changed()
             if self._error_line and not code.error_line:
-                code.mark_run_error(self._error_line)
+                code.mark_run_error(self._error_line, self._error_words)
             if self._seeks_error:
                 self._seeks_error = False
                 # A new panel has no size yet.
@@ -163,7 +165,7 @@ class Document:
 
     def run_ended_at(self, line: int) -> None:
         """Mark the line of the current run's text at which it ended with an error; 0 for none."""
-        self._error_line = line
+        self._error_line, self._error_words = line, ""
         if code := self._panel_area.code:
             code.mark_run_error(line)
 

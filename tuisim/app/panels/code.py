@@ -174,9 +174,14 @@ class Code(Vertical):
         """Set the breakpoint markers: `●` a breakpoint, `○` a disabled one, `◆` one with a condition."""
         self._area.set_breaks(breaks)
 
-    def mark_run_error(self, line: int) -> None:
-        """Mark the line of the run's text at which the run ended with an error, if it still exists; 0 for none."""
-        self.mark_error(self._line_shown(line))
+    def mark_run_error(self, line: int, words: str = "") -> None:
+        """Mark the line of the run's text at which the run ended with an error, if it still exists; 0 for none.
+
+        Args:
+            line: From 1, in the text of the run.
+            words: What is wrong, see `mark_error`.
+        """
+        self.mark_error(self._line_shown(line), words)
 
     @property
     def error_line(self) -> int:
