@@ -33,7 +33,7 @@ _CHOICES = {
 }
 _KEYS = {"o": "open", "M": "lesson-menu", "question_mark": "help", "q": "quit"}
 """Keys of the app that work here as well, with their actions."""
-_KEY_WORDS = "At any time: o opens a file, M the lessons, ? shows all keys, q quits."
+_KEY_WORDS = "Always: o opens a file, M the lessons, ? shows all keys, q quits."
 _NAME_CELLS = 18
 
 
