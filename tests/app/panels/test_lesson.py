@@ -462,3 +462,14 @@ async def test_running_an_edited_text_ends_the_run_of_the_former_one(tmp_path: P
         await pilot.press("y", "=", "2", "enter", "ctrl+r")
         await until(pilot, lambda: app.run_controller.run_id not in ("", first))
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+
+
+@pytest.mark.usefixtures("home")
+async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await pilot.press("M")
+        await until(pilot, lambda: isinstance(app.screen, Chooser) and app.screen.is_ready)
+        listed = app.screen.query_one(OptionList)
+        assert listed.region.bottom <= app.screen.query_one(".dialog").content_region.bottom
+        assert listed.show_vertical_scrollbar
