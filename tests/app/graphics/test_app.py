@@ -165,6 +165,8 @@ async def test_a_chart_falls_back_to_characters_and_returns_to_pixels() -> None:
         await _answered(pilot, ANSWERS[Protocol.KITTY])
         view = _fed(pilot, 5.0)
         await until(pilot, lambda: view._tiles is not None)
+        # On a busy machine the link is slow.
+        lab(pilot).picture_mode.is_slow = lambda: False
         lab(pilot).choose_cells(CellSet.HALF)
         assert view._tiles is None
         lab(pilot).choose_cells(AUTO)
