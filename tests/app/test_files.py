@@ -286,10 +286,10 @@ async def test_robot_obstacles_and_world_are_reloaded(folder: Path) -> None:
 
 @pytest.mark.slow
 async def test_the_command_opens_a_world_that_is_watched(folder: Path) -> None:
-    from tuisim.commands.resolve import prepare_app
+    from tuisim.commands.resolve import NO_CONFIG, prepare_app
     from tuisim.config.command_line import Arguments
 
-    prepared = prepare_app(["lab.toml"], Arguments(world=None, settings={}))
+    prepared = prepare_app(["lab.toml"], Arguments(world=None, settings={}), NO_CONFIG)
     assert prepared.world is not None
     opened = AppSettings(
         spec=prepared.spec,

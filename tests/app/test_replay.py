@@ -181,10 +181,10 @@ def test_a_search_is_for_words_anywhere(search: str, numbers: list[int]) -> None
 
 
 def test_the_namespace_of_the_command_has_the_run() -> None:
-    from tuisim.commands.resolve import prepare_replay
+    from tuisim.commands.resolve import NO_CONFIG, prepare_replay
 
     run_id = stored("print('A: 1')\n")
-    run, prepared = prepare_replay(run_id, [], Arguments(world=None, settings={"rays": True}))
+    run, prepared = prepare_replay(run_id, [], Arguments(world=None, settings={"rays": True}), NO_CONFIG)
     assert (run.id, prepared.settings.rays) == (run_id, True)
     assert prepared.program is not None
     assert prepared.program.text == "print('A: 1')\n"

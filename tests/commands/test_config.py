@@ -126,7 +126,12 @@ def test_the_app_opens_with_the_settings(
     (tmp_path / "p.py").write_text(PROGRAM)
     (tmp_path / "w.toml").write_text(WORLD)
     opened: list[Any] = []
-    monkeypatch.setattr(lab_app, "run_app", lambda settings: opened.append(settings) or 0)
+
+    def run_app(settings: Any) -> int:
+        opened.append(settings)
+        return 0
+
+    monkeypatch.setattr(lab_app, "run_app", run_app)
     monkeypatch.setattr(app_command, "has_terminal", lambda: True)
 
     here("open", *words)

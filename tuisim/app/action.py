@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -12,6 +13,7 @@ from rich.style import Style
 from rich.table import Table
 from rich.text import Text
 from textual import events
+from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
 from textual.dom import DOMNode
@@ -110,6 +112,14 @@ def _call(action: Action[Any, Any]) -> str:
     return f"act('{action.id}')"
 
 
+def with_keys_of(app: App[Any], text: str) -> str:
+    """Return a text with the keys of an app in place of the ids in braces."""
+    return app.with_keys(text) if isinstance(app, ActionHost) else text
+
+
+_ID = re.compile(r"\{([a-z-]+)\}")
+
+
 class ActionHost(DOMNode):
     """An app or a screen whose keys are lines of a table; the command palette offers them by title."""
 
@@ -156,7 +166,11 @@ class ActionHost(DOMNode):
 
     def say(self, text: str) -> None:
         """Show a short notice."""
-        self.app.notify(text, timeout=3, markup=False)
+        self.app.notify(self.with_keys(text), timeout=3, markup=False)
+
+    def with_keys(self, text: str) -> str:
+        """Return a text with the key of each action in place of its id in braces, such as `{run}`."""
+        return _ID.sub(lambda found: self.ACTIONS[found[1]].key_label if found[1] in self.ACTIONS else found[0], text)
 
     def complain(self, error: TuisimError) -> None:
         """Show an error."""

@@ -32,7 +32,6 @@ from tuisim.app.lesson import AppLesson
 from tuisim.app.loader import PERIOD_S, Loader
 from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages
-from tuisim.app.panels import PANELS
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
@@ -525,7 +524,7 @@ class LabApp(PanelMessages):
 
     def _hint_at_brick(self, what: str) -> None:
         if not self.panel_area.shown("brick"):
-            self.say(f"The program {what}: {PANELS['brick'].key} opens its panel")
+            self.say(f"The program {what}: {{panel-brick}} opens its panel")
 
     # Panels
 

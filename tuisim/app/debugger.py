@@ -437,7 +437,7 @@ class AppDebugger:
         """Go back by a number of executed lines."""
         here, recording = self._here(), self._run_controller.timeline.recording
         if here is None or recording is None:
-            self._app.say("No run yet: R runs the program")
+            self._app.say("No run yet: {run} runs the program")
         elif self._replay_debugger.busy:
             self._more_back += count
         else:

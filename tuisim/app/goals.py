@@ -110,7 +110,9 @@ class AppGoals:
             return
         hint = ""
         if self._recording is None:
-            hint = "R runs the program" if self._run_controller.program else "o opens a program"
+            hint = self._app.with_keys(
+                "{run} runs the program" if self._run_controller.program else "{open} opens a program"
+            )
         panel.show_goals(GoalsView(self._file.title, self._file.goals, self._judgements, hint))
 
     def update(self) -> None:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from tuisim.goals.files import GoalsFile
     from tuisim.runs.run_folder import StoredRun
 
-NOT_NOW = "Not available during a run: S stops it"
+NOT_NOW = "Not available during a run: {stop} stops it"
 
 
 class Loader:
@@ -153,7 +153,7 @@ class Loader:
             TuisimError: there is a run, or the change is impossible.
         """
         if self._run_controller.in_run:
-            raise TuisimError(NOT_NOW)
+            raise TuisimError(self._app.with_keys(NOT_NOW))
         return make(self._run_controller.next_run)
 
     def set_next_run(self, plan: NextRun) -> None:
@@ -194,7 +194,7 @@ class Loader:
         self._note_program(program, said)
         self._load(plan, program)
         self._apply_app_settings({}, said)
-        self._app.say(f"{program.name} is open: R runs it")
+        self._app.say(f"{program.name} is open: {{run}} runs it")
 
     def _note_program(self, program: Program | None, said: Mapping[str, Any]) -> None:
         self._magic_settings, self._file_prelude = said, program.prelude if program else ""
@@ -214,7 +214,7 @@ class Loader:
         self._load(plan, program)
         self._goals.open(goals)
         self._follow()
-        self._app.say(f"{Path(path).name} is open" + (": R runs its program" if named else ""))
+        self._app.say(f"{Path(path).name} is open" + (": {run} runs its program" if named else ""))
 
     def open_task(self, program_path: str, world: Mapping[str, Any], goals: GoalsFile) -> None:
         """Open a program in a world, given as settings, that is in no world file, with goals. Not during a run.
@@ -280,7 +280,9 @@ class Loader:
         self._app.run_changed(words, run.end.error_line if run.end else 0)
         for note in run.notes:
             self._app.say(note)
-        self._app.say(f"{_title(run)} is open: , < and g go back in it, R runs it again")
+        self._app.say(
+            f"{_title(run)} is open: {{back}} {{second-back}} and {{go-to}} go back in it, {{run}} runs it again"
+        )
         self._app.draw(force=True)
 
     # Files that change on the disk

@@ -81,7 +81,7 @@ class PanelMessages(ActionHost, TerminalApp):
             case ProgramCommand.NEW | ProgramCommand.OPEN:
                 self.action_act(message.command.value)
             case ProgramCommand.NONE:
-                self.say("No program to edit: o opens one, ctrl+t creates one")
+                self.say("No program to edit: {open} opens one, {new} creates one")
             case _:
                 assert_never(message.command)
 
@@ -150,9 +150,9 @@ class PanelMessages(ActionHost, TerminalApp):
         if message.buttons <= runs.pressed or (runs.in_run and not runs.in_past):
             runs.press(message.buttons)
         elif runs.in_run:
-            self.notify("The brick's buttons work only in the present: end returns to it", timeout=3)
+            self.say("The brick's buttons work only in the present: {now} returns to it")
         else:
-            self.notify("The brick's buttons work only while a program runs: R runs it", timeout=3)
+            self.say("The brick's buttons work only while a program runs: {run} runs it")
 
     def on_noise_changed(self, message: Noise.Changed) -> None:
         self.workspace.run_controller.set_noise(message.noise)

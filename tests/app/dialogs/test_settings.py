@@ -12,11 +12,12 @@ from textual.widgets import Input, OptionList
 from tests.app.app_help import LOGS, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.settings import SettingsScreen
+from tuisim.app.panels.world import World
 from tuisim.config.options import CellSet
 from tuisim.config.user_config import SETTINGS, load_config
 
 APPLIED: dict[str, tuple[list[str], object, Callable[[LabApp], bool]]] = {
-    "app.ultrasound": (["enter"], True, lambda app: app.panel_area.world.show_rays),
+    "app.ultrasound": (["enter"], True, lambda app: any(world.show_rays for world in app.query(World))),
     "app.theme": (["enter", "wait", "home", "end", "enter"], "light", lambda app: app.theme == "light"),
     "app.cells": (["enter", "wait", "end", "enter"], "ascii", lambda app: app.picture_mode.cells is CellSet.ASCII),
     "app.pixels": (["enter", "wait", "end", "enter"], "none", lambda app: app.pixels == "none"),
@@ -38,7 +39,7 @@ async def test_a_change_is_written_and_applies(path: str) -> None:
         listed.highlighted = listed.get_option_index(path)
         for key in keys:
             if key == "wait":
-                await until(pilot, lambda: app.screen is not screen and app.screen.is_ready)
+                await until(pilot, lambda: app.screen is not screen and getattr(app.screen, "is_ready", False))
             else:
                 await pilot.press(key)
         await until(pilot, lambda: load_config().written.get(path) == value)

@@ -9,6 +9,7 @@ import pytest
 from tests.app.app_help import LOGS, ready, screen_text, settings, until
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.app.app import LabApp
+from tuisim.app.guide.screen import GuideScreen
 from tuisim.app.keymap import with_keys
 from tuisim.config.user_config import UserConfig
 from tuisim.guide import tables
@@ -47,6 +48,25 @@ async def test_the_new_key_works_and_is_shown_and_the_old_one_does_nothing(tmp_p
         await until(pilot, lambda: "Pen up or down" in screen_text(app))
         row = next(row for row in screen_text(app).split("\n") if "Pen up or down" in row)
         assert row.partition("Pen up")[0].split()[-1] == "!"
+
+
+@pytest.mark.parametrize("panel", ["controls", "code"])
+async def test_notices_and_panels_name_the_new_key(panel: str, tmp_path: Path) -> None:
+    (tmp_path / "config.toml").write_text("[keys]\nopen = '!'\nrun = 'ctrl+k'\n")
+    async with LabApp(settings(panels_on=frozenset({panel}))).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: "! opens one" in screen_text(app))
+        await pilot.press("ctrl+k")
+        await until(pilot, lambda: [notice.message for notice in app._notifications] == ["No program yet: ! opens one"])
+
+
+async def test_the_welcome_obeys_the_new_key(tmp_path: Path) -> None:
+    (tmp_path / "config.toml").write_text("[keys]\nhelp = '!'\n")
+    async with LabApp(settings(welcomes=True)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: "! shows all keys" in screen_text(app))
+        await pilot.press("exclamation_mark")
+        await until(pilot, lambda: isinstance(app.screen, GuideScreen))
 
 
 async def test_a_wrong_file_is_told_and_the_app_works_with_what_is_right(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING
 
 from tuisim.app.action import key_groups, theme_list
@@ -100,10 +101,10 @@ def welcome(workspace: Workspace) -> None:
 
 
 _START = (
-    "Press o to open an example, then R to run it; S stops it, space pauses it. b selects another mat. "
-    "Drag the robot with the mouse or move it with the arrow keys: the readings follow. Each line that a program "
-    "prints as a name, a colon and a number, such as Colour: 86.3, is added to the log and the chart. e exports the "
-    "log to a file."
+    "Press {open} to open an example, then {run} to run it; {stop} stops it, {pause} pauses it. {mats} selects another "
+    "mat. Drag the robot with the mouse or move it with the arrow keys: the readings follow. Each line that a program "
+    "prints as a name, a colon and a number, such as Colour: 86.3, is added to the log and the chart. {export} exports "
+    "the log to a file."
 )
 _NUDGES = (
     ("← ↑ → ↓", "Move the robot 10 mm"),
@@ -122,7 +123,7 @@ def show_help(workspace: Workspace) -> None:
 
     groups = key_groups(action for action in workspace.app.ACTIONS.values() if not action.id.startswith("nudge-"))
     groups["Robot"] += _NUDGES
-    keys = KeyPage("All keys", _START, {**groups, "In the code": EDITOR_KEYS, "": EVERYWHERE})
+    keys = KeyPage("All keys", workspace.app.with_keys(_START), {**groups, "In the code": EDITOR_KEYS, "": EVERYWHERE})
     workspace.app.push_screen(GuideScreen(keys, TOPICS.get(workspace.panel_area.focused_panel(), Topic())))
 
 
@@ -138,6 +139,15 @@ def choose_cells(workspace: Workspace) -> None:
             app.keep_setting(CELL_SET, None if name == AUTO else name)
 
     app.push_screen(CellsCard(app.picture_mode.chosen, app.picture_mode.best), chosen)
+
+
+def open_settings(workspace: Workspace) -> None:
+    """Open the settings screen."""
+    from tuisim.app.dialogs.settings import SettingsScreen
+    from tuisim.app.setup.user_settings import change
+    from tuisim.app.terminal.themes import theme_names
+
+    workspace.app.push_screen(SettingsScreen(partial(change, workspace), theme_names()))
 
 
 def choose_theme(workspace: Workspace) -> None:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def clear_log(workspace: Workspace) -> None:
     """Clear the logged data from the output and the chart; the run keeps its log."""
     workspace.panel_area.clear_log()
-    workspace.app.say("Output and chart cleared. The run keeps its log: l analyses it, e exports it")
+    workspace.app.say("Output and chart cleared. The run keeps its log: {analyse} analyses it, {export} exports it")
 
 
 def open_program(workspace: Workspace) -> None:

@@ -11,7 +11,7 @@ from functools import lru_cache, partial
 from typing import TypeAlias
 
 from tuisim.app.action import Action
-from tuisim.app.actions import app, files, lesson, program, robot, settings, time_travel
+from tuisim.app.actions import app, files, lesson, program, robot, time_travel
 from tuisim.app.actions.files import analyse
 from tuisim.app.layout.arrangement import Preset
 from tuisim.app.panels import PANELS
@@ -29,14 +29,14 @@ LabAction: TypeAlias = Action[Workspace, Situation]
 
 def _can_run(now: Situation) -> str:
     if not now.has_program:
-        return "No program yet: o opens one"
+        return "No program yet: {open} opens one"
     if now.in_past:
         return ""
-    return "The program is already running: S stops it" if now.state in IN_RUN else ""
+    return "The program is already running: {stop} stops it" if now.state in IN_RUN else ""
 
 
 def _can_stop(now: Situation) -> str:
-    return "" if now.state in IN_RUN else "Nothing is running: R runs the program"
+    return "" if now.state in IN_RUN else "Nothing is running: {run} runs the program"
 
 
 def _can_pause(now: Situation) -> str:
@@ -47,12 +47,12 @@ def _can_step(now: Situation) -> str:
     if now.state == RunPhase.PAUSED or now.in_past:
         return ""
     if now.state in IN_RUN:
-        return "Works only while paused: space pauses"
-    return "The run has ended: , goes back" if now.has_run else _can_stop(now)
+        return "Works only while paused: {pause} pauses"
+    return "The run has ended: {back} goes back" if now.has_run else _can_stop(now)
 
 
 def _can_look_back(now: Situation) -> str:
-    return "" if now.has_run else "No run yet: R runs the program"
+    return "" if now.has_run else "No run yet: {run} runs the program"
 
 
 def _can_look_on(now: Situation) -> str:
@@ -64,11 +64,11 @@ def _can_come_back(now: Situation) -> str:
 
 
 def _can_change_world(now: Situation) -> str:
-    return "Not available during a run: S stops it" if now.state in IN_RUN else ""
+    return "Not available during a run: {stop} stops it" if now.state in IN_RUN else ""
 
 
 def _can_export(now: Situation) -> str:
-    return "" if now.has_run else "No log yet: R runs the program"
+    return "" if now.has_run else "No log yet: {run} runs the program"
 
 
 def _nudge(key: str, words: str, forward: tuple[float, float]) -> LabAction:
@@ -119,11 +119,11 @@ def _layouts() -> list[LabAction]:
 
 
 def _can_branch(now: Situation) -> str:
-    return "" if now.in_past else "A branch starts in the past: , goes back"
+    return "" if now.in_past else "A branch starts in the past: {back} goes back"
 
 
 def _can_debug(now: Situation) -> str:
-    return "" if now.has_program or now.has_run else "No program yet: o opens one"
+    return "" if now.has_program or now.has_run else "No program yet: {open} opens one"
 
 
 def _debugs() -> list[LabAction]:
@@ -213,7 +213,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("help", "question_mark", "Guide: keys, pages, search", APP, app.show_help, footer="help"),
         Action("cells", "V", "Glyphs of the world: choose by eye", APP, app.choose_cells),
         Action("theme", "f10", "Theme: light, high contrast and others", APP, app.choose_theme),
-        Action("settings", "asterisk", "Settings: your own defaults", APP, settings.show),
+        Action("settings", "asterisk", "Settings: your own defaults", APP, app.open_settings),
         Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, app.redraw),
         Action("screenshot", "I,f12", _SCREENSHOT, APP, app.screenshot, shown_key="I"),
         Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, app.suspend),

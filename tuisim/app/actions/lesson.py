@@ -21,7 +21,11 @@ def answer(workspace: Workspace) -> None:
     lesson = workspace.lesson
     step = lesson.step
     if step is None or not isinstance(step.check, LessonQuestion):
-        words = "The lesson is done: M opens another" if lesson.lesson else "No lesson is open: M opens one"
+        words = (
+            "The lesson is done: {lesson-menu} opens another"
+            if lesson.lesson
+            else "No lesson is open: {lesson-menu} opens one"
+        )
         workspace.app.say("This step has no question: the lesson panel says what it waits for" if step else words)
         return
     forms = [(f"{number}", choice) for number, choice in enumerate(step.check.choices, start=1)]

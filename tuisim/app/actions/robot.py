@@ -5,7 +5,6 @@ from __future__ import annotations
 from random import Random
 from typing import TYPE_CHECKING
 
-from tuisim.app.panels import PANELS
 from tuisim.app.setup import next_run as plans
 from tuisim.config.mats import mats
 from tuisim.core.geometry import Pose
@@ -119,7 +118,7 @@ def world_panel(workspace: Workspace) -> World | None:
     """Return the world panel; None, with a notice, if it is hidden."""
     if workspace.panel_area.shown("world"):
         return workspace.panel_area.world
-    workspace.app.say(f"The world is hidden: {PANELS['world'].key} shows it")
+    workspace.app.say("The world is hidden: {panel-world} shows it")
     return None
 
 

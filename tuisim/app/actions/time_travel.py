@@ -38,7 +38,7 @@ def _is_laid_out(workspace: Workspace, recording: Recording) -> bool:
     mat = workspace.run_controller.mat
     if mat is not None and mat.key[:2] == mat_key(recording.spec)[:2]:
         return True
-    workspace.app.say(f"The mat has changed since this run: h opens {recording.name} with its mat")
+    workspace.app.say(f"The mat has changed since this run: {{runs}} opens {recording.name} with its mat")
     return False
 
 

@@ -11,6 +11,7 @@ from textual.binding import Binding, BindingType
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
+from tuisim.app.action import ActionHost, with_keys_of
 from tuisim.app.dialogs.dialog import Dialog, name_and_title
 
 
@@ -31,9 +32,9 @@ _CHOICES = {
     Begin.LEARN: ("Learn", "Lessons, from the first run to a line follower"),
     Begin.OPEN: ("Open a file", "A program of your own, or one of the examples"),
 }
-_KEYS = {"o": "open", "M": "lesson-menu", "question_mark": "help", "q": "quit"}
-"""Keys of the app that work here as well, with their actions."""
-_KEY_WORDS = "Always: o opens a file, M the lessons, ? shows all keys, q quits."
+_ACTIONS = ("open", "lesson-menu", "help", "quit")
+"""Actions of the app whose keys work here as well."""
+_KEY_WORDS = "Always: {open} opens a file, {lesson-menu} the lessons, {help} shows all keys, {quit} quits."
 _NAME_CELLS = 18
 
 
@@ -46,8 +47,7 @@ class Welcome(Dialog[Begin]):
         *(
             Binding(str(number), f"begin('{what}')", _CHOICES[what][0], show=False)
             for number, what in enumerate(Begin, start=1)
-        ),
-        *(Binding(key, f"leave_for('{action}')", action, show=False) for key, action in _KEYS.items()),
+        )
     ]
 
     def content(self) -> ComposeResult:
@@ -60,9 +60,13 @@ class Welcome(Dialog[Begin]):
             markup=False,
         )
         yield Static()
-        yield Static(_KEY_WORDS, markup=False)
+        yield Static(with_keys_of(self.app, _KEY_WORDS), markup=False)
 
     def on_mount(self) -> None:
+        actions = self.app.ACTIONS if isinstance(self.app, ActionHost) else {}
+        for name in _ACTIONS if actions else ():
+            for key in actions[name].key.split(","):
+                self._bindings.bind(key, f"leave_for('{name}')", name, show=False)
         self.query_one(OptionList).focus()
 
     @on(OptionList.OptionSelected)

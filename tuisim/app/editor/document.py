@@ -305,7 +305,7 @@ class Document:
             then: Called after it was saved.
         """
         if self._program is None:
-            self._app.say("No program to save: o opens one")
+            self._app.say("No program to save: {open} opens one")
             return
         path = Path(self._path)
         if self._path and self._is_file and not is_protected(path):

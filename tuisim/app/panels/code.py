@@ -16,7 +16,7 @@ from textual.message import Message
 from textual.widgets import TextArea
 from textual.widgets.text_area import Selection
 
-from tuisim.app.action import EMACS_KEYS, TYPING_KEYS, VIM_KEYS, KeyWord
+from tuisim.app.action import EMACS_KEYS, TYPING_KEYS, VIM_KEYS, KeyWord, with_keys_of
 from tuisim.app.editor.area import FIND, LINE, CodeArea, EditorCommand, FindBar
 from tuisim.app.editor.motions import Mode
 from tuisim.app.editor.text_lines import LineMap, places
@@ -29,7 +29,7 @@ LIT_GAP_S = 0.1
 """Minimum time between two moves of the highlight while the program runs: more often would only flicker."""
 
 _TITLE = PANELS["code"].title
-NOTHING_OPEN = "No program: o opens one, ctrl+t creates one"
+NOTHING_OPEN = "No program: {open} opens one, {new} creates one"
 _HINT_KEYS = 4
 """So many keys fit the frame."""
 
@@ -98,11 +98,15 @@ class Code(Vertical):
         """What is wrong in the line that is marked as an error, as far as it is known."""
 
     def compose(self) -> ComposeResult:
-        self._area.placeholder = NOTHING_OPEN
+        self._area.placeholder = self._nothing_open
         yield self._area
         yield self._bar
 
     # Display
+
+    @property
+    def _nothing_open(self) -> str:
+        return with_keys_of(self.app, NOTHING_OPEN)
 
     @property
     def cursor_line(self) -> int:
@@ -127,7 +131,7 @@ class Code(Vertical):
             self._key, self._run_lines, self._mapped, self._line = key, None, None, 0
             self._area.light(0)
             self._area.set_error(0)
-            self._area.placeholder = "" if name else NOTHING_OPEN
+            self._area.placeholder = "" if name else self._nothing_open
             self._area.load_program(text)
             self._area.scroll_to(y=0, animate=False, force=True)
             if not name:

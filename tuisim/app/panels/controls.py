@@ -9,7 +9,7 @@ from rich.style import Style
 from rich.text import Text
 from textual.reactive import reactive
 
-from tuisim.app.action import ACT, ActionWords
+from tuisim.app.action import ACT, ActionWords, with_keys_of
 from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot, end_label, speed_label
 
 _LABEL_CELLS = 9
@@ -43,6 +43,9 @@ class Controls(ActionWords, can_focus=False):
         style = self.get_component_rich_style(name, partial=True)
         return Text(f" {text} ", style + Style(meta={ACT: action}))
 
+    def _key(self, action: str) -> str:
+        return with_keys_of(self.app, f"{{{action}}}")
+
     def _line(self, label: str, *parts: str | Text) -> Text:
         line = Text()
         line.append(f"{label:<{_LABEL_CELLS}}", self.get_component_rich_style("controls--label", partial=True))
@@ -61,20 +64,23 @@ class Controls(ActionWords, can_focus=False):
         in_run = now.state in IN_RUN
         buttons = Text(" ").join(
             (
-                self._button("R Run", "run", bool(self.program) and not in_run),
-                self._button("S Stop", "stop", in_run),
+                self._button(f"{self._key('run')} Run", "run", bool(self.program) and not in_run),
+                self._button(f"{self._key('stop')} Stop", "stop", in_run),
                 self._button("Resume" if now.state == RunPhase.PAUSED else "Pause", "pause", in_run),
             )
         )
         spec = now.spec
-        slower, faster = (self._button(key, to, True) for key, to in (("[", "slower"), ("]", "faster")))
+        slower, faster = (
+            self._button(key, to, True)
+            for key, to in ((self._key("slower"), "slower"), (self._key("faster"), "faster"))
+        )
         noise = now.instant.noise
         lines = [
             buttons,
             Text(),
             self._line("State", self._state(now)),
             self._line("Speed", slower, f" {speed_label(now.speed):^4} ", faster),
-            self._line("Program", self.program or "none: o opens one"),
+            self._line("Program", self.program or f"none: {self._key('open')} opens one"),
             self._line("Mat", Path(spec.world.background).name),
             self._line("Robot", spec.robot.name),
             self._line("Profile", f"{spec.profile.name}, seed {spec.seed}"),

@@ -19,11 +19,12 @@ from textual.strip import Strip
 from textual.widget import Widget
 from textual.widgets import Input, Static
 
+from tuisim.app.action import with_keys_of
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.errors import counted
 from tuisim.runs.records import OutputRow, Stream, line_of
 
-BEFORE_A_RUN = "What the program prints appears here: R runs it"
+BEFORE_A_RUN = "What the program prints appears here: {run} runs it"
 
 
 class Answer(Input):
@@ -110,7 +111,7 @@ class Output(Vertical):
 
     def show(self, snapshot: Snapshot) -> None:
         """Say before the first run what appears here; rows arrive through `add`."""
-        self._log.say_if_empty(BEFORE_A_RUN if snapshot.state is RunPhase.IDLE else "")
+        self._log.say_if_empty(with_keys_of(self.app, BEFORE_A_RUN) if snapshot.state is RunPhase.IDLE else "")
 
 
 KEPT_LINES = 2000

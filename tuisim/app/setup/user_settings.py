@@ -1,9 +1,8 @@
-"""The key of the settings, and what a change does at once."""
+"""A change of one of the user's settings in the app: it is written, and applies at once where it can."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from tuisim.config.options import FileValue
@@ -44,11 +43,3 @@ def change(workspace: Workspace, one: Setting, value: FileValue | None) -> None:
         apply(workspace, load_config().values.get(one.path, one.in_file.usual))
         workspace.app.situation_changed()
         workspace.app.draw(force=True)
-
-
-def show(workspace: Workspace) -> None:
-    """Open the settings screen."""
-    from tuisim.app.dialogs.settings import SettingsScreen
-    from tuisim.app.terminal.themes import theme_names
-
-    workspace.app.push_screen(SettingsScreen(partial(change, workspace), theme_names()))
