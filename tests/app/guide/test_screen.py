@@ -86,9 +86,8 @@ async def test_the_page_of_the_panel_with_the_focus(panel: str, place: str, word
 async def test_the_scroll_bar_covers_no_letter() -> None:
     async with LabApp(settings()).run_test(size=SMALL) as pilot:
         screen = await opened(pilot, "G")
-        drawn_for = screen._width
-        await until(pilot, lambda: screen._page.max_scroll_y > 0)
-        assert screen._page.scrollable_content_region.width == drawn_for
+        page = screen._page
+        await until(pilot, lambda: page.max_scroll_y > 0 and page.scrollable_content_region.width == screen._width)
 
 
 @pytest.mark.quick_cases("take a screenshot")
