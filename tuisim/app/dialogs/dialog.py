@@ -9,10 +9,16 @@ from rich.text import Text
 from textual.app import ComposeResult
 from textual.await_complete import AwaitComplete
 from textual.binding import Binding, BindingType
+from textual.color import Color
 from textual.containers import Vertical
+from textual.geometry import Region
 from textual.message import Message
+from textual.renderables.background_screen import BackgroundScreen
 from textual.screen import ModalScreen
+from textual.strip import Strip
 from textual.widgets import Static
+
+from tuisim.app.terminal.cell_view import JoinedStrip, LazyStrip
 
 Result = TypeVar("Result")
 
@@ -28,6 +34,16 @@ def name_and_title(name: str, title: str, name_cells: int) -> Table:
     # A user-defined name is no markup.
     table.add_row(Text(name), Text(title))
     return table
+
+
+_TRANSPARENT = Color(0, 0, 0, 0)
+
+
+def _without_links(strip: Strip) -> Strip:
+    """Return a part of the screen below a dialog, where nothing can be clicked."""
+    if isinstance(strip, LazyStrip):
+        return strip
+    return Strip(BackgroundScreen.process_segments(strip, _TRANSPARENT), strip.cell_length)
 
 
 class ClosesOnce(ModalScreen[Result], Generic[Result]):
@@ -77,6 +93,21 @@ class ClosesOnce(ModalScreen[Result], Generic[Result]):
             above.dismiss(None)
         self.app.post_message(self.Changed())
         return super().dismiss(result)
+
+    def render_lines(self, crop: Region) -> list[Strip]:
+        """Return what is below the dialog. Textual would make plain text of it, and pictures lose their pixels."""
+        stack = self.app.screen_stack
+        at = stack.index(self) if self in stack else 0
+        if not at or self.styles.background.a:
+            return super().render_lines(crop)
+        rows = Region(0, crop.y, self.size.width, crop.height)
+        chops = stack[at - 1]._compositor._render_chops(rows, rows.line_range.__contains__)
+        return [
+            JoinedStrip([_without_links(part) for part in chops[y].values() if part]).crop_extend(
+                *crop.column_span, self.rich_style
+            )
+            for y in crop.line_range
+        ]
 
     async def _on_message(self, message: Message) -> None:
         # Widgets of a closed screen may still post messages, such as a second Enter.

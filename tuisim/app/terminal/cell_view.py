@@ -497,6 +497,34 @@ class PictureStrip(CellStrip):
         return PictureStrip(self.parts[start:end])
 
 
+class JoinedStrip(LazyStrip):
+    """A row of several strips, each of which stays what it is.
+
+    Args:
+        parts: From left to right.
+    """
+
+    __slots__ = ["parts"]
+
+    def __init__(self, parts: Sequence[Strip]) -> None:
+        self.parts = [part for part in parts if part.cell_length]
+        self._begin(sum(part.cell_length for part in self.parts))
+
+    def _make(self) -> list[Segment]:
+        return [segment for part in self.parts for segment in part]
+
+    def _part(self, start: int, end: int) -> JoinedStrip:
+        return JoinedStrip(self._cut(start, end))
+
+    def _cut(self, start: int, end: int) -> list[Strip]:
+        """Return the parts between two columns."""
+        cut, at = [], 0
+        for part in self.parts:
+            cut.append(part.crop(max(start - at, 0), max(min(end - at, part.cell_length), 0)))
+            at += part.cell_length
+        return cut
+
+
 def _in_halves(picture: Pixels, width: int, height: int) -> Pixels:
     """Return an image of two pixels in a cell with so many points across and down a cell."""
     upper, lower = picture[0::2].repeat(height // 2, axis=0), picture[1::2].repeat(height - height // 2, axis=0)

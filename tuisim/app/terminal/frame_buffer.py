@@ -20,9 +20,8 @@ from textual.strip import SGR_STYLES, Strip
 
 from tuisim.app.graphics.picture import PictureCell, TilePicture
 from tuisim.app.render.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR, sgr_index
-from tuisim.app.terminal.cell_view import CellStrip, PictureStrip
+from tuisim.app.terminal.cell_view import CellStrip, JoinedStrip, PictureStrip
 from tuisim.app.terminal.plain import as_ascii
-from tuisim.app.terminal.plot_view import PlotStrip
 from tuisim.charts.glyphs import GLYPHS
 
 _SEEN_ON_BLANKS = frozenset({"4", "7", "9", "21", "51", "52", "53"})
@@ -155,7 +154,7 @@ def _pieces_of_part(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
 
 
 def _cells(strip: Strip, mode: TextMode) -> Sequence[Cell]:
-    if isinstance(strip, PlotStrip):
+    if isinstance(strip, JoinedStrip):
         return [cell for part in strip.parts for cell in _cells(part, mode)]
     if isinstance(strip, PictureStrip):
         return [

@@ -13,7 +13,7 @@ from textual.geometry import Region
 from textual.strip import Strip
 
 from tuisim.app.graphics.picture import Graphics, TilePicture
-from tuisim.app.terminal.cell_view import LazyStrip, LinesView, PictureStrip
+from tuisim.app.terminal.cell_view import JoinedStrip, LinesView, PictureStrip
 from tuisim.app.terminal.picture_mode import picture_mode_of
 from tuisim.app.terminal.sharpness import Sharpness
 from tuisim.charts.canvas import AXIS
@@ -33,7 +33,7 @@ _STILL_S = 1.0
 """A chart that has not changed for this long stands still; while data arrive, it is drawn a few times a second."""
 
 
-class PlotStrip(LazyStrip):
+class PlotStrip(JoinedStrip):
     """A row of text and parts of a picture.
 
     Args:
@@ -41,24 +41,17 @@ class PlotStrip(LazyStrip):
         spare: Returns the row with characters only, for what cannot show pixels.
     """
 
-    __slots__ = ["_spare", "parts"]
+    __slots__ = ["_spare"]
 
     def __init__(self, parts: Sequence[Strip], spare: Callable[[], Strip]) -> None:
-        self.parts = parts
+        super().__init__(parts)
         self._spare = spare
-        self._begin(sum(part.cell_length for part in parts))
 
     def _make(self) -> list[Segment]:
         return list(self._spare())
 
     def _part(self, start: int, end: int) -> PlotStrip:
-        cut, at = [], 0
-        for part in self.parts:
-            first, last = max(start - at, 0), min(end - at, part.cell_length)
-            if first < last:
-                cut.append(part.crop(first, last))
-            at += part.cell_length
-        return PlotStrip(cut, lambda: self._spare().crop(start, end))
+        return PlotStrip(self._cut(start, end), lambda: self._spare().crop(start, end))
 
 
 class PlotView(LinesView):
@@ -159,7 +152,7 @@ class PlotView(LinesView):
             return strip
         left, right = self._spans[y]
         parts = strip.crop(0, left), PictureStrip(self._tiles.row(y)[left:right]), strip.crop(right)
-        made = PlotStrip([part for part in parts if part.cell_length], partial(self._spare_line, y))
+        made = PlotStrip(parts, partial(self._spare_line, y))
         self._text_strips[y] = made
         return made
 
