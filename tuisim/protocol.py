@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import signal
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from enum import StrEnum
@@ -71,6 +72,8 @@ class ExecutedLine:
 
 
 PROTOCOL_VERSION = 4
+COMMAND_SIGNAL, STACK_SIGNAL = signal.SIGRTMIN + 11, signal.SIGRTMIN + 12
+"""To the child: a command has been sent; write the stack to a file. A program has SIGUSR1 and SIGUSR2 for itself."""
 
 
 class End(StrEnum):

@@ -7,11 +7,13 @@ from tests.proof.damage import DAMAGE
 from tests.proof.failures import FAILURES
 from tests.proof.kind import Kind
 from tests.proof.monkey import MONKEY
+from tests.proof.zoo import ZOO
 
 KINDS: dict[str, Kind] = {
     "damage": DAMAGE,
     "crashes": CRASHES,
     "failures": FAILURES,
     "monkey": MONKEY,
+    "zoo": ZOO,
 }
 """Every kind by name."""

@@ -199,3 +199,22 @@ def test_a_program_whose_name_is_not_utf_8_runs_and_is_listed(here: Command, tmp
     program.write_text("print('A: 1')\n")
     assert here("run", program).stdout == "A: 1\n"
     assert "caf?.py" in here("runs", "list").stdout
+
+
+OWN_SIGNALS = {
+    "a handler that raises": (
+        "import signal, time\ndef f(*_): 1 / 0\nfor n in (signal.SIGUSR1, signal.SIGUSR2): signal.signal(n, f)\n"
+        "while True: time.sleep(1)",
+        "stopped",
+    ),
+    "no handler": ("import signal\nsignal.raise_signal(signal.SIGUSR1)", "crashed"),
+    "without a name": ("import signal\nsignal.raise_signal(40)", "crashed"),
+}
+
+
+@pytest.mark.parametrize(("text", "end"), OWN_SIGNALS.values(), ids=OWN_SIGNALS)
+def test_signals_are_the_programs(start: Start, text: str, end: str) -> None:
+    handle = start(text, prelude="none", live=True)
+    until(handle, lambda: handle.telemetry.count > 2 or handle.ended is not None)
+    handle.stop()
+    assert over(handle).ended.end == end

@@ -29,7 +29,7 @@ HARD_TO_STOP = {
     "print flood": "i = 0\nwhile True:\n    print('A:', i)\n    i += 1",
     "memory": "x = []\nwhile True:\n    x.append(bytearray(100_000))\n    if len(x) > 5000: x.clear()",
     "threads": "import threading\ndef f():\n    while True: pass\nt = threading.Thread(target=f)\nt.start()\nt.join()",
-    "ignores signals": "import signal\nsignal.signal(signal.SIGUSR1, signal.SIG_IGN)\nwhile True: pass",
+    "ignores signals": "import signal\nfor n in range(34, 65): signal.signal(n, signal.SIG_IGN)\nwhile True: pass",
     "endless cleaning up": "try:\n    while True: pass\nfinally:\n    while True: pass",
 }
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import select
-import signal
 import subprocess
 import time
 from collections.abc import Hashable, Mapping
@@ -24,7 +23,9 @@ from tuisim.core.profile import due_ns
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.errors import HostError, LogError
 from tuisim.protocol import (
+    COMMAND_SIGNAL,
     PROTOCOL_VERSION,
+    STACK_SIGNAL,
     Answer,
     End,
     Ended,
@@ -383,7 +384,7 @@ class RunHandle:
                 self.waiting_for_reply = False
         # If it cannot be written completely, the child is gone or stuck: pump() handles that.
         if write_command(self._command_fd, command.encode()):
-            self._signal(signal.SIGUSR1)
+            self._signal(COMMAND_SIGNAL)
 
     def stop(self) -> None:
         """Ask the program to stop; `pump` or `wait` kill the child if it does not."""
@@ -423,7 +424,7 @@ class RunHandle:
                 self._read_stack_and_kill()
             elif self.started and now - self._asked_at > ASK_AGAIN_S:
                 self._asked_at = now
-                self._signal(signal.SIGUSR1)
+                self._signal(COMMAND_SIGNAL)
         elif self._options.stall_limit_s and not self.paused:
             tick = self._ticks()
             if tick != self._progress[0] or self.waiting_for_reply or self.waiting_for_input is not None:
@@ -435,7 +436,7 @@ class RunHandle:
         if not self._stack_asked:
             # faulthandler writes the stack even from inside a C call, within this one signal.
             self._stack_asked = self._stop_at is None
-            self._signal(signal.SIGUSR2)
+            self._signal(STACK_SIGNAL)
             await_stack(self.folder)
         end_group(self._process.pid)
 

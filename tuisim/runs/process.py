@@ -297,10 +297,18 @@ def what_ended(exit_status: int, folder: Path, line: int) -> str:
     """Return the reason why a child ended without an event: a signal and a line, or exit status and error text."""
     if exit_status < 0:
         where = f" in line {line}" if line else ""
-        return f"the program's process was ended by {signal.Signals(-exit_status).name}{where}"
+        return f"the program's process was ended by {_signal_name(-exit_status)}{where}"
     log = (folder / "child.log").read_text("utf-8", "replace").strip()
     last = f": {source_lines(log)[-1]}" if log else ""
     return f"the program's process ended with exit status {exit_status}{last}"
+
+
+def _signal_name(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        # Most real-time signals have no name of their own.
+        return f"signal {number}"
 
 
 class _Envelope(msgspec.Struct):

@@ -14,7 +14,7 @@ import types
 from pathlib import Path
 
 from tuisim.atomic import private
-from tuisim.protocol import End
+from tuisim.protocol import COMMAND_SIGNAL, STACK_SIGNAL, End
 from tuisim.runtime import wallclock
 from tuisim.runtime.control import ATTENTION
 from tuisim.runtime.session import Session
@@ -65,13 +65,13 @@ class Interrupts:
         """Install the handlers.
 
         Args:
-            folder: Run folder; SIGUSR2 writes the stack there, even inside a long C call.
+            folder: Run folder; a signal writes the stack there, even inside a long C call.
         """
         self._stack_file = os.fdopen(private(str(folder / STACK_FILE), os.O_WRONLY | os.O_CREAT | os.O_TRUNC), "w")
         # Crashes such as SIGSEGV are written there, too.
         _enable(self._stack_file, all_threads=False)
-        _register(signal.SIGUSR2, file=self._stack_file, all_threads=False)
-        signal.signal(signal.SIGUSR1, self._on_command)
+        _register(STACK_SIGNAL, file=self._stack_file, all_threads=False)
+        signal.signal(COMMAND_SIGNAL, self._on_command)
         wallclock.set_signal(signal.SIGALRM, self._on_alarm)
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         if self._session.limits.stall_s:

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, NoReturn
 
+from tuisim.protocol import COMMAND_SIGNAL, STACK_SIGNAL
 from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.loader import LOOP_HOOK
@@ -117,7 +118,7 @@ def _freeze(session: Session, scheduler: Scheduler) -> None:
     setattr(builtins, LOOP_HOOK, lambda: None)
     silent: Any = session.output
     silent.row, silent.after_write = lambda *_: None, lambda: None
-    for number in (signal.SIGUSR1, signal.SIGUSR2, signal.SIGVTALRM):
+    for number in (COMMAND_SIGNAL, STACK_SIGNAL, signal.SIGVTALRM):
         signal.signal(number, signal.SIG_IGN)
 
 
