@@ -41,6 +41,9 @@ def attempt(kind: str, seed: int, most_s: float) -> Result:
         if text := fault_of(KINDS[kind], name):
             faults.append(name)
             print(f"FAULT  {kind} --case {name}\n{text}", flush=True)
+    if not count and most_s > 0:
+        faults.append("none")
+        print(f"FAULT  {kind}: it has no case", flush=True)
     return Result(kind, count, time.monotonic() - start_s, tuple(faults))
 
 

@@ -15,7 +15,7 @@ from tests.proof.kind import FaultError
 from tests.running import PATIENCE_S
 
 _STRACE = ("strace", "-f", "--seccomp-bpf", "-qq", "-y")
-_CALL = re.compile(r"(?P<process>\d+) (?P<call>\w+)\((?P<rest>.*)")
+_CALL = re.compile(r"(?P<process>\d+) +(?P<call>\w+)\((?P<rest>.*)")
 
 
 @dataclass(frozen=True, slots=True)

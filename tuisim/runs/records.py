@@ -14,6 +14,7 @@ import errno
 import mmap
 import os
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import IntEnum, StrEnum
 from pathlib import Path
@@ -165,7 +166,9 @@ class _Writer:
 
     def _close(self, used: int) -> None:
         self._unmap()
-        os.ftruncate(self._fd, used)
+        # The header says what is used, so the rest may stay.
+        with suppress(OSError):
+            os.ftruncate(self._fd, used)
         os.close(self._fd)
 
 
