@@ -7,6 +7,7 @@ from tests.proof.damage import DAMAGE
 from tests.proof.failures import FAILURES
 from tests.proof.kind import Kind
 from tests.proof.monkey import MONKEY
+from tests.proof.stateful import STATEFUL
 from tests.proof.zoo import ZOO
 
 KINDS: dict[str, Kind] = {
@@ -15,5 +16,6 @@ KINDS: dict[str, Kind] = {
     "failures": FAILURES,
     "monkey": MONKEY,
     "zoo": ZOO,
+    "stateful": STATEFUL,
 }
 """Every kind by name."""

@@ -185,6 +185,11 @@ class Palette(CommandPalette, ClosesOnce[None]):
         if self.query_one(CommandList).size:
             super()._action_command_list(action)
 
+    def _on_click(self, event: events.Click) -> None:  # type: ignore[override]
+        # Where the terminal was until it became smaller there is nothing any more to be found.
+        if not self.region.contains(event.screen_x, event.screen_y):
+            event.prevent_default()
+
 
 def theme_list() -> Palette:
     """Return Textual's list of themes."""

@@ -181,6 +181,17 @@ async def test_no_palette_opens_above_a_dialog() -> None:
             await until(pilot, lambda: len(app.screen_stack) == 1, key)
 
 
+async def test_a_click_on_the_palette_where_the_terminal_was_does_no_harm() -> None:
+    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: isinstance(app.screen, Palette) and app.screen.is_ready)
+        event = events.Click(app.screen, 0, 50, 0, 0, 1, False, False, False, screen_x=0, screen_y=50)
+        app.screen.post_message(event)
+        await pilot.pause()
+        assert isinstance(app.screen, Palette)
+
+
 @pytest.mark.parametrize(
     "above", [lambda: GuideScreen(KeyPage("Help", "", {}), Topic()), Palette], ids=["help", "palette"]
 )
