@@ -117,7 +117,13 @@ def test_a_batch_gives_everybody_the_same(config: Path, tmp_path: Path, here: Co
 
 @pytest.mark.parametrize(
     ("words", "noise"),
-    [pytest.param(["p.py"], 7, id="a program"), pytest.param(["w.toml"], 0, id="a world")],
+    [
+        pytest.param(["open", "p.py"], 7, id="a program"),
+        pytest.param(["open"], 7, id="nothing"),
+        pytest.param(["open", "w.toml"], 0, id="a world"),
+        pytest.param(["open", "--goals", "log_greys_goals.toml", "p.py"], 0, id="goals"),
+        pytest.param(["learn", "first-run"], 0, id="a lesson"),
+    ],
 )
 def test_the_app_opens_with_the_settings(
     words: list[str], noise: int, config: Path, tmp_path: Path, here: Command, monkeypatch: pytest.MonkeyPatch
@@ -134,7 +140,7 @@ def test_the_app_opens_with_the_settings(
     monkeypatch.setattr(lab_app, "run_app", run_app)
     monkeypatch.setattr(app_command, "has_terminal", lambda: True)
 
-    here("open", *words)
+    here(*words)
 
     (settings,) = opened
     assert (settings.spec.world.noise.motor, settings.speed, settings.fps) == (noise, 2.0, 5)

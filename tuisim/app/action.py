@@ -117,6 +117,12 @@ def with_keys_of(app: App[Any], text: str) -> str:
     return app.with_keys(text) if isinstance(app, ActionHost) else text
 
 
+def action_link(app: App[Any], action: str, word: str) -> str:
+    """Return the markup of a word that runs an action when it is clicked, after the key of the action."""
+    key = with_keys_of(app, f"{{{action}}}").replace("[", "\\[")
+    return f"[@click=app.act('{action}')]{key} {word}[/]"
+
+
 _ID = re.compile(r"\{([a-z-]+)\}")
 
 

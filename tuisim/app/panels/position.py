@@ -11,6 +11,7 @@ from textual.containers import Horizontal, Vertical
 from textual.message import Message
 from textual.widgets import Input, Label, Static
 
+from tuisim.app.action import action_link
 from tuisim.app.form import NumberInput
 from tuisim.app.snapshot import Snapshot
 from tuisim.config.options import MAX_ANGLE_DEG, MAX_POSITION_MM
@@ -56,9 +57,9 @@ class Positioning(Vertical):
                 yield Label(f"{name}, {unit}", markup=False)
                 yield NumberInput(id=field, compact=True, select_on_focus=True)
         with Horizontal(classes="links"):
-            yield Static("[@click=app.act('home')]m Start[/]")
-            yield Static("[@click=app.act('random')]j Random[/]")
-        yield Static("[@click=app.act('poses')]P Saved poses[/]", classes="link")
+            yield Static(action_link(self.app, "home", "Start"))
+            yield Static(action_link(self.app, "random", "Random"))
+        yield Static(action_link(self.app, "poses", "Saved poses"), classes="link")
         yield Static(_USE, id="message", markup=False)
 
     def show(self, snapshot: Snapshot) -> None:

@@ -13,14 +13,15 @@ from textual.message import Message
 from textual.widget import Widget
 from textual.widgets import Static
 
+from tuisim.app.action import action_link
 from tuisim.app.form import Choice, Row
 from tuisim.app.setup.fields import Field, FieldGroup, find, sections, step
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import Snapshot
 
 _LINKS = (
-    (("robot", "r Robots"), ("save-robot", "ctrl+r Save")),
-    (("profile", "F Profiles"), ("reset-robot", "ctrl+n Undo")),
+    (("robot", "Robots"), ("save-robot", "Save")),
+    (("profile", "Profiles"), ("reset-robot", "Undo")),
 )
 
 
@@ -60,8 +61,8 @@ class Settings(VerticalScroll, can_focus=False):
     def compose(self) -> ComposeResult:
         for pair in _LINKS:
             with Horizontal(classes="links"):
-                for action, words in pair:
-                    yield Static(f"[@click=app.act('{action}')]{words}[/]")
+                for action, word in pair:
+                    yield Static(action_link(self.app, action, word))
 
     def show(self, snapshot: Snapshot) -> None:
         """Do nothing: this panel shows plans, not moments."""

@@ -35,7 +35,8 @@ def man_page(root: click.Group, version: str) -> str:
     for called in root.list_commands(context):
         if one := root.get_command(context, called):
             lines += _of_command(one, context, f"{name} {called}")
-    lines += [".SH FILES", ".TP", ".B TUISIM_HOME", "Folder of runs, drafts and preferences.", ""]
+    about = "Folder of runs, drafts, preferences and config.toml, if it is set."
+    lines += [".SH FILES", ".TP", ".B TUISIM_HOME", about, ""]
     return "\n".join(lines)
 
 
