@@ -36,6 +36,8 @@ IN_THE_LAB = {
     "palette before its list is there": "ctrl+p pagedown escape",
     "palette asked for twice": "ctrl+p escape ctrl+p ctrl+p escape escape",
     "two dialogs after each other": "b escape T escape escape",
+    "settings": "asterisk enter enter escape escape escape",
+    "settings, and a value that is wrong": "asterisk down down down down down enter x enter enter escape escape escape",
 }
 
 
