@@ -76,6 +76,13 @@ OPERATIONS: Mapping[str, Operation] = {
     "preference": Operation(
         _call("from tuisim.config.preferences import keep; keep('theme', 'dark')"), ("home/preferences.json",)
     ),
+    "setting": Operation(
+        _call(
+            "from tuisim.config import user_config as c, user_config_file as f; "
+            "f.save_setting(c.SETTINGS['app.fps'], 9)"
+        ),
+        ("home/config.toml",),
+    ),
     "draft": Operation(_call("from tuisim.app.editor.text_file import keep_draft; keep_draft('/x.py', 'print()')")),
     "notes": Operation(
         _call(
