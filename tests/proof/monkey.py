@@ -179,7 +179,7 @@ class Monkey:
         return "stop" if outside else "suspend"
 
 
-def _leave(terminal: Terminal) -> None:
+def leave(terminal: Terminal) -> None:
     """End the app as anybody can: ctrl+q, and what that asks."""
     give_up = time.monotonic() + PATIENCE_S
     terminal.resize(120, 40)
@@ -270,7 +270,7 @@ def _check(name: str, folder: Path) -> None:
             terminal.until(lambda: terminal.is_over, "the end after the terminal was lost")
             _check_end(terminal, True)
         else:
-            _leave(terminal)
+            leave(terminal)
             terminal.take(QUIET_S)
             _check_end(terminal, False)
         _check_processes(place / "home")

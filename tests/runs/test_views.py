@@ -45,6 +45,20 @@ print("written", flush=True)
 sys.stdin.read()
 """
 
+LIMITED = """
+import resource, sys
+from pathlib import Path
+from tuisim.runs.records import TelemetryWriter
+used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + (48 << 20), resource.getrlimit(resource.RLIMIT_AS)[1]))
+room = TelemetryWriter(Path(sys.argv[1])).room(1 << 20)
+try:
+    bytearray(64 << 20)
+except MemoryError:
+    print("limited")
+"""
+"""A process with little memory of its own that records much."""
+
 
 def put(writer: TelemetryWriter, count: int) -> None:
     """Append records whose fields tell their tick."""
@@ -272,3 +286,8 @@ def test_a_stream_of_another_version_is_read_as_unknown(tmp_path: Path) -> None:
     assert [(row.text, row.stream) for row in OutputView(tmp_path).rows()] == [
         ("a", Stream.UNKNOWN), ("b", Stream.STDOUT)
     ]  # fmt: skip
+
+
+def test_a_long_recording_takes_nothing_from_the_memory_of_the_program(tmp_path: Path) -> None:
+    done = subprocess.run([sys.executable, "-c", LIMITED, str(tmp_path)], capture_output=True, text=True, check=False)
+    assert (done.stdout, done.stderr) == ("limited\n", "")

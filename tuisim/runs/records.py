@@ -13,6 +13,7 @@ from __future__ import annotations
 import errno
 import mmap
 import os
+import resource
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
@@ -100,6 +101,16 @@ def is_full(error: OSError) -> bool:
     return error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
+def _allow_address_space(more: int) -> None:
+    """Raise this process's limit of address space: it is for the memory of the program, not for its recording."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    if soft != resource.RLIM_INFINITY:
+        wanted = soft + more if hard == resource.RLIM_INFINITY else min(hard, soft + more)
+        # Where the system refuses, the program may use the less.
+        with suppress(OSError, ValueError):
+            resource.setrlimit(resource.RLIMIT_AS, (wanted, hard))
+
+
 def _reserve(fd: int, start: int, size: int) -> None:
     """Allocate disk space for a file: writing to a map without space would kill the process."""
     try:
@@ -151,8 +162,9 @@ class _Writer:
                 if not is_full(error) or wanted == need:
                     raise
                 wanted = max(need, (self._capacity + wanted) // 2 - _LEAST_STEP)
-        self._capacity = wanted
         self._unmap()
+        _allow_address_space(wanted - self._capacity)
+        self._capacity = wanted
         self._map_file()
 
     def _map_file(self) -> None:

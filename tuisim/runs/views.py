@@ -12,6 +12,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
+from mmap import MAP_ANONYMOUS, MAP_PRIVATE, mmap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -36,6 +37,8 @@ from tuisim.runs.records import (
 
 if TYPE_CHECKING:
     import numpy as np
+
+_LARGE_BYTES = 1 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +103,7 @@ class _View(ABC):
         self._may_be_damaged = may_be_damaged
         self._damage = ""
         """Why nothing of the file can be read; empty if it can."""
-        self._copy = bytearray()
+        self._copy: bytearray | mmap = bytearray()
         """Starts like the file, with spare capacity."""
         self._published = self._there = 0
         self._unpacked = False
@@ -172,12 +175,17 @@ class _View(ABC):
         begin, end = (HEADER_BYTES + self._record_bytes * count for count in (kept, wanted))
         if end > len(self._copy):
             # A new buffer instead of a resized one: arrays may still refer to the old one.
-            larger = bytearray(end if not self._there else 2 * end)
+            larger = _zeros(end if not self._there else 2 * end)
             larger[:HEADER_BYTES] = head
             larger[HEADER_BYTES:begin] = self._copy[HEADER_BYTES:begin]
             self._copy = larger
         got = _read_into(fd, memoryview(self._copy)[begin:end], begin)
         self._there = max(self._there, kept + got // self._record_bytes)
+
+
+def _zeros(size: int) -> bytearray | mmap:
+    """Return a buffer; a large one takes memory only as it is filled."""
+    return bytearray(size) if size < _LARGE_BYTES else mmap(-1, size, MAP_PRIVATE | MAP_ANONYMOUS)
 
 
 def _whole_header(fd: int) -> bytes:

@@ -1,0 +1,168 @@
+"""`python -m tests.proof.long_run [--hours N] [--minutes N] [--out FOLDER]`: an app that runs a program for a day.
+
+The program drives for ever, at the highest speed, in an app with a chart, in a real terminal. The memory and the
+descriptors of both processes and the size of the recording over time are printed as a table, and drawn as a chart.
+
+The recording grows with each tick by design, and the app holds a copy of it: it shows any instant at once, and must
+survive a recording that is cut off. What is left of its memory without that copy must be flat, as all the rest.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import os
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from tests.proof.kind import FaultError, home
+from tests.proof.monkey import ROOT, leave
+from tests.proof.terminals import Terminal
+from tuisim.cli import run_command
+from tuisim.core.tick_record import TICK_RECORD
+from tuisim.runs.catalogue import RunInfo
+from tuisim.runs.records import HEADER_BYTES, TELEMETRY_FILE, TELEMETRY_MAGIC, published_length
+from tuisim.runs.store import RunStore, bytes_in
+
+PROGRAM = """\
+import time
+while True:
+    for left, right in ((20, 20), (10, -10)):
+        tank_drive.on(left, right)
+        time.sleep(2)
+        print('Colour:', colorLeft.reflected_light_intensity_pc)
+"""
+SAMPLES = 48
+"""In the simulated time."""
+TICK_HZ = 100
+"""Of the profile that is used."""
+MB = float(1 << 20)
+FLAT_MB = 20.0
+"""What a process may grow after the first simulated hour."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """What the processes and the recording take at a time."""
+
+    time: float
+    """Seconds since the start."""
+    simulated_h: float
+    app_mb: float
+    """Memory of its own: without pages of files, which the system takes back when it needs them."""
+    app_without_copy_mb: float
+    """That, without its copy of the recorded ticks."""
+    app_descriptors: float
+    program_mb: float
+    program_descriptors: float
+    recording_mb: float
+
+
+def published_ticks(folder: Path) -> int:
+    """Return the number of ticks that a run has recorded."""
+    with (folder / TELEMETRY_FILE).open("rb") as handle:
+        return published_length(handle.read(HEADER_BYTES), TELEMETRY_MAGIC, str(folder))
+
+
+def _memory_mb(process: int) -> float:
+    """Return the resident memory of a process without pages of files."""
+    lines = Path(f"/proc/{process}/status").read_text().splitlines()
+    return next(float(line.split()[1]) / 1024 for line in lines if line.startswith("RssAnon"))
+
+
+def _descriptors(process: int) -> int:
+    return len(os.listdir(f"/proc/{process}/fd"))
+
+
+def _children(process: int) -> list[int]:
+    lists = Path(f"/proc/{process}/task").glob("*/children")
+    return [int(child) for listed in lists for child in listed.read_text().split()]
+
+
+def _sample(start_s: float, app: int, program: int, run: RunInfo) -> Sample:
+    folder = RunStore().folder(run.id)
+    ticks = published_ticks(folder)
+    own = _memory_mb(app)
+    return Sample(
+        time.monotonic() - start_s, ticks / TICK_HZ / 3600, own, own - ticks * TICK_RECORD.size / MB,
+        _descriptors(app), _memory_mb(program), _descriptors(program), bytes_in(folder) / MB,
+    )  # fmt: skip
+
+
+def samples(hours: float, minutes: float) -> Iterator[Sample]:
+    """Run the program in an app until the simulated hours or the minutes are over; yield samples."""
+    with TemporaryDirectory(prefix="tuisim-proof-long-") as place, home(Path(place, "home")):
+        Path(place, "drives.py").write_text(PROGRAM)
+        inherited = {name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")}
+        environment = {**inherited, "TERM": "xterm-256color", "LANG": "C.UTF-8", "PYTHONPATH": str(ROOT)}
+        words = ["drives.py", "-b", "Grey_bands", "-R", "-c", "-D", "--speed", "max"]
+        terminal = Terminal(words, Path(place), environment)
+        try:
+            terminal.until(lambda: b"running" in terminal.written or terminal.is_over, "the run")
+            start_s = time.monotonic()
+            run = RunStore().find("last")
+            program = _children(terminal.job)[0]
+            found = _sample(start_s, terminal.job, program, run)
+            while found.simulated_h < hours and found.time < minutes * 60:
+                yield found
+                next_h = found.simulated_h + hours / SAMPLES
+                while found.simulated_h < next_h and found.time < minutes * 60:
+                    terminal.take(0.02)
+                    terminal.written = b""
+                    if terminal.is_over or (end := RunStore().load_run(run.id).end):
+                        raise FaultError(f"it ended: {terminal.code} {end} after {found}")
+                    found = _sample(start_s, terminal.job, program, run)
+            yield found
+            leave(terminal)
+        finally:
+            terminal.close()
+
+
+def grown(found: Sequence[Sample]) -> list[str]:
+    """Return what is not flat after the first simulated hour."""
+    first = next((one for one in found if one.simulated_h >= 1), found[-1])
+    wrong = []
+    for name in ("app_without_copy_mb", "program_mb"):
+        if (more := getattr(found[-1], name) - getattr(first, name)) > FLAT_MB:
+            wrong.append(f"{name} has grown by {more:.1f} MB")
+    for name in ("app_descriptors", "program_descriptors"):
+        if (more := getattr(found[-1], name) - getattr(first, name)) > 2:
+            wrong.append(f"{name} has grown by {more:g}")
+    return wrong
+
+
+def main(words: Sequence[str]) -> int:
+    """Print and draw the samples; return 1 if something grows that must be flat."""
+    parser = argparse.ArgumentParser(prog="python -m tests.proof.long_run", description=__doc__)
+    parser.add_argument("--hours", type=float, default=24.0, metavar="N", help="simulated (default: 24)")
+    parser.add_argument("--minutes", type=float, default=10.0, metavar="N", help="at most (default: 10)")
+    parser.add_argument("--out", type=Path, default=Path(), metavar="FOLDER", help="for long_run.csv and long_run.svg")
+    arguments = parser.parse_args(words)
+    names = [field.name for field in fields(Sample)]
+    print(*(f"{name:>19}" for name in names))
+    found = []
+    table = arguments.out / "long_run.csv"
+    with table.open("w", newline="") as handle:
+        writer = csv.DictWriter(handle, names)
+        writer.writeheader()
+        for one in samples(arguments.hours, arguments.minutes):
+            found.append(one)
+            writer.writerow(asdict(one))
+            handle.flush()
+            print(*(f"{value:19.2f}" for value in asdict(one).values()), flush=True)
+    variables = [word for name in names[1:] for word in ("--variable", name)]
+    run_command(["log", "plot", str(table), "--facets", *variables, "--out", str(table.with_suffix(".svg"))])
+    wrong = grown(found)
+    print(
+        "; ".join(wrong)
+        or f"flat after the first hour, in {found[-1].simulated_h:.1f} simulated hours, {found[-1].time:.1f} s"
+    )
+    return int(bool(wrong))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
