@@ -156,8 +156,8 @@ def wire(effort: Effort) -> Iterator[Figure]:
             yield from _rests(server, circle, short, effort.watch_s)
             for line in _SLOW:
                 yield from _answers(server, line, circle)
-            for words in _PICTURES:
-                yield from _driven(server, _SLOW[-1], circle, words, effort.stops)
+            for picture in _PICTURES:
+                yield from _driven(server, _SLOW[-1], circle, picture, effort.stops)
 
 
 def _app(*words: str) -> list[str]:

@@ -95,18 +95,6 @@ def _check_clashes(actions: Mapping[str, Action[Any, Any]], config: UserConfig, 
             )
 
 
-def check_in_app(config: UserConfig) -> None:
-    """Check what only the app knows: the keys, and the name of the theme.
-
-    Raises:
-        ConfigError: one of them is wrong.
-    """
-    from tuisim.app.actions.keys import ACTIONS
-
-    with_keys(ACTIONS, config)
-    check_theme(config)
-
-
 def check_theme(config: UserConfig) -> None:
     """Check the name of the theme.
 

@@ -18,7 +18,7 @@ from textual.screen import ModalScreen
 from textual.strip import Strip
 from textual.widgets import Static
 
-from tuisim.app.terminal.cell_view import JoinedStrip, LazyStrip
+from tuisim.app.terminal.strips import JoinedStrip, LazyStrip
 
 Result = TypeVar("Result")
 

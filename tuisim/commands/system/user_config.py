@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tuisim.commands.echo import echo, echo_json, echo_lines, table
 from tuisim.config.command_line import AS_JSON, command, option
-from tuisim.config.user_config import FILE, SETTINGS, load_config
+from tuisim.config.user_config import FILE, SETTINGS, UserConfig, load_config
 from tuisim.config.user_config_file import write_template
 from tuisim.errors import ConfigError
 
@@ -30,10 +30,8 @@ def config(as_json: bool, init: bool) -> int:
             raise ConfigError("--init and --json exclude each other", "give one of them", key="config")
         echo(f"written: {write_template()}")
         return 0
-    from tuisim.app.keymap import check_in_app
-
     found = load_config().checked()
-    check_in_app(found)
+    _check_in_app(found)
     rows = [(path, found.value(path), FILE if path in found.written else "default") for path in SETTINGS]
     rows += [(f"keys.{name}", ", ".join(keys), FILE) for name, keys in found.keys.items()]
     exists = found.path.exists()
@@ -46,6 +44,15 @@ def config(as_json: bool, init: bool) -> int:
     cells = [(path, _shown(value), source) for path, value, source in rows]
     echo_lines(table(("setting", "value", "from"), cells))
     return 0
+
+
+def _check_in_app(found: UserConfig) -> None:
+    """Check what only the app knows: the keys, and the name of the theme."""
+    from tuisim.app.actions.keys import ACTIONS
+    from tuisim.app.keymap import check_theme, with_keys
+
+    with_keys(ACTIONS, found)
+    check_theme(found)
 
 
 def _shown(value: object) -> str:
