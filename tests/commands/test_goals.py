@@ -68,7 +68,7 @@ def test_one_missed(task: Path, here: Command) -> None:
         "run 1, task.py · A task: 1 of 2 goals, 1 of 3 points",
         "  ✗ there (2): Drive to x = 700.",
         "      missed at 1.07 s, x 600 mm, y 500 mm",
-        "      At its nearest, at 0.57 s, the robot was 100 mm from x = 700 mm (line 3).",
+        "      At its nearest, at 0.57 s, the robot was 100 mm left of x = 700 mm (line 3).",
         "      Hint: Drive on.",
     ]
 
@@ -79,7 +79,7 @@ def test_open_while_it_runs(task: Path, here: Command) -> None:
     assert done.returncode == 1
     assert done.stdout.split("\n")[1:3] == [
         "  · there (2): Drive to x = 700.",
-        "      At its nearest, at 0.57 s, the robot was 100 mm from x = 700 mm (line 3).",
+        "      At its nearest, at 0.57 s, the robot was 100 mm left of x = 700 mm (line 3).",
     ]
 
 

@@ -16,7 +16,7 @@ from tuisim.lessons.skeleton import SKELETON
 FAULTY = {
     "model answer": (
         ("500 / (3.14159 * 56)", "1"),
-        "line 52: the model answer does not pass “Drive them”: there: At the end the robot was 324 mm from x = ",
+        "line 54: the model answer does not pass “Drive them”: there: At the end the robot was 324 mm left of x = ",
     ),
     "wrong program": (("SpeedPercent(30), 5)", "SpeedPercent(30), 2.842)"), "this wrong program passes “Drive them”"),
     "error": (("500 / (3.14159 * 56)", "1 / 0"), "it ended with: ZeroDivisionError: division by zero"),

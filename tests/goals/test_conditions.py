@@ -59,8 +59,11 @@ PLACES = {
         ALONG,
         "missed",
         2.77,
-        "At the end the robot was 99 mm from x = 800 mm.",
+        "At the end the robot was 99 mm right of x = 800 mm.",
         4,
+    ),
+    "reach below a line": Case(
+        "reach = { y_mm = 550, at_end = true }", ALONG, "missed", 2.77, "50 mm below y = 550 mm.", 4
     ),
     "reach at the end": Case("reach = { x_mm = 900, at_end = true }", ALONG, "met", 2.77, line=4),
     "reach and stay": Case("reach = { x_mm = 900, for_s = 0.3 }", ALONG, "met", 2.46, line=4),

@@ -37,6 +37,9 @@ def test_lesson_is_complete(name: str) -> None:
         choices = isinstance(step.check, Question) and step.check.choices
         assert wrong or choices or name == "first-run", f"{step.name}: no wrong answer"
         assert step.hints, f"{step.name}: no hint"
+        assert step.why or not isinstance(step.check, Question), (
+            f"{step.name}: no sentence says why the answer is right"
+        )
         assert len(step.text) < 700, f"{step.name}: too long for a small terminal"
 
 

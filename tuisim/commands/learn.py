@@ -175,6 +175,9 @@ def check(paths: Sequence[str], no_runs: bool) -> int:
             if not wrong:
                 contents = f"{counted(len(lesson.steps), 'step')}, {counted(len(lesson.goals), 'goal')}"
                 echo(f"{lesson.path}: {contents}: all is well")
+            for step in lesson.steps:
+                if isinstance(step.check, Question) and not step.why:
+                    echo(f"{lesson.path}, line {step.line}: no `why` says why the answer to “{step.title}” is right")
     return 1 if found else 0
 
 

@@ -34,12 +34,12 @@ def find_reach(condition: Reach, evidence: Evidence, span: Span) -> Found:
     if condition.at_end:
         if span.over and there[-1]:
             return Found(evidence.last)
-        words = _off_words(condition, away_mm[-1], turned_deg[-1])
+        words = _off_words(condition, records[-1], away_mm[-1], turned_deg[-1])
         text = f"At the end the robot was {words}." if span.over else f"The robot is {words}."
         return Found(None, "" if there[-1] else text, evidence.line(Moment(first + len(records) - 1)))
     if not there.any():
         nearest = int(np.argmin(np.maximum(away_mm / condition.within_mm, turned_deg / condition.within_deg)))
-        words = _off_words(condition, away_mm[nearest], turned_deg[nearest])
+        words = _off_words(condition, records[nearest], away_mm[nearest], turned_deg[nearest])
         text = f"At its nearest, at {evidence.time_words(first + nearest)}, the robot was {words}."
         return Found(None, text, evidence.line(Moment(first + nearest)))
     times_s = evidence.times_s[span.ticks]
@@ -80,13 +80,22 @@ def _turned_deg(condition: Reach, records: Array) -> Array:
     return turned
 
 
-def _off_words(condition: Reach, away_mm: float, turned_deg: float) -> str:
+def _off_words(condition: Reach, record: Any, away_mm: float, turned_deg: float) -> str:
     words = []
     if condition.x_mm is not None or condition.y_mm is not None:
-        words.append(f"{distance_words(away_mm)} from {_place_words(condition)}")
+        words.append(f"{distance_words(away_mm)} {_side_words(condition, record)} {_place_words(condition)}")
     if condition.heading_deg is not None:
         words.append(f"turned {turned_deg:.1f}° off")
     return " and ".join(words)
+
+
+def _side_words(condition: Reach, record: Any) -> str:
+    """Return on which side of a line the robot is; a point has no sides."""
+    if condition.x_mm is None:
+        return "below" if record["y_mm"] < condition.y_mm else "above"
+    if condition.y_mm is None:
+        return "left of" if record["x_mm"] < condition.x_mm else "right of"
+    return "from"
 
 
 def _place_words(condition: Reach) -> str:

@@ -28,7 +28,7 @@ MAX_MINUTES = 600
 MAX_WRONG = 20
 
 _LESSON_KEYS = ("title", "why", "minutes", "step")
-_STEP_KEYS = ("name", "hints", "model", "wrong")
+_STEP_KEYS = ("name", "hints", "why", "model", "wrong")
 _NUMBERED = re.compile(r"^\d+[-_ ]+")
 _CODE_FENCE = re.compile(r"^(`{3,}|~{3,})\s*(.*?)\s*$")
 
@@ -222,6 +222,7 @@ def _step(data: object, section: _Section, at: Location, file: str) -> Step:
         check=check,
         line=section.line,
         hints=_texts(found, "hints", at, MAX_HINTS),
+        why=files.convert(found["why"], str, at.at("why")) if "why" in found else "",
         answer=answers[-1].text if answers else "",
         model=files.convert(found.get("model", ""), str, at.at("model")) if "model" in found else "",
         wrong=_texts(found, "wrong", at, MAX_WRONG),

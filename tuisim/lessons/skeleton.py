@@ -34,11 +34,13 @@ reach = { x_mm = 1000, within_mm = 5, at_end = true }
 #   note = { level = 50.2 }      a note is written in the analyser on samples with such a mean
 #   visit = { from_s = 1, to_s = 2 }                        a past instant of a run is in view
 #   show = "instrumentation"     a panel is on the screen
-# Further keys: hints, a list of texts; model and wrong, texts that pass and that do not, to test the check.
+# Further keys: hints, a list of texts; why, a sentence that appears when the step is done and says why that is right;
+# model and wrong, texts that pass and that do not, to test the check.
 [[step]]
 name = "turns"
 hints = ["One rotation moves the robot by the circumference of a wheel.", "That is 56 mm times pi."]
 wrong = ["5", "500"]
+why = "One rotation is 3.14159 × 56 = 175.9 mm, and 500 / 175.9 = 2.842."
 [step.question]
 ask = "How many rotations of a 56 mm wheel are 500 mm?"
 answer = 2.842

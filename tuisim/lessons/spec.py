@@ -190,6 +190,8 @@ class Step:
     line: int
     """Where its section begins in the file."""
     hints: tuple[str, ...] = ()
+    why: str = ""
+    """Why what passes is right: one or two sentences, shown when the step is done."""
     answer: str = ""
     """The model answer, a program, if the check is about runs."""
     model: str = ""

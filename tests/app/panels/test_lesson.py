@@ -211,7 +211,7 @@ async def test_run_that_misses_a_goal_says_why_and_counts_as_a_try(tmp_path: Pat
         app.check_files()
         await run_over(pilot, app)
         await until(pilot, lambda: "✗ Drive." in shown(app))
-        assert "At the end the robot was 280 mm from x = 780 mm." in " ".join(shown(app).split())
+        assert "At the end the robot was 280 mm left of x = 780 mm." in " ".join(shown(app).split())
         assert "Faster." in shown(app)
         assert load_progress()["try"].of("drive").tries == 1
 
