@@ -5,6 +5,7 @@ from __future__ import annotations
 from tests.proof.crashes import CRASHES
 from tests.proof.damage import DAMAGE
 from tests.proof.failures import FAILURES
+from tests.proof.kernel import KERNEL
 from tests.proof.kind import Kind
 from tests.proof.monkey import MONKEY
 from tests.proof.stateful import STATEFUL
@@ -17,5 +18,6 @@ KINDS: dict[str, Kind] = {
     "monkey": MONKEY,
     "zoo": ZOO,
     "stateful": STATEFUL,
+    "kernel": KERNEL,
 }
 """Every kind by name."""

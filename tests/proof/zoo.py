@@ -20,6 +20,7 @@ from tuisim.config.options import Settings
 from tuisim.protocol import End, Ended
 from tuisim.runs import process
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.runs.packed_files import find_packed
 from tuisim.runs.records import Stream
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
@@ -118,8 +119,12 @@ def _check_store(run: RunHandle, ended: Ended) -> None:
 
 
 def _bits(run: RunHandle) -> tuple[bytes, ...]:
-    found = [path for path in run.folder.iterdir() if path.name.startswith(("telemetry.bin", "output.bin"))]
-    return tuple(path.read_bytes() for path in sorted(found))
+    """Return what is recorded; a file that was compacted as one that was not."""
+    found = []
+    for name in ("telemetry.bin", "output.bin"):
+        packed = find_packed(run.folder / name)
+        found.append(packed.recording() if packed else (run.folder / name).read_bytes())
+    return tuple(found)
 
 
 def _waited_ns(pid: int) -> int:

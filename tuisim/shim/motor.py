@@ -112,7 +112,7 @@ class TachoMotor(_Tacho):
         readers |= {
             "position": lambda: round(self._motor.position_deg) * self._sign,
             "speed": self._speed,
-            "duty_cycle": lambda: round(100 * self._speed() / self._kind.max_speed_dps),
+            "duty_cycle": self._duty_cycle,
             "state": self.state,
         }
         limits = dict.fromkeys(self._numbers, (0, MAX_SET_POINT))
@@ -120,7 +120,7 @@ class TachoMotor(_Tacho):
         limits |= {
             "speed_sp": (-max_speed, max_speed),
             "duty_cycle_sp": (-100, 100),
-            "position_sp": (-MAX_SET_POINT, MAX_SET_POINT),
+            "position_sp": (-MAX_SET_POINT - 1, MAX_SET_POINT),
             "ramp_up_sp": (0, MAX_RAMP_MS),
             "ramp_down_sp": (0, MAX_RAMP_MS),
         }
@@ -143,6 +143,11 @@ class TachoMotor(_Tacho):
 
     def _speed(self) -> int:
         return round(self._motor.moving_dps) * self._sign
+
+    def _duty_cycle(self) -> int:
+        if self._direct and self._motor.mode != STOPPED:
+            return self._numbers["duty_cycle_sp"]
+        return round(100 * self._speed() / self._kind.max_speed_dps)
 
     def state(self) -> str:
         """Return the state flags, separated by spaces, in the driver's order."""
