@@ -8,10 +8,12 @@ from tests.proof.failures import FAILURES
 from tests.proof.kernel import KERNEL
 from tests.proof.kind import Kind
 from tests.proof.monkey import MONKEY
+from tests.proof.security import SECURITY
 from tests.proof.stateful import STATEFUL
 from tests.proof.zoo import ZOO
 
 KINDS: dict[str, Kind] = {
+    "security": SECURITY,
     "damage": DAMAGE,
     "crashes": CRASHES,
     "failures": FAILURES,

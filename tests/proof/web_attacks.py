@@ -1,0 +1,176 @@
+"""Attacks on the server: each is refused, or costs no more than the connection, and a visitor is served afterwards."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable, Mapping
+from contextlib import AsyncExitStack, suppress
+
+from aiohttp import ClientError, ClientSession, WSMsgType, WSServerHandshakeError
+
+from tests.proof.kind import FaultError
+from tests.running import PATIENCE_S
+from tests.web.stand_in import stand_in
+from tuisim.web.gate import Gate
+from tuisim.web.server import Limits, Server, listening
+
+TOKEN = "the-token"
+_VISITORS = 3
+
+
+class Target:
+    """A server under attack."""
+
+    def __init__(self, client: ClientSession, port: int) -> None:
+        self.client, self.port = client, port
+        self.origin = f"http://127.0.0.1:{port}"
+
+    async def answer(self, request: bytes) -> bytes:
+        """Send bytes; return what comes back until the server closes, at most its head."""
+        reader, writer = await asyncio.open_connection("127.0.0.1", self.port)
+        try:
+            writer.write(request)
+            await writer.drain()
+            return await asyncio.wait_for(reader.read(4096), PATIENCE_S)
+        except ConnectionError:
+            return b""
+        finally:
+            writer.close()
+
+    async def refused(self, method: str, path: str, **headers: str) -> None:
+        """Check that a request is refused."""
+        async with self.client.request(method, self.origin + path, headers=headers) as found:
+            if found.status < 400:
+                raise FaultError(f"{method} {path} {headers}: {found.status}")
+
+    async def visits(self) -> None:
+        """Check that a visitor gets an app."""
+        url = f"{self.origin}/{TOKEN}/ws"
+        give_up = asyncio.get_running_loop().time() + PATIENCE_S
+        while True:
+            async with self.client.ws_connect(url, headers={"Origin": self.origin}) as socket:
+                message = await socket.receive(PATIENCE_S)
+                if message.type is WSMsgType.BINARY:
+                    return
+            # A place may not be free yet.
+            if asyncio.get_running_loop().time() > give_up:
+                raise FaultError(f"a visitor gets {message}")
+
+
+async def _paths(target: Target) -> None:
+    for path in ("../../etc/passwd", "..%2f..%2fetc/passwd", "page/%2e%2e/%2e%2e/server.py", "static//etc/passwd",
+                 "static/..%5c..%5cx", "download/../../x", "download/%00", "fonts/..%2f..%2f..%2fcli.py"):  # fmt: skip
+        head = await target.answer(
+            f"GET /{TOKEN}/{path} HTTP/1.1\r\nHost: 127.0.0.1:{target.port}\r\nConnection: close\r\n\r\n".encode()
+        )
+        if b" 200 " in head.split(b"\r\n")[0]:
+            raise FaultError(f"{path}: {head[:200]!r}")
+
+
+async def _methods(target: Target) -> None:
+    for method in ("POST", "PUT", "DELETE", "PATCH", "TRACE", "PROPFIND"):
+        await target.refused(method, f"/{TOKEN}/")
+        await target.refused(method, f"/{TOKEN}/ws")
+
+
+async def _tokens(target: Target) -> None:
+    for token in ("", "the-toke", "the-tokens", "THE-TOKEN", "the%2Dtokem", "%00", "the-token%00", "*", "null"):
+        await target.refused("GET", f"/{token}/")
+    await target.refused("GET", f"/?token={TOKEN}")
+    await target.refused("GET", "/x/", Authorization=f"Bearer {TOKEN}", Cookie=f"token={TOKEN}")
+
+
+async def _origins(target: Target) -> None:
+    for origin in ("http://evil.example", "null", "", f"http://127.0.0.1.evil.example:{target.port}",
+                   f"{target.origin}.evil.example", f"{target.origin}@evil.example", "file://"):  # fmt: skip
+        try:
+            socket = await target.client.ws_connect(f"{target.origin}/{TOKEN}/ws", headers={"Origin": origin})
+        except WSServerHandshakeError:
+            continue
+        await socket.close()
+        raise FaultError(f"a socket of {origin!r} is accepted")
+
+
+async def _hosts(target: Target) -> None:
+    for host in ("evil.example", "127.0.0.1.evil.example", "", "127.0.0.1:1@evil.example", "[::1", "a b"):
+        await target.refused("GET", f"/{TOKEN}/", Host=host)
+
+
+async def _connections(target: Target) -> None:
+    """Connections that never ask."""
+    opened = [await asyncio.open_connection("127.0.0.1", target.port) for _ in range(200)]
+    await target.visits()
+    for _, writer in opened:
+        writer.close()
+
+
+async def _heads(target: Target) -> None:
+    for request in (b"\0" * 5000, b"GET\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n", b"A" * 100_000 + b"\r\n\r\n",
+                    b"GET / HTTP/1.1\r\nHost: x\r\n" + b"X: y\r\n" * 20_000 + b"\r\n",
+                    b"POST /the-token/ HTTP/1.1\r\nHost: x\r\nContent-Length: -1\r\n\r\n",
+                    b"POST /the-token/ HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n"
+                    b"Content-Length: 3\r\n\r\nFFFFFFFFF\r\n",
+                    b"GET /\x1b[2J\xff HTTP/1.1\r\nHost: \x1b]0;x\x07\r\n\r\n"):  # fmt: skip
+        head = await target.answer(request)
+        if head and b" 4" not in head.split(b"\r\n")[0]:
+            raise FaultError(f"{request[:60]!r}: {head[:100]!r}")
+
+
+async def _frames(target: Target) -> None:
+    """Frames of a visitor that are too large, or make no sense."""
+    url = f"{target.origin}/{TOKEN}/ws"
+    for sent in (
+        "x" * 20_000_000,
+        '["stdin", ' + '"x' * 10,
+        '["resize", {"width": 1e999}]',
+        '["' + "a" * 99_999 + '"]',
+    ):
+        # The server may end the connection before it has all.
+        with suppress(ClientError, ConnectionError):
+            async with target.client.ws_connect(url, headers={"Origin": target.origin}) as socket:
+                await socket.receive(PATIENCE_S)
+                await socket.send_str(sent)
+                await socket.send_str('["ping", "1"]')
+
+
+async def _visitors(target: Target) -> None:
+    """More visitors than there are places."""
+    url, headers = f"{target.origin}/{TOKEN}/ws", {"Origin": target.origin}
+    sockets = [await target.client.ws_connect(url, headers=headers) for _ in range(_VISITORS * 4)]
+    first = [(await socket.receive(PATIENCE_S)).type for socket in sockets]
+    if first.count(WSMsgType.BINARY) > _VISITORS:
+        raise FaultError(f"{first.count(WSMsgType.BINARY)} visitors have an app, not {_VISITORS}")
+    for socket in sockets:
+        await socket.close()
+
+
+ATTACKS: Mapping[str, Callable[[Target], Awaitable[None]]] = {
+    "paths": _paths,
+    "methods": _methods,
+    "tokens": _tokens,
+    "origins": _origins,
+    "hosts": _hosts,
+    "connections": _connections,
+    "heads": _heads,
+    "frames": _frames,
+    "visitors": _visitors,
+}
+"""By name."""
+
+
+async def _attack(name: str) -> None:
+    reports: list[str] = []
+    async with AsyncExitStack() as stack:
+        limits = Limits(_VISITORS, PATIENCE_S, 0.01)
+        server = Server(stand_in(), Gate("127.0.0.1", TOKEN), limits, reports.append)
+        port = await stack.enter_async_context(listening(server, "127.0.0.1", 0))
+        target = Target(await stack.enter_async_context(ClientSession()), port)
+        await ATTACKS[name](target)
+        await target.visits()
+    if reports:
+        raise FaultError(f"the server's terminal gets {reports}")
+
+
+def check_attack(name: str) -> None:
+    """Attack a server, and visit it afterwards."""
+    asyncio.run(asyncio.wait_for(_attack(name), PATIENCE_S))
