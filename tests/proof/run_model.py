@@ -70,12 +70,11 @@ class RunModel:
 
     Args:
         folder: An empty folder.
-        random: Random numbers.
     """
 
-    def __init__(self, folder: Path, random: Random) -> None:
+    def __init__(self, folder: Path) -> None:
         process.warm_up()
-        self.outer, self.random = folder, random
+        self.outer = folder
         self.folder = prepared(folder, "place")
         self.files = {path.name for path in self.folder.iterdir()}
         """The names of the files that may be there."""

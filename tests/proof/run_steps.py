@@ -211,13 +211,15 @@ def _back(model: RunModel, random: Random) -> None:
 
 def _branch(model: RunModel, random: Random) -> None:
     source = model.one_live(random) if random.random() < 0.6 else model.one_stored(random)
-    if source is None or not source.telemetry.count or len(model.live) > MOST_LIVE:
+    # While a run goes on, its newest record may be written again.
+    ticks = source.telemetry.count - isinstance(source, RunHandle) if source else 0
+    if source is None or ticks < 1 or len(model.live) > MOST_LIVE:
         return
     of = Recording(source, source.answers if isinstance(source, RunHandle) else ())
     program = of.program
     if edited := random.random() < 0.2:
         program = replace(program, text=program.text + "print('more')\n")
-    branch = Branch(of, random.randrange(min(source.telemetry.count, MOST_TICKS)), program, None, False)
+    branch = Branch(of, random.randrange(min(ticks, MOST_TICKS)), program, None, False)
     options = RunOptions(
         live=True, speed=1.0, time_limit_s=20.0, asks_user=True, answers=of.answers, actions=branch.script(),
         hold_at=(branch.tick, BEFORE_NEXT_TICK),

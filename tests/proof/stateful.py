@@ -6,11 +6,12 @@ random numbers of its own, so that the others stay what they are. A fault is tol
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
 
+from tests.proof.app_steps import Runner, check_in_app
 from tests.proof.kind import FaultError, Kind, home
 from tests.proof.run_model import RunModel
 from tests.proof.run_steps import OPERATIONS
@@ -21,17 +22,24 @@ TRIES = 12
 """Most attempts to show a fault with fewer steps."""
 
 
-def _wrong(seed: str, steps: Sequence[int], folder: Path) -> str:
+def _headless(model: RunModel, steps: Sequence[int], seed: str) -> None:
+    for step in steps:
+        random = Random(f"{seed} {step}")
+        name = random.choice(list(OPERATIONS))
+        model.done.append(f"{step} {name}")
+        OPERATIONS[name](model, random)
+        model.check_all()
+    model.end()
+
+
+SURROUNDINGS: Mapping[str, Runner] = {"headless": _headless, "app": check_in_app}
+
+
+def _wrong(do: Runner, seed: str, steps: Sequence[int], folder: Path) -> str:
     """Do the steps in an empty folder; return what was wrong, empty if nothing was."""
-    model = RunModel(folder, Random(f"{seed} model"))
+    model = RunModel(folder)
     try:
-        for step in steps:
-            random = Random(f"{seed} {step}")
-            name = random.choice(list(OPERATIONS))
-            model.done.append(f"{step} {name}")
-            OPERATIONS[name](model, random)
-            model.check_all()
-        model.end()
+        do(model, steps, seed)
     except FaultError as fault:
         return f"{fault} (after {', '.join(model.done)})"
     finally:
@@ -71,7 +79,7 @@ def _check(name: str, folder: Path) -> None:
 
     def wrong(of: Sequence[int]) -> str:
         with TemporaryDirectory(dir=folder, ignore_cleanup_errors=True) as inner, home(Path(inner, "place", "home")):
-            return _wrong(seed, of, Path(inner))
+            return _wrong(SURROUNDINGS[surroundings], seed, of, Path(inner))
 
     if not (fault := wrong(steps)):
         return
@@ -84,7 +92,7 @@ def _check(name: str, folder: Path) -> None:
 
 def _names(random: Random) -> Iterator[str]:
     while True:
-        yield f"headless:{random.getrandbits(32)}"
+        yield f"{random.choice(('headless', 'headless', 'app'))}:{random.getrandbits(32)}"
 
 
 STATEFUL = Kind("random sequences of run, pause, step, back, branch, move, edit, export, compact …", _names, _check)

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from textual import events
 from textual.app import App
+from textual.geometry import Region
 from textual.screen import Screen
 from textual.widgets import Input, OptionList, Static
 
@@ -181,6 +182,15 @@ async def test_no_palette_opens_above_a_dialog() -> None:
             assert len(app.screen_stack) == 2, key
             await pilot.press("escape")
             await until(pilot, lambda: len(app.screen_stack) == 1, key)
+
+
+async def test_a_dialog_is_drawn_above_a_screen_that_is_not_laid_out_for_a_larger_terminal_yet() -> None:
+    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("o")
+        await until(pilot, lambda: isinstance(app.screen, Dialog) and app.screen.is_ready)
+        lines = app.screen.render_lines(Region(0, 20, 80, 30))
+        assert [line.cell_length for line in lines] == [80] * 30
 
 
 async def test_a_click_on_the_palette_where_the_terminal_was_does_no_harm() -> None:

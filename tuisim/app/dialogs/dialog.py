@@ -102,12 +102,10 @@ class ClosesOnce(ModalScreen[Result], Generic[Result]):
             return super().render_lines(crop)
         rows = Region(0, crop.y, self.size.width, crop.height)
         chops = stack[at - 1]._compositor._render_chops(rows, rows.line_range.__contains__)
-        return [
-            JoinedStrip([_without_links(part) for part in chops[y].values() if part]).crop_extend(
-                *crop.column_span, self.rich_style
-            )
-            for y in crop.line_range
-        ]
+        # After a resize, the screen below may still be laid out for fewer rows.
+        below = [[_without_links(part) for part in chop.values() if part] for chop in chops[crop.y : crop.bottom]]
+        below += [[] for _ in range(crop.height - len(below))]
+        return [JoinedStrip(parts).crop_extend(*crop.column_span, self.rich_style) for parts in below]
 
     async def _on_message(self, message: Message) -> None:
         # Widgets of a closed screen may still post messages, such as a second Enter.
