@@ -61,6 +61,8 @@ class Action(Generic[Host, Now]):
     """Display name of the key, if it differs from that of `key`."""
     footer_key: str = ""
     """Display name in the footer, if that entry represents two keys."""
+    comes_first: bool = False
+    """Whether the key comes before those of the widget with the focus; `check_action` of the app leaves it to them."""
 
     @property
     def key_label(self) -> str:
@@ -105,7 +107,9 @@ def label_of_key(key: str) -> str:
 
 def key_bindings(actions: Iterable[Action[Any, Any]]) -> list[BindingType]:
     """Return the bindings of an `ActionHost`."""
-    return [Binding(action.key, _call(action), action.title, show=False) for action in actions]
+    return [
+        Binding(action.key, _call(action), action.title, show=False, priority=action.comes_first) for action in actions
+    ]
 
 
 def _call(action: Action[Any, Any]) -> str:
@@ -144,7 +148,7 @@ class ActionHost(DOMNode):
                 del bindings[key]
         for action in changed:
             for key in action.key.split(","):
-                self._bindings.bind(key, _call(action), action.title, show=False)
+                self._bindings.bind(key, _call(action), action.title, show=False, priority=action.comes_first)
         self.ACTIONS = actions
 
     def situation(self) -> Any:
@@ -309,7 +313,7 @@ class KeyFooter(ActionWords):
         Args:
             actions: The available actions, the most useful first.
             status: State of the run, at the right.
-            typing: Keys of the text field that has the focus, where letters are not keys.
+            typing: Keys of the text field that has the focus; they come before the actions.
             failed: Whether the run has failed, so that its state is shown as a warning.
         """
         now = actions, status, typing, failed
@@ -326,7 +330,7 @@ class KeyFooter(ActionWords):
             if len(line) + len(key) + len(word) + 2 <= width - len(status):
                 line.append(f" {key}", key_style)
                 line.append(f" {word}")
-        for action in [] if self._typing else fitting(self._actions, width - len(status)):
+        for action in fitting(self._actions, width - len(status) - len(line)):
             meta = Style(meta={ACT: action.id})
             line.append(f" {_key(action)}", key_style + meta)
             line.append(f" {action.footer}", meta)

@@ -18,13 +18,15 @@ from textual.widgets import Input
 from tuisim.app.action import FIELD_KEYS, KeyFooter, KeyWord, key_bindings
 from tuisim.app.actions import time_travel
 from tuisim.app.actions.app import welcome
-from tuisim.app.actions.keys import ACTIONS, working
+from tuisim.app.actions.keys import ACTIONS, PAGES, footer_actions, working
+from tuisim.app.actions.lesson import takes_pages
 from tuisim.app.background import is_leaving
 from tuisim.app.branch import branch_message
 from tuisim.app.brick_hint import BrickHint
 from tuisim.app.debugger import AppDebugger
 from tuisim.app.editor.document import Document
 from tuisim.app.feed import Feed, PastView, Series, sample_series
+from tuisim.app.form import NumberInput
 from tuisim.app.goals import AppGoals
 from tuisim.app.keymap import check_theme, with_keys
 from tuisim.app.layout.borders import LAYOUT_KEYS
@@ -507,8 +509,11 @@ class LabApp(PanelMessages):
         names = working(state.situation)
         if self.panel_area.is_single:
             names = ("panel-next", *names)
-        actions = [self.ACTIONS[name] for name in names]
-        self.key_footer.show(actions, state.status, self._field_keys(), state.failed)
+        actions = footer_actions(self.ACTIONS, names, state.situation, state.playing)
+        if keys := self._field_keys():
+            field = self.focused
+            actions = [one for one in actions if isinstance(field, NumberInput) and field.leaves(one.key)]
+        self.key_footer.show(actions, state.status, keys, state.failed)
 
     def _field_keys(self) -> tuple[KeyWord, ...]:
         """Return the keys of the text field that has the focus; empty if there is none."""
@@ -562,7 +567,9 @@ class LabApp(PanelMessages):
     # What the user does
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave ctrl+p to the editor while the user types with the keys of Emacs."""
+        """Leave to the widget with the focus: ctrl+p in an editor with keys of Emacs, page keys without a lesson."""
+        if action == "act" and parameters[0] in PAGES:
+            return takes_pages(self.panel_area)
         code = self.panel_area.code
         if action == "command_palette" and code is not None and code.takes_palette_key:
             return False

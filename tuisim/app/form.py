@@ -203,8 +203,13 @@ class NumberInput(Input):
     def on_mount(self) -> None:
         for action in self.app.ACTIONS.values() if isinstance(self.app, ActionHost) else ():
             for key in action.key.split(","):
-                if len(key) == 1 or key in _SIGNS:
+                if self.leaves(key):
                     self._bindings.bind(key, f"app.act('{action.id}')", action.title, show=False, priority=True)
+
+    @staticmethod
+    def leaves(key: str) -> bool:
+        """Return whether a key cannot be part of a number, and so remains one of the app."""
+        return len(key) == 1 or key in _SIGNS
 
 
 STEP, LONG_STEP = 1, 10

@@ -94,8 +94,8 @@ class AppLesson:
         self._before = ""
         """Id of the run that was in view when the step began, which does not count."""
         self._judgements: tuple[Judgement, ...] = ()
-        self._done = ""
-        """Title of the step that has just been done."""
+        self._done: Step | None = None
+        """The step that has just been done."""
         self._is_elsewhere = False
         """Whether the run in view did not begin at the lesson's start."""
         self._counted = ""
@@ -136,7 +136,7 @@ class AppLesson:
         self._goals.judges_always = True
         self._keep(replace(self.progress, opened_at=stored.now()))
         self._panel_area.request(self._panels_for(lesson))
-        self._done = ""
+        self._done = None
         self._begin_step()
 
     def _panels_for(self, lesson: Lesson) -> dict[str, bool | None]:
@@ -238,8 +238,24 @@ class AppLesson:
             self._app.complain(error)
             return
         self._keep(LessonProgress(opened_at=stored.now()))
-        self._done = ""
+        self._done = None
         self._begin_step()
+
+    @property
+    def step_before(self) -> Step | None:
+        """The step before the one to do, or the last one at the end of the lesson."""
+        at = len(self.lesson.steps) if self.lesson is not None and self._at is None else self._at
+        return self.lesson.steps[at - 1] if self.lesson is not None and at else None
+
+    def show_step_before(self) -> None:
+        """Turn back to the step before, and let the arrow keys turn the pages."""
+        self._panel_area.request({"lesson": True})
+        self._app.call_after_refresh(self._turn_back)
+
+    def _turn_back(self) -> None:
+        if panel := self._panel_area.lesson:
+            panel.focus()
+            panel.action_turn(-1)
 
     def exported(self, path: Path) -> None:
         """Note that the log was exported to a file."""
@@ -335,7 +351,7 @@ class AppLesson:
 
     def _leave_step(self, step: Step, state: StepState) -> None:
         self._keep(self.progress.with_step(step.name, state=state, at=stored.now()))
-        self._done = step.title if state is StepState.DONE else ""
+        self._done = step if state is StepState.DONE else None
         self._begin_step()
 
     def _keep(self, progress: LessonProgress) -> None:

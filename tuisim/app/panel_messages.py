@@ -41,6 +41,8 @@ class PanelMessages(ActionHost, TerminalApp):
 
     def on_code_typing_changed(self, message: Code.TypingChanged) -> None:
         self.situation_changed()
+        if lesson := self.workspace.panel_area.lesson:
+            lesson.set_typing(message.typing)
         if not message.typing:
             self.workspace.panel_area.maximize("")
         else:

@@ -12,9 +12,10 @@ from tests.app.analyser.test_screen import text_of
 from tests.app.app_help import LOGS, program, ready, settings, until
 from tuisim.analysis.source import LogRequest
 from tuisim.app.action import fitting
-from tuisim.app.actions.keys import ACTIONS, working
+from tuisim.app.actions.keys import ACTIONS, footer_actions, working
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.app import LabApp
+from tuisim.app.form import NumberInput
 from tuisim.app.snapshot import RunPhase, Situation
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
@@ -90,3 +91,26 @@ async def test_the_key_of_a_panel_that_is_not_shown_looks_like_any_other() -> No
         assert not app.panel_area.shown("chart")
         at = rendered.plain.index(" chart") + 1
         assert rendered.get_style_at_offset(app.console, at).color is None
+
+
+PAUSE_WORDS = {
+    "running": (Situation(RunPhase.RUNNING, True, True), False, "pause"),
+    "paused": (Situation(RunPhase.PAUSED, True, True), False, "go on"),
+    "in the past": (Situation(RunPhase.ENDED, True, True, in_past=True), False, "play"),
+    "playing the past": (Situation(RunPhase.ENDED, True, True, in_past=True), True, "pause"),
+}
+
+
+@pytest.mark.parametrize(("now", "playing", "word"), PAUSE_WORDS.values(), ids=PAUSE_WORDS)
+def test_the_pause_key_says_what_it_does_now(now: Situation, playing: bool, word: str) -> None:
+    (pause,) = [one for one in footer_actions(ACTIONS, working(now), now, playing) if one.id == "pause"]
+    assert pause.footer == word
+
+
+async def test_a_field_for_numbers_names_the_letters_that_are_keys() -> None:
+    async with LabApp(settings("pass\n")).run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        await pilot.press("X")
+        await until(pilot, lambda: isinstance(pilot.app.focused, NumberInput))
+        await until(pilot, lambda: "esc leave" in last_line(pilot) and "R run" in last_line(pilot))
+        assert last_line(pilot).rstrip().split("q quit")[0].endswith("? help ")

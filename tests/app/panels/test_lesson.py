@@ -156,7 +156,7 @@ async def test_leaving_and_coming_back_to_the_step(tmp_path: Path) -> None:
 async def test_hints_come_one_by_one_and_are_counted(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: "Y shows a hint (2 left)." in shown(app))
+        await until(pilot, lambda: "Y shows hint 1 of 2." in shown(app))
         await pilot.press("Y")
         await until(pilot, lambda: "Hint 1: Half of 84." in shown(app))
         assert "Six times seven." not in shown(app)
@@ -192,7 +192,7 @@ async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
         await until(pilot, lambda: "✓ Drive" in shown(app))
         await pilot.press("M")
         await until(pilot, lambda: isinstance(app.screen, Chooser) and app.screen.is_ready)
-        app.screen.query_one(OptionList).highlighted = 4
+        app.screen.query_one(OptionList).highlighted = 5
         await pilot.press("enter")
         await until(pilot, lambda: "The first run" in shown(app))
         assert app.run_controller.next_run.spec.world.background == "Grey_bands"
@@ -369,6 +369,61 @@ async def test_page_keys_scroll_the_text_while_the_world_has_the_focus(tmp_path:
         await until(pilot, lambda: "Line 0\n" in shown(app))
 
 
+@pytest.mark.quick_cases("debug", "output")
+@pytest.mark.usefixtures("home")
+@pytest.mark.parametrize("panel", [name for name in PANELS if name != "lesson"])
+async def test_page_keys_scroll_the_text_beside_every_panel(panel: str, tmp_path: Path) -> None:
+    settings_ = opened(tmp_path)
+    assert settings_.lesson is not None
+    long = replace(settings_.lesson, intro="\n\n".join(f"Line {number}" for number in range(40)))
+    async with LabApp(replace(settings_, lesson=long)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.panel_area.request({panel: True, "lesson": True})
+        await until(pilot, lambda: app.panel_area.shown(panel) and "Line 0" in shown(app))
+        lesson = app.panel_area.lesson
+        assert lesson is not None
+        for widget in [one for one in app.screen.focus_chain if lesson not in one.ancestors_with_self]:
+            app.set_focus(widget)
+            await pilot.pause()
+            assert lesson.border_subtitle == "page down reads on"
+            await pilot.press("pagedown")
+            await until(pilot, lambda: "Line 0\n" not in shown(app))
+            await pilot.press("pageup")
+            await until(pilot, lambda: "Line 0\n" in shown(app))
+
+
+@pytest.mark.usefixtures("home")
+async def test_page_keys_belong_to_the_editor_while_it_is_typed_in(tmp_path: Path) -> None:
+    settings_ = opened(tmp_path)
+    assert settings_.lesson is not None
+    long = replace(settings_.lesson, intro="\n\n".join(f"Line {number}" for number in range(60)))
+    async with LabApp(replace(settings_, lesson=long)).run_test(size=(200, 60)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: "Line 0" in shown(app))
+        await pilot.press("d")
+        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
+        assert app.panel_area.lesson is not None
+        assert app.panel_area.lesson.border_subtitle == ""
+        await pilot.press("pagedown")
+        assert "Line 0\n" in shown(app)
+
+
+@pytest.mark.usefixtures("home")
+async def test_menu_shows_the_step_before_again(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: "1. Think" in shown(app))
+        app.lesson.skip_step()
+        await until(pilot, lambda: "2. Drive" in shown(app))
+        await pilot.press("M")
+        await until(pilot, lambda: isinstance(app.screen, Chooser) and app.screen.is_ready)
+        app.screen.query_one(OptionList).highlighted = 1
+        await pilot.press("enter")
+        await until(pilot, lambda: "1. Think" in shown(app))
+        await pilot.press("right")
+        await until(pilot, lambda: "2. Drive" in shown(app))
+
+
 @pytest.mark.quick_cases("80")
 @pytest.mark.usefixtures("home")
 @pytest.mark.parametrize(("size", "columns"), [(SMALL, 40), (LARGE, 45), ((200, 60), 58)], ids=["80", "120", "200"])
@@ -400,17 +455,19 @@ def _lesson_view(tmp_path: Path, **changes: Any) -> LessonView:
 
 @pytest.mark.usefixtures("home")
 def test_pages_of_a_lesson(tmp_path: Path) -> None:
-    view = _lesson_view(tmp_path, states=(StepState.DONE, StepState.SKIPPED, StepState.OPEN), at=2, done="Drive")
+    view = _lesson_view(tmp_path, states=(StepState.DONE, StepState.SKIPPED, StepState.OPEN), at=2)
+    view = replace(view, done=replace(view.lesson.steps[1], why="Far enough."))  # type: ignore[union-attr]
     missed = Judgement(view.lesson.goals[0], (Change(1, 0.1, GoalState.MISSED, 1, 2),), "Too short.")  # type: ignore[union-attr]
 
     def page(number: int, **changes: Any) -> Sequence[str]:
         lines = draw_lesson(replace(view, **changes), number, 0, 40, 30).lines
         return ["".join(text for text, _ in line).rstrip() for line in lines]
 
-    assert page(2)[:4] == ["Try it                               ✓–●", "✓ Drive", "", "3. Do it"]
+    assert page(2)[:3] == ["Try it                               ✓–●", "✓ Drive", "Far enough."]
+    assert page(2)[3:6] == ["M shows the steps before again.", "", "3. Do it"]
     assert "skipped" in page(1)
     assert "✗ Drive." in page(1, at=1, judgements=(missed,))
-    assert page(2)[-1] == "Waits for the panel Chart."
+    assert page(2)[-1] == "Next: open the panel Chart."
     assert page(3)[1].startswith("The end of the lesson: a model answer")
     assert "A model answer:" not in page(3, states=(StepState.SKIPPED,) * 3, at=None)
     assert draw_lesson(LessonView(), 0, 0, 40, 5).lines[0][0][0] == "No lesson is open: M opens one"

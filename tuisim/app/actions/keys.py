@@ -6,7 +6,8 @@ footer, help and command palette follow from the line.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from functools import lru_cache, partial
 from typing import TypeAlias
 
@@ -160,6 +161,11 @@ def _travels() -> list[LabAction]:
     ]
 
 
+def _page(name: str, key: str, way: str, by: int) -> LabAction:
+    title, do = f"Text of the lesson, or the code: {way}", partial(lesson.scroll, by=by)
+    return Action(name, key, title, LESSON, do, comes_first=True)
+
+
 _SCREENSHOT = "Save a screenshot: SVG and PNG (also F12)"
 _SLOWER, _FASTER = (partial(program.change_speed, by=by) for by in (-1, 1))
 
@@ -201,13 +207,11 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("clear-log", "x", "Clear output and chart; the run keeps its log", FILES, files.clear_log),
         *_toggles(),
         *_layouts(),
-        Action("lesson-menu", "M", "Lessons: open, skip a step, start over", LESSON, lesson.menu, _can_change_world),
+        Action("lesson-menu", "M", "Lessons: open, go back, skip, start over", LESSON, lesson.menu, _can_change_world),
         Action("answer", "Q", "Answer the question of the lesson", LESSON, lesson.answer),
         Action("hint", "Y", "Next hint of the lesson", LESSON, lesson.hint),
-        Action("lesson-up", "pageup", "Text of the lesson, or the code: up", LESSON, partial(lesson.scroll, by=-8)),
-        Action(
-            "lesson-down", "pagedown", "Text of the lesson, or the code: down", LESSON, partial(lesson.scroll, by=8)
-        ),
+        _page("lesson-up", "pageup", "up", -8),
+        _page("lesson-down", "pagedown", "down", 8),
         Action("enlarge", "plus", "Enlarge the focused panel, or restore it", PANEL, app.enlarge),
         *_nudges(),
         Action("help", "question_mark", "Guide: keys, pages, search", APP, app.show_help, footer="help"),
@@ -230,6 +234,22 @@ def _next_steps(now: Situation) -> tuple[str, ...]:
     if now.state in IN_RUN:
         return ("stop", "pause")
     return ("run", "analyse", "export", "panel-chart", "edit") if now.has_run else ("run", "open", "edit", "mats")
+
+
+PAGES = frozenset({"lesson-up", "lesson-down"})
+"""Ids of the actions of the page keys."""
+
+
+def footer_actions(
+    table: Mapping[str, LabAction], names: Iterable[str], now: Situation, playing: bool
+) -> list[LabAction]:
+    """Return actions of a table with the words of the footer: the pause key says what it does now."""
+    word = ""
+    if now.in_past:
+        word = "" if playing else "play"
+    elif now.state == RunPhase.PAUSED:
+        word = "go on"
+    return [replace(table[name], footer=word) if word and name == "pause" else table[name] for name in names]
 
 
 @lru_cache(maxsize=16)

@@ -9,9 +9,10 @@ from tuisim.lessons.progress import LessonProgress, load_progress
 from tuisim.lessons.spec import Question as LessonQuestion
 
 if TYPE_CHECKING:
+    from tuisim.app.panel_area import PanelArea
     from tuisim.app.workspace import Workspace
 
-_SKIP, _OVER, _OPEN = "skip", "over", "open "
+_BEFORE, _SKIP, _OVER, _OPEN = "before", "skip", "over", "open "
 
 
 def answer(workspace: Workspace) -> None:
@@ -41,20 +42,35 @@ def hint(workspace: Workspace) -> None:
 
 
 def scroll(workspace: Workspace, by: int) -> None:
-    """Scroll the text of the lesson by rows; without a lesson, the code if it has the focus."""
+    """Scroll the text of the lesson by rows; if all of it is in view, the code if it has the focus."""
     area = workspace.panel_area
-    if area.lesson and area.shown("lesson"):
+    if area.lesson and _reads_on(area):
         area.lesson.action_scroll_text(by)
     elif area.code and area.code.has_focus_within:
         area.code.page(by)
 
 
+def takes_pages(area: PanelArea) -> bool:
+    """Return whether the page keys are for the lesson, or the code, whatever has the focus."""
+    if not area.screen.is_current:
+        return False
+    if area.code is not None and area.code.has_focus_within:
+        return not area.code.typing
+    return _reads_on(area)
+
+
+def _reads_on(area: PanelArea) -> bool:
+    return area.lesson is not None and area.shown("lesson") and area.lesson.reads_on
+
+
 def menu(workspace: Workspace) -> None:
-    """Offer to skip the step, to start over, and all lessons."""
+    """Offer to read earlier steps again, to skip the step, to start over, and all lessons."""
     from tuisim.app.dialogs.chooser import Chooser, Group
 
     lesson = workspace.lesson
     here = []
+    if before := lesson.step_before:
+        here.append((_BEFORE, "Steps before", f"Read again: {before.title}"))
     if step := lesson.step:
         here.append((_SKIP, "Skip", f"Leave this step undone: {step.title}"))
     if lesson.lesson:
@@ -80,7 +96,9 @@ def _wanted(workspace: Workspace) -> str:
 def _chosen(workspace: Workspace, choice: str | None) -> None:
     if choice is None:
         return
-    if choice == _SKIP:
+    if choice == _BEFORE:
+        workspace.lesson.show_step_before()
+    elif choice == _SKIP:
         workspace.lesson.skip_step()
     elif choice == _OVER:
         _ask_to_start_over(workspace)

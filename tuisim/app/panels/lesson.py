@@ -6,6 +6,7 @@ from typing import ClassVar
 
 from textual.binding import Binding, BindingType
 
+from tuisim.app.action import with_keys_of
 from tuisim.app.panels import PANELS
 from tuisim.app.render.lesson import LessonPicture, LessonView, draw_lesson
 from tuisim.app.snapshot import Snapshot
@@ -35,6 +36,7 @@ class LessonPanel(LinesPanel, can_focus=True):
         self._first = 0
         """First row of the text that is shown."""
         self._picture = LessonPicture([])
+        self._is_typing = False
 
     def watch_has_focus(self, _has_focus: bool) -> None:
         """Show or hide what the keys do."""
@@ -77,9 +79,20 @@ class LessonPanel(LinesPanel, can_focus=True):
         title = f"{_TITLE} ↓{below}" if below else _TITLE
         if title != self.border_title:
             self.border_title = title
-        words = "↑↓ text · ←→ steps · M menu" if self.has_focus else "page ↓ reads on" if below else ""
+        pages = with_keys_of(self.app, "{lesson-down} reads on") if below and not self._is_typing else ""
+        words = "↑↓ text · ←→ steps · M menu" if self.has_focus else pages.replace("[", "\\[")
         if words != self.border_subtitle:
             self.border_subtitle = words
+
+    @property
+    def reads_on(self) -> bool:
+        """Whether there is more text above or below."""
+        return self._picture.first > 0 or self._picture.below > 0
+
+    def set_typing(self, is_typing: bool) -> None:
+        """While the user types in the program, the page keys are the editor's."""
+        self._is_typing = is_typing
+        self._show_subtitle()
 
     def action_scroll_text(self, by: int) -> None:
         self._first = max(0, self._picture.first + by)

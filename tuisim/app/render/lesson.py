@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from rich.style import Style
 
 from tuisim.app.panels import PANELS
+from tuisim.app.render.code_rows import code_rows
 from tuisim.charts.text_runs import Line, cut
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.lessons.markdown import markdown_lines
 from tuisim.lessons.progress import StepState
 from tuisim.lessons.spec import Break, Export, Lesson, Note, Question, Run, Show, Step, Visit, Watch
-from tuisim.source import source_lines
 
 _NAME = Style(color="#ffffff", bold=True)
 _PLAIN = Style(color="#d8dee6")
@@ -47,8 +47,8 @@ class LessonView:
     """How many runs have passed the step so far, if it needs several."""
     is_elsewhere: bool = False
     """Whether the last run did not begin at the lesson's start."""
-    done: str = ""
-    """Title of the step that has just been done; empty for none."""
+    done: Step | None = None
+    """The step that has just been done."""
     next_title: str = ""
     """Title of the next lesson; empty if this is the last."""
 
@@ -109,9 +109,8 @@ def _page(view: LessonView, page: int, width: int) -> Iterator[Line]:
     assert view.lesson is not None
     lesson, step = view.lesson, view.lesson.steps[page]
     is_current = page == view.at
-    if is_current and view.done:
-        yield from _wrapped(f"✓ {view.done}", width, _GOOD)
-        yield []
+    if is_current and view.done and not view.judgements:
+        yield from _done(view.done, width)
     if page == 0 and not (is_current and view.judgements):
         yield from markdown_lines(lesson.intro, width)
         yield []
@@ -125,20 +124,28 @@ def _page(view: LessonView, page: int, width: int) -> Iterator[Line]:
     if not is_current:
         state = view.states[page]
         yield []
-        yield from _wrapped(
-            "Not yet: a step before it is open" if state is StepState.OPEN else f"{state}", width, _PALE
-        )
+        words = "Not yet: a step before it is open" if state is StepState.OPEN else f"{state}"
+        yield from _wrapped(f"{words}: {step.why}" if state is StepState.DONE and step.why else words, width, _PALE)
+        yield from _wrapped("← → turn to the other steps.", width, _PALE)
         return
     yield []
     for number, hint in enumerate(step.hints[: view.hints], start=1):
         yield from _wrapped(f"Hint {number}: {hint}", width, _HINT)
     yield from _wrapped(_to_do(view, step), width, _PALE)
-    if left := len(step.hints) - view.hints:
-        yield from _wrapped(f"Y shows a hint ({left} left).", width, _PALE)
+    if view.hints < len(step.hints):
+        yield from _wrapped(f"Y shows hint {view.hints + 1} of {len(step.hints)}.", width, _PALE)
     if page == 0 and not view.judgements and not view.hints:
         # Last: in a low terminal, the task stays in view.
         yield []
         yield from _wrapped(f"On a real robot: {lesson.why}", width, _PALE)
+
+
+def _done(step: Step, width: int) -> Iterator[Line]:
+    """Yield that a step has just been done, why that was right, and how to read it again."""
+    yield from _wrapped(f"✓ {step.title}", width, _GOOD)
+    yield from _wrapped(step.why, width, _PLAIN)
+    yield from _wrapped("M shows the steps before again.", width, _PALE)
+    yield []
 
 
 def _question(question: Question, width: int) -> Iterator[Line]:
@@ -154,7 +161,8 @@ def _result(view: LessonView, step: Step, width: int) -> Iterator[Line]:
     if view.is_elsewhere and not step.check.anywhere:
         yield from _wrapped("This run began elsewhere: m moves the robot to its start, then R.", width, _BAD)
     by_name = {each.goal.name: each for each in view.judgements}
-    for name in step.check.goals:
+    # What was missed comes first: in a low terminal, the reason is in view.
+    for name in sorted(step.check.goals, key=lambda name: by_name[name].state is not GoalState.MISSED):
         judgement = by_name[name]
         mark, style = _GOAL_MARKS[judgement.state]
         for at, row in enumerate(textwrap.wrap(judgement.goal.say or name, max(1, width - 2))):
@@ -175,17 +183,17 @@ def _to_do(view: LessonView, step: Step) -> str:
         case Question(choices=choices):
             words = "Q types the number of your choice." if choices else "Q types your answer."
         case Watch(expression=expression):
-            words = f"Waits until you watch {expression}."
+            words = f"Next: watch {expression}."
         case Break():
-            words = "Waits until a run stops at the breakpoint."
+            words = "Next: let a run stop at the breakpoint."
         case Export(suffix=suffix):
-            words = f"Waits until you export to a {suffix} file."
+            words = f"Next: export to a {suffix} file."
         case Note():
-            words = "Waits for your note."
+            words = "Next: write your note."
         case Visit(from_s=from_s, to_s=to_s):
-            words = f"Waits until you see the run between {from_s:g} and {to_s:g} s."
+            words = f"Next: go to an instant between {from_s:g} and {to_s:g} s."
         case Show(panel=panel):
-            words = f"Waits for the panel {PANELS[panel].title}."
+            words = f"Next: open the panel {PANELS[panel].title}."
     return words
 
 
@@ -199,6 +207,8 @@ def _end(view: LessonView, width: int) -> Iterator[Line]:
         return
     yield from _wrapped("✓ The lesson is done." if not skipped else "The end of the lesson.", width, _GOOD)
     yield []
+    if view.done:
+        yield from _done(view.done, width)
     yield from _wrapped(f"On a real robot: {view.lesson.why}", width, _PLAIN)
     yield []
     following = (
@@ -210,15 +220,8 @@ def _end(view: LessonView, width: int) -> Iterator[Line]:
         yield from _wrapped("Steps were skipped: the model answer appears when every step is done.", width, _PALE)
     elif view.lesson.model_answer:
         yield from _wrapped("A model answer:", width, _NAME)
-        for text in source_lines(view.lesson.model_answer):
-            yield from _code(text, width)
-
-
-def _code(text: str, width: int) -> Iterator[Line]:
-    """Yield a line of a program, cut into rows; the further ones are indented."""
-    body = text.lstrip()
-    indent = text[: len(text) - len(body)]
-    yield from _wrapped(body, width, _CODE, indent + "      ", indent) if body else [[]]
+        for row in code_rows(view.lesson.model_answer, width):
+            yield [(cut(row, width), _CODE)]
 
 
 def _wrapped(text: str, width: int, style: Style, indent: str = "", first: str = "") -> Iterator[Line]:

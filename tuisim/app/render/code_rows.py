@@ -1,0 +1,101 @@
+"""A program in a narrow column: long lines become several rows, which are the same program."""
+
+from __future__ import annotations
+
+import io
+import textwrap
+import tokenize
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from tuisim.source import source_lines
+
+_INDENT = "  "
+"""What the further rows of a line are indented by."""
+_GOES_ON = " \\"
+"""Ends a row that goes on, outside of brackets."""
+_OPEN, _CLOSED = frozenset("([{"), frozenset(")]}")
+_LAYOUT = frozenset({tokenize.NEWLINE, tokenize.NL, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER})
+_TEXT_BEGINS, _TEXT_ENDS = (getattr(tokenize, f"FSTRING_{word}", None) for word in ("START", "END"))
+
+
+@dataclass(slots=True)
+class _Breaks:
+    """Where a line may be broken."""
+
+    inside: dict[int, bool] = field(default_factory=dict)
+    """For each column that a row may begin at: whether it is in brackets."""
+    comment: int | None = None
+    """Column of a comment."""
+
+
+def code_rows(program: str, width: int) -> Iterator[str]:
+    """Yield a program as rows of at most so many cells, as far as its words are not longer.
+
+    Rows are broken between words, in brackets if possible; elsewhere they end in a backslash. A comment behind a long
+    line comes before it. A program that Python cannot read keeps its lines.
+    """
+    try:
+        breaks = _breaks(program)
+    except (tokenize.TokenError, SyntaxError):
+        breaks = {}
+    for number, line in enumerate(source_lines(program), start=1):
+        if len(line) <= width or number not in breaks:
+            yield line
+        else:
+            yield from _rows(line, breaks[number], width)
+
+
+def _breaks(program: str) -> Mapping[int, _Breaks]:
+    """Return where the lines may be broken, by number: after a blank or an opening bracket, and before a dot."""
+    found: dict[int, _Breaks] = {}
+    depth = texts = 0
+    before: tokenize.TokenInfo | None = None
+    for token in tokenize.generate_tokens(io.StringIO(program).readline):
+        line, column = token.start
+        at = found.setdefault(line, _Breaks())
+        same_line = before is not None and before.end[0] == line and before.type not in _LAYOUT
+        is_word = token.type not in _LAYOUT and not texts
+        if token.type == tokenize.COMMENT:
+            at.comment = column
+        elif before and same_line and is_word and _may_break(before, token):
+            at.inside[column] = depth > 0
+        texts += (token.type == _TEXT_BEGINS) - (token.type == _TEXT_ENDS)
+        if token.type == tokenize.OP:
+            depth += (token.string in _OPEN) - (token.string in _CLOSED)
+        before = token
+    return found
+
+
+def _may_break(before: tokenize.TokenInfo, token: tokenize.TokenInfo) -> bool:
+    return before.end[1] < token.start[1] or before.string in _OPEN or token.string == "."
+
+
+def _rows(line: str, breaks: _Breaks, width: int) -> Iterator[str]:
+    indent = line[: len(line) - len(line.lstrip())]
+    if breaks.comment is not None:
+        words, line = line[breaks.comment :].lstrip("#").strip(), line[: breaks.comment].rstrip()
+        sign = f"{indent}# "
+        yield from textwrap.wrap(
+            words, width, initial_indent=sign, subsequent_indent=sign, break_long_words=False, break_on_hyphens=False
+        )
+    lead, start = "", len(indent)
+    while line[start:]:
+        room = width - len(indent) - len(lead)
+        end = len(line) if len(line) - start <= room else _end(line, start, room, breaks.inside)
+        tail = _GOES_ON if end < len(line) and not breaks.inside[end] else ""
+        yield f"{indent}{lead}{line[start:end].rstrip()}{tail}"
+        lead, start = _INDENT, end
+
+
+def _end(line: str, start: int, room: int, inside: Mapping[int, bool]) -> int:
+    """Return the column that the next row begins at: in brackets if possible, before a dot if nothing else fits."""
+    later = [column for column in inside if column > start]
+    fits = [
+        column
+        for column in later
+        if len(line[start:column].rstrip()) + (0 if inside[column] else len(_GOES_ON)) <= room
+    ]
+    words = [column for column in fits if line[column] != "."]
+    in_brackets = [column for column in words if inside[column]]
+    return max(in_brackets or words or fits, default=min(later, default=len(line)))
