@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from tests.app.panel_help import PanelApp, moment, screen_text, small_field
-from tuisim.app.panels.arrays import Arrays
+from tuisim.app.panels.arrays import Arrays, name_line
+from tuisim.app.render.mat import lay_out
 from tuisim.app.terminal.cell_view import PixelView
 from tuisim.core.geometry import Pose
 
@@ -35,6 +38,24 @@ async def test_discs_and_names(size: tuple[int, int], names: list[str]) -> None:
     assert len({tuple(pixel) for pixel in shown.reshape(-1, 3).tolist()}) >= 3
     assert all(name in text for name in names)
     assert bool(app.panel.border_subtitle) == (not names)
+
+
+@pytest.mark.parametrize(
+    "names",
+    [["left", "right"], ["one"], ["left", "middle", "right"], ["at the far left", "at the far right"]],
+    ids=["two", "one", "three", "long"],
+)
+def test_names_never_run_together(names: list[str]) -> None:
+    for width in range(4 * len(names), 90):
+        layout = lay_out(len(names), width, 20)
+        if not layout.beside:
+            continue
+        line = name_line(layout, names)
+        boxes = [line[col : col + layout.side_px] for col, _ in layout.corners]
+        assert len(line) <= width and "".join(boxes).replace(" ", "") == line.replace(" ", ""), width
+        assert all(box.strip()[:1] in (name[0], "S") for box, name in zip(boxes, names, strict=True)), width
+        for box, after in pairwise(boxes):
+            assert box.endswith(" ") or after.startswith(" "), width
 
 
 async def test_without_a_mat_it_is_blank() -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import pairwise
+
 from rich.style import Style
 from textual.app import ComposeResult
 from textual.widget import Widget
@@ -11,7 +14,7 @@ from tuisim.app.render.mat import CORNER_16_RGB, CORNER_RGB, FULL_PX, DiscLayout
 from tuisim.app.snapshot import Snapshot
 from tuisim.app.terminal.cell_view import LinesView, PixelView
 from tuisim.app.terminal.pacer import Throttle
-from tuisim.charts.text_runs import Run
+from tuisim.charts.text_runs import cut
 from tuisim.core.sensors.color import pixel_array
 
 _PERIOD_S = 0.25
@@ -40,9 +43,14 @@ class Arrays(Widget):
         yield self._names
         yield self._discs
 
+    @property
+    def _has_names(self) -> bool:
+        """Whether there is a row for the names: the discs still fit completely."""
+        return self.size.height > FULL_PX // 2
+
     def on_resize(self) -> None:
-        """Show the line of names only if the discs still fit completely."""
-        self._names.display = self.size.height > FULL_PX // 2
+        """Show the line of names if there is room for it."""
+        self._names.display = self._has_names
         self._drawn = None
         self.call_after_refresh(self._draw)
 
@@ -53,17 +61,19 @@ class Arrays(Widget):
 
     def _draw(self) -> None:
         now = self._snapshot
-        if now is None or not self._discs.size:
+        # The size of the panel, not that of what is in it: that follows a moment later.
+        size = self.size
+        if now is None or not size:
             return
         if now.field is None:
             self._discs.clear_picture()
             return
         seen = (now.instant.pose, now.instant.noise, now.instant.noise.light and now.instant.tick, now.spec.robot)
-        if (seen, id(now.field), self._discs.size) == self._drawn:
+        if (seen, id(now.field), size) == self._drawn:
             return
-        self._drawn = (seen, id(now.field), self._discs.size)
+        self._drawn = (seen, id(now.field), size)
         sensors = now.spec.robot.color_sensors
-        layout = lay_out(len(sensors), self._discs.size.width, 2 * self._discs.size.height)
+        layout = lay_out(len(sensors), size.width, 2 * (size.height - self._has_names))
         boxes = [pixel_array(sensor, now.instant, now.field) for sensor in sensors]
         mode = self._discs.color_mode
         corner_rgb = CORNER_16_RGB if mode.depth == PALETTE_16 and not mode.grey else CORNER_RGB
@@ -71,17 +81,22 @@ class Arrays(Widget):
         self._label_discs(layout, [sensor.name for sensor in sensors])
 
     def _label_discs(self, layout: DiscLayout, names: list[str]) -> None:
-        labels = [f"Sensor{at} {name}" for at, name in enumerate(names, 1)]
-        if not layout.beside or not self._names.display:
+        if not layout.beside or not self._has_names:
             # Side by side or stacked, the order identifies them.
             self.border_subtitle = (" │ " if layout.beside else " above ").join(names) if len(names) > 1 else ""
             self._names.set_lines([])
             return
         self.border_subtitle = ""
-        line: list[Run] = []
-        at = 0
-        for (col, _), label in zip(layout.corners, labels, strict=False):
-            text = label[: layout.side_px].center(layout.side_px)
-            line += [(" " * (col - at), _LABEL), (text, _LABEL)]
-            at = col + len(text)
-        self._names.set_lines([line])
+        self._names.set_lines([[(name_line(layout, names), _LABEL)]])
+
+
+def name_line(layout: DiscLayout, names: Sequence[str]) -> str:
+    """Return the line above discs side by side: each name above its disc, with a space at least between two."""
+    pitch = min((after - col for (col, _), (after, _) in pairwise(layout.corners)), default=layout.side_px + 1)
+    room = min(layout.side_px, pitch - 1)
+    long = [f"Sensor{at} {name}" for at, name in enumerate(names, 1)]
+    labels = long if all(len(label) <= room for label in long) else names
+    line = ""
+    for (col, _), label in zip(layout.corners, labels, strict=False):
+        line = line.ljust(col) + cut(label, room).center(layout.side_px)
+    return line

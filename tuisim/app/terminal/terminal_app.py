@@ -22,6 +22,7 @@ from rich.console import Console, ConsoleRenderable, RichCast
 from rich.control import Control
 from rich.segment import Segment
 from textual import events, on
+from textual import screen as textual_screen
 from textual._compositor import CompositorUpdate
 from textual.app import App
 from textual.color import Color
@@ -45,6 +46,7 @@ from tuisim.app.render.cells import PALETTE_256
 from tuisim.app.terminal.answers import AnswerParser, TerminalAnswered
 from tuisim.app.terminal.browser import in_browser, offer
 from tuisim.app.terminal.cell_view import RowsView
+from tuisim.app.terminal.compositor import ThoroughCompositor
 from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
 from tuisim.app.terminal.picture_mode import PictureMode, color_depth, picture_mode_of
 from tuisim.app.terminal.probe import SILENT
@@ -423,7 +425,8 @@ class InputDecoder(utf_8.IncrementalDecoder):
         return super().decode(data, final)
 
 
-# The driver makes its parser and its decoder itself.
+# A screen makes its compositor itself, and the driver its parser and its decoder.
+textual_screen.Compositor = ThoroughCompositor  # type: ignore[misc]
 linux_driver.XTermParser = AnswerParser  # type: ignore[attr-defined]
 linux_driver.getincrementaldecoder = lambda _: InputDecoder  # type: ignore[attr-defined, assignment]
 

@@ -1,0 +1,51 @@
+"""Every widget is told its size, whoever asks for it before."""
+
+from __future__ import annotations
+
+import pytest
+from textual import events
+from textual.geometry import Size
+from textual.message import Message
+from textual.screen import Screen
+from textual.widget import Widget
+
+from tests.app.app_help import LOGS, ready, settings, until
+from tuisim.app.app import LabApp
+
+
+@pytest.fixture
+def told(monkeypatch: pytest.MonkeyPatch) -> dict[Widget, Size]:
+    """The size that each widget was last told; before each layout, somebody asks for the size of every widget."""
+    lay_out, post, sizes = Screen._refresh_layout, Widget.post_message, {}
+
+    def asked_for(screen: Screen[object], *words: object, **more: object) -> None:
+        screen._compositor.update_widgets(screen._dirty_widgets)
+        assert all(widget.size is not None for widget in screen.walk_children(Widget))
+        lay_out(screen, *words, **more)  # type: ignore[arg-type]
+
+    def posted(widget: Widget, message: Message) -> bool:
+        if isinstance(message, events.Resize):
+            sizes[widget] = message.size
+        return post(widget, message)
+
+    monkeypatch.setattr(Screen, "_refresh_layout", asked_for)
+    monkeypatch.setattr(Widget, "post_message", posted)
+    return sizes
+
+
+@pytest.mark.quick_cases("80x24")
+@pytest.mark.parametrize(
+    ("size", "last"),
+    [((80, 24), "instrumentation"), ((120, 40), "code"), ((200, 60), "chart")],
+    ids=["80x24", "120x40", "200x60"],
+)
+async def test_every_widget_is_told_its_size(size: tuple[int, int], last: str, told: dict[Widget, Size]) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.panel_area.shown(last) and app.panel_area.panels[last].is_mounted)
+        await pilot.pause()
+        laid_out = app.screen._compositor.full_map
+        widgets = [widget for panel in app.panel_area.on_screen() for widget in panel.walk_children(with_self=True)]
+        shown = {widget: laid_out[widget].region.size for widget in widgets if widget in laid_out}
+        assert len(shown) > 5
+        assert {widget: told.get(widget) for widget in shown} == shown
