@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.running import Start, over, until_tick
+from tests.running import Start, over, until, until_tick
 from tuisim.cli import run_command
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
@@ -183,6 +183,21 @@ def test_a_stop_is_given_again_at_its_tick(start: Start, tmp_path: Path, live: b
     (stored.folder / STOP_FILE).write_text("rubbish")
     with pytest.raises(LogError, match=STOP_FILE):
         rerun(stored, store)
+
+
+def test_a_run_that_is_stopped_before_its_first_tick_is_run_again_also_where_ticks_are_not_whole_nanoseconds(
+    start: Start, tmp_path: Path
+) -> None:
+    handle = start("tank_drive.on(20, 20)\nwhile True: pass", live=True, profile="nbev3devsim", start_paused=True)
+    until(handle, lambda: handle.paused)
+    handle.send(SetPen(True))
+    until(handle, lambda: handle.telemetry.record(0).actions == 1)
+    handle.stop()
+    over(handle)
+    stored = RunStore().load_run(handle.run_id)
+    again = rerun(stored, RunStore(tmp_path))
+    assert over(again).ended.end == "stopped"
+    assert same(stored, again.stored()).same
 
 
 def test_a_killed_run_is_compared_up_to_its_last_record(start: Start, tmp_path: Path) -> None:

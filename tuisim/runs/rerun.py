@@ -64,8 +64,9 @@ def _options(run: StoredRun) -> RunOptions:
     last = run.telemetry.last()
     if last is None:
         raise LogError(run.telemetry.note or "has no recording: it ended before its first tick", file=str(run.folder))
-    # A run that was stopped might never end by itself; any other ends before the tick after its last.
-    enough_s = (last.tick + 1) / run.spec.profile.tick_hz
+    # A run that was stopped might never end by itself; any other ends before the tick after its last. The stop comes
+    # right before that tick, which has to be reached, whichever way times are rounded.
+    enough_s = (last.tick + 1.5) / run.spec.profile.tick_hz
     stored, stop_tick = run.options, read_stop_tick(run.folder)
     stop = () if stop_tick is None else (UserAction(stop_tick, Stop()),)
     try:
