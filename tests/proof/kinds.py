@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tests.proof.clients import CLIENTS
 from tests.proof.crashes import CRASHES
 from tests.proof.damage import DAMAGE
 from tests.proof.failures import FAILURES
@@ -15,6 +16,7 @@ from tests.proof.zoo import ZOO
 KINDS: dict[str, Kind] = {
     "security": SECURITY,
     "damage": DAMAGE,
+    "clients": CLIENTS,
     "crashes": CRASHES,
     "failures": FAILURES,
     "monkey": MONKEY,

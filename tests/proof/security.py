@@ -16,7 +16,7 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-from tests.proof.commands import check_said
+from tests.proof.commands import check_said, said
 from tests.proof.kind import FaultError, Kind
 from tests.proof.web_attacks import ATTACKS, check_attack
 from tuisim.errors import TuisimError
@@ -42,7 +42,12 @@ class _Page(HTMLParser):
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         """Check an element."""
-        bad = [name for name, value in attrs if name.startswith("on") or "javascript:" in (value or "").lower()]
+        links = {"href", "src", "action", "xlink:href", "formaction", "data"}
+        bad = [
+            name
+            for name, value in attrs
+            if name.startswith("on") or (name in links and "javascript:" in (value or "").lower())
+        ]
         if tag == "xss-probe" or bad:
             raise FaultError(f"a page has the element {self.get_starttag_text()}")
 
@@ -87,6 +92,11 @@ def hostile(random: Random, most: int = 3, file_name: bool = False) -> str:
     return "".join(letter for letter in text if (letter != "/" and letter.isprintable()) or letter == "\x1b")[:60]
 
 
+def _printable(text: str) -> str:
+    """Return a text without what is refused in one line of a file."""
+    return "".join(letter for letter in text if letter.isprintable())
+
+
 def _literal(text: str) -> str:
     """Return a text as TOML has it."""
     return json.dumps("".join(letter for letter in text if letter not in "\0\ud800"))
@@ -111,6 +121,7 @@ def _program(random: Random) -> None:
     texts = [hostile(random) for _ in range(6)]
     lines = [
         "# %%sim_magic_preloaded -b Empty_Map",
+        "for n in range(20): print('Colour: ' + str(n // 10))",
         f"for text in {texts!r}:",
         "    try:",
         "        print(text)",
@@ -122,7 +133,10 @@ def _program(random: Random) -> None:
     lines += random.choice([[], [f"raise ValueError({hostile(random)!r})"], [f"raise SystemExit({hostile(random)!r})"]])
     lines += [f"# {hostile(random, 1, file_name=True)}"]
     Path(name).write_text("\n".join(lines) + "\n", errors="replace")
-    _say("run", name, hostile(random).replace("\0", ""))
+    # What a program prints on stdout and stderr is passed on unchanged.
+    done = said(["run", name, "--", hostile(random).replace("\0", "")], on_terminal=True)
+    if not done.err or done.code not in (0, 1) or "\x1b" in done.err.splitlines()[-1]:
+        raise FaultError(f"{name!r}: {done.code} {done.err!r}")
     _look_at_runs()
 
 
@@ -150,9 +164,10 @@ def _mark(random: Random) -> None:
         text = f"print({hostile(random)!r})\nraise ValueError({hostile(random)!r})\n"
         (place / "main.py").write_text(text, errors="replace")
     goals = [
-        f"title = {_literal(hostile(random))}", 'background = "Empty_Map"', "[[goal]]", 'name = "done"',
+        f"title = {_literal(_printable(hostile(random)) or 'title')}",
+        'background = "Empty_Map"', "[[goal]]", 'name = "done"',
         "finish = true",
-        f"say = {_literal(hostile(random))}", f"hint = {_literal(hostile(random))}",
+        *(f"{key} = {_literal(_printable(hostile(random)) or key)}" for key in ("say", "hint")),
     ]  # fmt: skip
     Path("goals.toml").write_text("\n".join(goals))
     words = "mark goals.toml class --seeds 0 --jobs 1 --export marks.html --export marks.csv --feedback feedback"
@@ -173,7 +188,7 @@ def _files(random: Random) -> None:
     _say("run", "p.py", "-o", "obstacles.toml")
     _say("run", "p.py", "--profile", "profile.toml")
     _say("batch", "batch.toml")
-    _say("goals", "goals.toml", "p.py")
+    _say("goals", "check", "goals.toml", "last")
     Path("lesson.md").write_text(f"+++\nname = {_literal(hostile(random))}\ntitle = {_literal(hostile(random))}\n+++\n")
     _say("learn", "check", "lesson.md")
     for words in (["guide"], ["guide", "--search"], ["run"], ["runs", "show"], ["run", "p.py", "-b"], ["robots"]):
@@ -196,7 +211,12 @@ class _Pickled:
 
 
 def _notebook(random: Random) -> None:
-    sources = [f"%%sim_magic_preloaded -b {hostile(random)}\nprint(1)\n", f"%%sim_magic {_RUNS}\n{hostile(random)}\n"]
+    sources = [
+        f"%%sim_magic_preloaded -b Empty_Map\nprint('C: 1')\nprint('C: 2')\nprint({hostile(random)!r})\n",
+        f"%%sim_magic {_RUNS}\n{hostile(random)}\n",
+    ]
+    if random.random() < 0.5:
+        sources.pop()
     cells = [
         {"cell_type": "code", "source": random.choice([source, source.splitlines(True)]), "metadata": {}, "outputs": []}
         for source in sources
@@ -206,8 +226,8 @@ def _notebook(random: Random) -> None:
     Path(name).write_text(text)
     with suppress(TuisimError):
         notebook_programs(Path(name))
-    _say("run", f"{name}#1")
-    _say("run", name)
+    said(["run", name], on_terminal=True)
+    _look_at_runs()
 
 
 def _disguised(random: Random) -> None:
