@@ -61,14 +61,14 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
         {"time.sleep(0.1)": "time.sleep(1)"},
         {
             "levels": "Colour came near 3 of 8 levels, but not near 82.7 after 100: the nearest was",
-            "black": "from x = 1490 mm.",
+            "black": "right of x = 1490 mm.",
             "straight": "left the area at",
         },
     ),
     "log_greys, goes on": (
         "log_greys",
         {"tank_drive.off()": "tank_drive.on_for_rotations(50, 50, 2)"},
-        {"black": "from x = 1490 mm."},
+        {"black": "of x = 1490 mm."},
     ),
     "log_greys, turns": (
         "log_greys",

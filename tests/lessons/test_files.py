@@ -52,7 +52,7 @@ BAD = {
     "question without answer": (step("question = { ask = 'Q' }"), "step[1].question.answer: is missing"),
     "tolerance of a text": (step("question = { ask = 'Q', answer = 'x', within = 1 }"), "within: is only for numbers"),
     "no such choice": (step("question = { ask = 'Q', answer = 'x', choices = ['y'] }"), "is none of the choices"),
-    "why is no text": (step("run = 'end'\nwhy = 5"), ", line 10: step[1].why: "),
+    "why is no text": (step("run = 'end'\nwhy = 5"), ", line 10: step[1].why: must be text, got 5"),
     "no such panel": (step("show = 'charts'"), "step[1].show.panel: there is no panel 'charts' (did you mean chart"),
     "no regex": (step("breakpoint = '('"), "step[1].breakpoint.matches: '(' is no regular expression"),
     "no model": (step("breakpoint = 'x'"), "step[1].model: is missing"),
