@@ -166,6 +166,17 @@ def _to_position(random: Random, model: TachoMotor) -> list[Step]:
     return [started, *_meanwhile(random, model), Step("time.sleep(60)", _ended)]
 
 
+def _one_after_another(random: Random, model: TachoMotor) -> list[Step]:
+    """Return moves of which each begins before the one before has ended: the targets add up."""
+    steps = []
+    for _ in range(random.randint(2, 4)):
+        chosen, words = _settings(random)
+        chosen["position_sp"] = number = random.choice([-1, 1]) * random.randint(300, 900)
+        does = _commanded(chosen, lambda model: model.run_to(relative=True))
+        steps.append(Step(f"m.run_to_rel_pos({words}, position_sp={number})", does))
+    return [*steps, Step("time.sleep(300)", _ended)]
+
+
 def _timed(random: Random, model: TachoMotor) -> list[Step]:
     chosen, words = _settings(random)
     chosen["time_sp"] = random.randint(1000, 2000)
@@ -234,7 +245,9 @@ def _library_error(random: Random, _: TachoMotor) -> list[Step]:
 
 
 CHOICES: tuple[Steps, ...] = (
-    _any_setting, _any_setting, _polarity, _position, _stop, _reset, _to_position, _to_position, _timed, _forever,
+    _any_setting, _any_setting, _polarity, _position, _stop, _reset, _to_position, _to_position, _one_after_another,
+    _timed,
+    _forever,
     _direct, _library_move, _library_error,
 )  # fmt: skip
 

@@ -18,6 +18,7 @@ from typing import Any
 
 from tests.proof.commands import check_said, said
 from tests.proof.kind import FaultError, Kind
+from tests.proof.security_app import check_shown
 from tests.proof.web_attacks import ATTACKS, check_attack
 from tuisim.errors import TuisimError
 from tuisim.notebook.cells import notebook_programs
@@ -74,7 +75,7 @@ class _Watch:
             cls.faults.append(f"{event} {args}")
         elif event == "open" and isinstance(args[0], str | bytes) and _writes(args[1], args[2]):
             path = os.path.realpath(os.fsdecode(args[0]))
-            if not path.startswith((cls.folder, "/dev/", "/proc/", _MARKED_IN)):
+            if "__pycache__" not in path and not path.startswith((cls.folder, "/dev/", "/proc/", _MARKED_IN)):
                 cls.faults.append(f"writes to {path!r}")
 
 
@@ -116,8 +117,8 @@ def _look_at_runs() -> None:
     _say("runs", "rm", "last")
 
 
-def _program(random: Random) -> None:
-    name = f"p{hostile(random, 2, file_name=True)}.py"
+def _text(random: Random) -> str:
+    """Return a program that prints and says hostile texts."""
     texts = [hostile(random) for _ in range(6)]
     lines = [
         "# %%sim_magic_preloaded -b Empty_Map",
@@ -132,7 +133,16 @@ def _program(random: Random) -> None:
     ]
     lines += random.choice([[], [f"raise ValueError({hostile(random)!r})"], [f"raise SystemExit({hostile(random)!r})"]])
     lines += [f"# {hostile(random, 1, file_name=True)}"]
-    Path(name).write_text("\n".join(lines) + "\n", errors="replace")
+    return "\n".join(lines) + "\n"
+
+
+def _app(random: Random) -> None:
+    check_shown(f"p{hostile(random, 2, file_name=True)}.py", _text(random), random)
+
+
+def _program(random: Random) -> None:
+    name = f"p{hostile(random, 2, file_name=True)}.py"
+    Path(name).write_text(_text(random), errors="replace")
     # What a program prints on stdout and stderr is passed on unchanged.
     done = said(["run", name, "--", hostile(random).replace("\0", "")], on_terminal=True)
     if not done.err or done.code not in (0, 1) or "\x1b" in done.err.splitlines()[-1]:
@@ -277,6 +287,7 @@ def _links(random: Random) -> None:
 
 
 PLACES: Mapping[str, Callable[[Random], None]] = {
+    "app": _app,
     "program": _program,
     "log": _log,
     "mark": _mark,
