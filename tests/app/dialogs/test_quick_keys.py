@@ -110,6 +110,14 @@ async def test_keys_that_come_when_the_app_has_ended_do_no_harm() -> None:
     await app.on_event(events.Paste("x"))
 
 
+async def test_a_screen_that_is_still_opening_when_the_app_is_shut_down_does_no_harm() -> None:
+    app = LabApp(settings())
+    async with app.run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        app.push_screen(GuideScreen(KeyPage("Help", "", {}), Topic()))
+    assert app._exception is None
+
+
 async def test_a_click_beside_the_list_of_a_dialog_leaves_the_keys_to_the_dialog() -> None:
     async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)

@@ -45,7 +45,7 @@ async def test_every_widget_is_told_its_size(size: tuple[int, int], last: str, t
         await until(pilot, lambda: app.panel_area.shown(last) and app.panel_area.panels[last].is_mounted)
         await pilot.pause()
         laid_out = app.screen._compositor.full_map
-        widgets = [widget for panel in app.panel_area.on_screen() for widget in panel.walk_children(with_self=True)]
+        widgets = [widget for panel in app.panel_area.panels.values() for widget in panel.walk_children(with_self=True)]
         shown = {widget: laid_out[widget].region.size for widget in widgets if widget in laid_out}
         assert len(shown) > 5
         assert {widget: told.get(widget) for widget in shown} == shown

@@ -347,6 +347,11 @@ class TerminalApp(App[None]):
         if self.use_command_palette and not isinstance(self.screen, (Dialog, Palette)) and not is_leaving(self):
             self.push_screen(Palette())
 
+    async def _shutdown(self) -> None:
+        # The app may be shut down without `exit`: it is leaving, too.
+        self._exit = True
+        await super()._shutdown()
+
     def _handle_exception(self, error: Exception) -> None:
         # A screen that was being opened during the shutdown is removed while partly mounted.
         if not (is_leaving(self) and isinstance(error, NoMatches)):
@@ -426,7 +431,7 @@ class InputDecoder(utf_8.IncrementalDecoder):
 
 
 # A screen makes its compositor itself, and the driver its parser and its decoder.
-textual_screen.Compositor = ThoroughCompositor  # type: ignore[misc]
+textual_screen.Compositor = ThoroughCompositor  # type: ignore[attr-defined]
 linux_driver.XTermParser = AnswerParser  # type: ignore[attr-defined]
 linux_driver.getincrementaldecoder = lambda _: InputDecoder  # type: ignore[attr-defined, assignment]
 
