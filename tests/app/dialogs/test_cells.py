@@ -12,6 +12,7 @@ from tuisim.app.dialogs.cells import CellsCard
 from tuisim.app.terminal import picture_mode as modes
 from tuisim.app.terminal.cell_view import PixelView
 from tuisim.app.terminal.picture_mode import PictureMode, picture_mode_for
+from tuisim.app.terminal.sharpness import Sharpness
 from tuisim.charts.glyphs import GLYPHS
 from tuisim.config.options import CellSet
 
@@ -49,23 +50,26 @@ async def test_a_set_is_chosen_by_eye_and_kept(size: tuple[int, int]) -> None:
 
 
 @pytest.mark.slow
-async def test_on_a_slow_link_cells_are_coarse_while_something_moves() -> None:
-    slow = True
+async def test_on_a_slow_link_cells_are_coarse_while_something_moves(monkeypatch: pytest.MonkeyPatch) -> None:
+    slow, still = True, False
+    # Whether something has moved a moment ago, however fast the machine is.
+    monkeypatch.setattr(Sharpness, "is_still", property(lambda sharpness: still))
     picture_mode = PictureMode(CellSet.OCTANT)
-    async with on_wire(LabApp(settings(LOGS), picture_mode)) as pilot:
-        app = pilot.app
-        picture_mode.is_slow = lambda: slow
+    app = LabApp(settings(LOGS), picture_mode)
+    picture_mode.is_slow = lambda: slow
+    async with on_wire(app) as pilot:
         await until(pilot, lambda: app.query_one("WorldView", PixelView)._cells.size > 0)
         view = app.query_one("WorldView", PixelView)
         assert glyphs(view) == {"▀"}
 
         # Once nothing has moved for a moment, the picture becomes fine, on a slow link, too.
+        still = True
         await until(pilot, lambda: not view._coarse.any())
         assert len(glyphs(view)) > 5
         await until_quiet(pilot)
-        still = view._cells.copy()
+        still, fine = False, view._cells.copy()
         await pilot.press("up")
-        await until(pilot, lambda: bool((view._cells != still).any()))
+        await until(pilot, lambda: bool((view._cells != fine).any()))
         assert view._coarse.any()
         slow = False
         await pilot.press("up")

@@ -103,13 +103,17 @@ async def test_the_chart_is_what_was_drawn(protocol: Protocol) -> None:
     async with on_wire(LabApp(settings(panels_on=frozenset({"chart"}))), "truecolor") as pilot:
         await _answered(pilot, ANSWERS[protocol])
         view = _fed(pilot, 7.9)
-        await until(pilot, lambda: view._tiles is not None)
+        await until(pilot, lambda: view._tiles is not None and not pilot.app.query_one(Chart)._dirty)
         await until_quiet(pilot)
         # With other limits everything would move.
-        pilot.app.query_one(Chart).action_freeze()
+        chart = pilot.app.query_one(Chart)
+        chart.action_freeze()
+        await until(pilot, lambda: not chart._dirty)
         await until_quiet(pilot)
         before = wire_of(pilot).kilobytes
-        pilot.app.query_one(Chart).append("Colour", [7.75], [20.0])
+        chart.append("Colour", [7.75], [20.0])
+        # It is drawn a few times a second only.
+        await until(pilot, lambda: not chart._dirty)
         await until_quiet(pilot)
         seen, drawn = _part(_seen(pilot), view), _drawn(view, protocol)
         assert np.array_equal(_on_canvas(view, seen), _on_canvas(view, drawn))
