@@ -9,6 +9,7 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
+from tests.proof.device_rules import check_devices
 from tests.proof.kind import FaultError, Kind
 from tests.proof.tacho_model import NEAR, RANGES, WORDS, TachoMotor
 from tests.running import PATIENCE_S
@@ -254,7 +255,7 @@ CHOICES: tuple[Steps, ...] = (
 
 def _names(random: Random) -> Iterator[str]:
     while True:
-        yield f"{random.choice(list(MOTORS))}:{random.getrandbits(32)}"
+        yield f"{random.choice([*MOTORS, 'devices'])}:{random.getrandbits(32)}"
 
 
 def printed(text: str) -> list[str]:
@@ -273,6 +274,9 @@ def printed(text: str) -> list[str]:
 
 def _check(case: str, folder: Path) -> None:
     kind, random = case.partition(":")[0], Random(case)
+    if kind == "devices":
+        check_devices(random, printed)
+        return
     make, max_speed, hold_p = MOTORS[kind]
     model, steps = TachoMotor(max_speed, hold_p), [Step("pass", lambda *_: "")]
     while len(steps) < STEPS:
