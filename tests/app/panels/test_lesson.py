@@ -192,7 +192,8 @@ async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
         await until(pilot, lambda: "✓ Drive" in shown(app))
         await pilot.press("M")
         await until(pilot, lambda: isinstance(app.screen, Chooser) and app.screen.is_ready)
-        app.screen.query_one(OptionList).highlighted = 5
+        listed = app.screen.query_one(OptionList)
+        listed.highlighted = listed.get_option_index("open first-run")
         await pilot.press("enter")
         await until(pilot, lambda: "The first run" in shown(app))
         assert app.run_controller.next_run.spec.world.background == "Grey_bands"
