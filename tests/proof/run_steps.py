@@ -219,7 +219,10 @@ def _branch(model: RunModel, random: Random) -> None:
     program = of.program
     if edited := random.random() < 0.2:
         program = replace(program, text=program.text + "print('more')\n")
-    branch = Branch(of, random.randrange(min(ticks, MOST_TICKS)), program, None, False)
+    # What the user did at the very tick belongs to the branch.
+    acted = [action.tick for action in of.actions() if action.tick < min(ticks, MOST_TICKS)]
+    tick = random.choice(acted) if acted and random.random() < 0.5 else random.randrange(min(ticks, MOST_TICKS))
+    branch = Branch(of, tick, program, None, False)
     options = RunOptions(
         live=True, speed=1.0, time_limit_s=20.0, asks_user=True, answers=of.answers, actions=branch.script(),
         hold_at=(branch.tick, BEFORE_NEXT_TICK),
