@@ -92,9 +92,14 @@ def _over(run: RunHandle) -> Ended:
     return ended
 
 
+def _is_not_python(ended: Ended) -> bool:
+    """Whether no line of the program was run, because it cannot be compiled."""
+    return ended.summary.startswith("SyntaxError")
+
+
 def _check_end(piece: Piece, ending: Ending, run: RunHandle, ended: Ended) -> None:
     lines = [row.text for row in run.output.all_rows() if row.stream == Stream.STDOUT]
-    if (not lines or lines[0] != "A: 1") and not ended.summary.startswith("SyntaxError"):
+    if (not lines or lines[0] != "A: 1") and not _is_not_python(ended):
         raise FaultError(f"what was printed first is lost: {lines[:3]}; {ended}")
     if piece.breaks:
         return
@@ -175,7 +180,7 @@ def _check_stopped(piece: Piece, ending: Ending, folder: Path, way: str) -> None
         finally:
             run.close()
         _check_store(run, ended)
-        if ended.end != End.STOPPED and way == "stopped-paused":
+        if ended.end != End.STOPPED and way == "stopped-paused" and not _is_not_python(ended):
             raise FaultError(f"a stop ends it with {ended}")
         if ended.end not in (End.STOPPED, piece.end, ending.end) and not piece.breaks:
             raise FaultError(f"a stop ends it with {ended}")
@@ -187,6 +192,8 @@ def _check_stopped(piece: Piece, ending: Ending, folder: Path, way: str) -> None
 def _until_paused(run: RunHandle) -> None:
     give_up = time.monotonic() + PATIENCE_S
     while not run.paused:
+        if run.ended is not None and _is_not_python(run.ended):
+            return
         if run.ended is not None or time.monotonic() > give_up:
             raise FaultError(f"it does not pause: {run.ended}")
         run.wait_for_event(0.01)
