@@ -74,7 +74,8 @@ def _app(random: Random) -> Sequence[str]:
     opened = random.choice(([], ["program.py"], ["log_greys"], ["--run", "1"], *([name] for name in PROGRAMS)))
     speed = random.choice(([], ["--speed", "max"], ["--speed", "0.5"]))
     more = random.choice(([], ["-R"], ["-R"], ["-c", "-X"], ["-i", "-z", "-D"], ["-A", "-Z"]))
-    return [*opened, *speed, *(more if opened else [])]
+    # A stored run is not run again.
+    return [*opened, *speed, *more] if opened[:1] not in ([], ["--run"]) else opened
 
 
 def _analyser(random: Random) -> Sequence[str]:
