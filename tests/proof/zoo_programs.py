@@ -97,9 +97,13 @@ THREADS: Mapping[str, Piece] = {
     ),
 }
 PROCESSES: Mapping[str, Piece] = {
-    "fork": Piece("import os\ntry: os.fork()\nexcept OSError: print('refused')"),
-    "spawn": Piece("import os\ntry: os.posix_spawn('/bin/sh', ['sh'], {})\nexcept OSError: print('refused')"),
-    "exec": Piece("import os\ntry: os.execv('/bin/sh', ['sh', '-c', 'echo no'])\nexcept OSError: print('refused')"),
+    "fork": Piece("import os\ntry: os.fork()\nexcept OSError: print('refused')\nelse: 1 / 0"),
+    "spawn": Piece(
+        "import os\ntry: os.posix_spawn('/bin/sh', ['sh'], {})\nexcept OSError: print('refused')\nelse: 1 / 0"
+    ),
+    "exec": Piece(
+        "import os\ntry: os.execv('/bin/sh', ['sh', '-c', 'echo no'])\nexcept OSError: print('refused')\nelse: 1 / 0"
+    ),
     "system": Piece("import os\nprint(os.system('sleep 100'))"),
     "subprocess": Piece(
         "import subprocess\ntry: print(subprocess.run(['sleep', '100']).returncode)\n"
