@@ -11,6 +11,7 @@ from tests.app.panel_help import SPEC, PanelApp, moment, screen_text
 from tuisim.app.panels.instrumentation import Instrumentation, lines
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.core.geometry import Pose
+from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import MotorSpec
 from tuisim.protocol import End
 
@@ -65,6 +66,14 @@ def test_it_fits(now: Snapshot) -> None:
 def test_extreme_values_fit() -> None:
     for width, height in product((32, 40, 44), (6, 11, 20)):
         assert max(map(len, text(EXTREME, width, height))) <= width, (width, height)
+
+
+def test_a_word_and_its_value_have_a_space_between_them() -> None:
+    on_white = moment(colors={"left": ColorReading(255.0, 255.0, 255.0), "right": ColorReading(0.0, 0.0, 255.0)})
+    assert [row for row in text(on_white, 26, 14) if "red" in row] == [
+        "Sensor1 red  100 mean  100",
+        "Sensor2 red  0.0 mean 33.3",
+    ]
 
 
 @pytest.mark.parametrize(("width", "height"), [(26, 6), (24, 11), (40, 13)], ids=str)

@@ -152,12 +152,14 @@ def _sensor(name: str, seen: ColorReading | None, width: int) -> tuple[Line, Lin
     if seen is None:
         return [_label(name), _unit("–")], []
     red, mean = f"{seen.red_percent:5.1f}", f"{seen.mean_percent:5.1f}"
+    # 100 without a decimal leaves a space after the word before it.
+    short_red, short_mean = (f"{value[:3]:>5}" if value == "100.0" else value for value in (red, mean))
     first = _fit(
         width,
         (_label(name), _unit("red "), _value(red), _unit(" %  mean "), _value(mean), _unit(" %")),
-        (_label(name, 8), _unit("red"), _value(f"{red}"), _unit(" mean"), _value(f"{mean}")),
-        (_label(name, 8), _value(red), _unit(" mean"), _value(mean)),
-        (_label(name[:1] + name[-1:], 3), _value(red), _unit(" mean"), _value(mean)),
+        (_label(name, 8), _unit("red"), _value(short_red), _unit(" mean"), _value(short_mean)),
+        (_label(name, 8), _value(short_red), _unit(" mean"), _value(short_mean)),
+        (_label(name[:1] + name[-1:], 3), _value(short_red), _unit(" mean"), _value(short_mean)),
     )
     channels = [f"{channel}" for channel in seen.rgb]
     wide, narrow = f"({', '.join(channels)})", f"({','.join(channels)})"
