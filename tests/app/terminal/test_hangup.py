@@ -25,7 +25,7 @@ from tests.app.app_help import ready, settings
 from tests.running import PATIENCE_S
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.entries import SavedPoses
-from tuisim.app.terminal.terminal_app import ResilientOutput, TerminalApp
+from tuisim.app.terminal.terminal_app import ResilientOutput, TerminalApp, TerminalDriver
 from tuisim.core.geometry import Pose
 
 ENTER = "import fcntl, os, sys, termios; fcntl.ioctl(0, termios.TIOCSCTTY, 0); os.execv(sys.executable, sys.argv[1:])"
@@ -202,6 +202,24 @@ def test_an_app_that_is_stopped_from_outside_and_not_by_ctrl_z_is_drawn_again_an
         screen.wait(b"\x1b[?1049l")
         assert app.wait(PATIENCE_S) == 0
         os.close(outer)
+
+
+async def test_a_stop_from_outside_while_the_app_suspends_leaves_the_terminal_to_the_shell(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(signal, "signal", lambda *_: None)
+    driver, done = TerminalDriver(cast(App[object], LabApp(settings()))), list[str]()
+
+    def leave() -> None:
+        done.append("leaves the terminal")
+        driver._sigcont_application()
+
+    monkeypatch.setattr(driver, "suspend_application_mode", leave)
+    monkeypatch.setattr(driver, "resume_application_mode", lambda: done.append("takes it"))
+    monkeypatch.setattr(os, "kill", lambda *_: done.append("stops"))
+    monkeypatch.setattr(os, "isatty", lambda _: True)
+    driver.stop_as_job()
+    assert done == ["leaves the terminal", "stops", "takes it"]
 
 
 @pytest.mark.slow

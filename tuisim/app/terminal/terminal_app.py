@@ -444,6 +444,10 @@ class TerminalDriver(LinuxDriver):
     ) -> None:
         super().__init__(app, debug=debug, mouse=mouse, size=size)
         self._file = cast(TextIOWrapper, ResilientOutput(cast(TextIO, self._file)))
+        self._is_stopping = False
+        """Whether it is about to stop as a job, or has stopped."""
+        self._was_continued = False
+        """Whether it has been continued since."""
 
     def run_input_thread(self) -> None:
         """Take in what is typed; end the app when the terminal is gone."""
@@ -476,20 +480,25 @@ class TerminalDriver(LinuxDriver):
         Returns:
             Whether the app was stopped, and has resumed.
         """
+        # Were the terminal taken over again by a stop from outside that ends meanwhile, it would stay so for the shell.
+        self._is_stopping = True
         self.suspend_application_mode()
-        self._must_signal_resume = True
         handler = signal.signal(signal.SIGTSTP, signal.SIG_DFL)
+        self._was_continued = False
         os.kill(0, signal.SIGTSTP)
         signal.signal(signal.SIGTSTP, handler)
-        # Whoever resumes the app has restored the terminal by then.
-        stopped = not self._must_signal_resume
-        if not stopped:
+        stopped, self._is_stopping = self._was_continued, False
+        if os.isatty(self.fileno):
+            self._must_signal_resume = True
             self.resume_application_mode()
         return stopped
 
     def _sigcont_application(self, *_: object) -> None:
         # The signal also arrives when the terminal is lost, so that nothing can resume, and after a stop without
         # preparation, where the former reader and writer must end before they are started again.
+        if self._is_stopping:
+            self._was_continued = True
+            return
         if not self._auto_restart or not os.isatty(self.fileno):
             return
         if self._writer_thread is not None and self._writer_thread.is_alive():
