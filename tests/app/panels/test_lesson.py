@@ -372,7 +372,8 @@ async def test_page_keys_scroll_the_text_while_the_world_has_the_focus(tmp_path:
 
 @pytest.mark.quick_cases("debug", "output")
 @pytest.mark.usefixtures("home")
-@pytest.mark.parametrize("panel", [name for name in PANELS if name != "lesson"])
+# The settings are too high to stand beside a lesson in a low terminal.
+@pytest.mark.parametrize("panel", [name for name in PANELS if name not in ("lesson", "settings")])
 async def test_page_keys_scroll_the_text_beside_every_panel(panel: str, tmp_path: Path) -> None:
     settings_ = opened(tmp_path)
     assert settings_.lesson is not None
