@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -88,10 +87,16 @@ class PartialTable:
             self._file = None
 
     def remove(self) -> None:
-        """Close and remove the file."""
+        """Close and remove the file.
+
+        Raises:
+            ExportError: it cannot be removed.
+        """
         self.close()
-        with suppress(FileNotFoundError):
-            os.unlink(self._path)
+        try:
+            self._path.unlink(missing_ok=True)
+        except OSError as error:
+            raise ExportError(f"cannot remove {self._path}: {error.strerror or error}") from error
 
 
 def rows_of_table(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -> dict[int, Row]:
