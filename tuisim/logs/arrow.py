@@ -267,20 +267,7 @@ def _named(part: pa.Table, notes: Notes) -> pa.Table:
         usual = _usual(field.type)
         if usual != field.type:
             renamed = renamed.set_column(at, renamed.field(at).with_type(usual), part.column(at).cast(usual))
-    return _readable_by_pandas(renamed.replace_schema_metadata(part.schema.metadata), notes)
-
-
-def _readable_by_pandas(part: pa.Table, notes: Notes) -> pa.Table:
-    """Return the table, without the types that pandas has stored with it if they are damaged."""
-    metadata = part.schema.metadata or {}
-    if _PANDAS_KEY not in metadata:
-        return part
-    try:
-        part.schema.empty_table().to_pandas()
-    except (pa.ArrowException, ValueError, KeyError, TypeError, AttributeError):
-        notes.say("the types of the columns, as stored by pandas, are damaged and were ignored")
-        return part.replace_schema_metadata({key: text for key, text in metadata.items() if key != _PANDAS_KEY})
-    return part
+    return renamed.replace_schema_metadata(part.schema.metadata)
 
 
 def _usual(kind: pa.DataType) -> pa.DataType:
@@ -288,6 +275,15 @@ def _usual(kind: pa.DataType) -> pa.DataType:
     if pa.types.is_decimal(kind):
         return pa.float64()
     return pa.string() if pa.types.is_string_view(kind) else kind
+
+
+def frame_of(table: pa.Table) -> pd.DataFrame:
+    """Return a table as a frame, without the types that pandas has stored with it if they are damaged."""
+    try:
+        return table.to_pandas()
+    except (pa.ArrowException, ValueError, KeyError, TypeError, AttributeError):
+        metadata = {key: text for key, text in (table.schema.metadata or {}).items() if key != _PANDAS_KEY}
+        return table.replace_schema_metadata(metadata).to_pandas()
 
 
 def _short(error: Exception) -> str:

@@ -161,7 +161,9 @@ def typed_frame(table: LogTable) -> pd.DataFrame:
     import numpy as np
     import pandas as pd
 
-    frame = table.to_pandas()
+    from tuisim.logs.arrow import frame_of
+
+    frame = frame_of(table)
     for name in frame.columns:
         column = frame[name]
         if isinstance(column.dtype, pd.CategoricalDtype):

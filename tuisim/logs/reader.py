@@ -83,7 +83,7 @@ def read_log(path: str | Path) -> pd.DataFrame:
         table = _exported(source, notes)
         frame = table.to_pandas() if binary else typed_frame(table)
     # Text that is not UTF-8 or not JSON, and all errors of Arrow.
-    except (OSError, ValueError, KeyError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise LogError(f"cannot be read: {error}", file=str(source)) from error
     if notes.texts():
         raise LogError(f"cannot be read: {'; '.join(notes.texts())}", file=str(source))
