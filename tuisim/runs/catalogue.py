@@ -161,9 +161,6 @@ class Catalogue:
             except sqlite3.DatabaseError as error:
                 if not _must_be_made_again(error):
                     raise
-            except UnicodeDecodeError:
-                # SQLite quotes a damaged schema in its message, which Python then cannot read.
-                pass
             self._make_again()
             with closing(_open(self._path)) as connection:
                 return operation(connection)
@@ -248,7 +245,11 @@ def _open(path: Path) -> sqlite3.Connection:
         version = connection.execute("PRAGMA user_version").fetchone()[0]
         if version != _SCHEMA_VERSION:
             raise _ForeignFile(f"version {version}")
-    except (sqlite3.Error, UnicodeDecodeError):
+    # SQLite quotes a damaged schema in its message, which Python then cannot read.
+    except UnicodeDecodeError as error:
+        connection.close()
+        raise _ForeignFile(f"its schema is damaged: {error}") from error
+    except sqlite3.Error:
         connection.close()
         raise
     return connection
@@ -270,8 +271,6 @@ def _is_sound(path: Path) -> bool:
                 return False
             _all_rows(connection)
             return True
-    except UnicodeDecodeError:
-        return False
     except sqlite3.DatabaseError as error:
         if _must_be_made_again(error):
             return False
