@@ -206,6 +206,16 @@ def _rests(server: Sshd, circle: Path, short: Path, watch_s: float) -> Iterator[
     yield from rest("analyser", "analyse", "last", shows="Colour")
 
 
+def _driving(remote: Remote, name: str) -> Iterator[Figure]:
+    """Yield what is sent while the robot drives, once it has driven for a while."""
+    remote.terminal.read_for(_DRIVES_S)
+    before = remote.link.down_bytes, remote.terminal.queries
+    remote.terminal.read_for(_DRIVES_S)
+    down, frames = remote.link.down_bytes - before[0], remote.terminal.queries - before[1]
+    yield Figure(name, down / _DRIVES_S / 1e3, "kB/s")
+    yield Figure(name, frames / _DRIVES_S, "frames/s")
+
+
 def _answers(server: Sshd, line: Line, circle: Path) -> Iterator[Figure]:
     """Yield how soon a slow line shows the app, and what a key does."""
     for panels, words in (("no chart", "-R"), ("chart", "-Rc")):
@@ -213,12 +223,7 @@ def _answers(server: Sshd, line: Line, circle: Path) -> Iterator[Figure]:
             remote.until("World")
             yield Figure(f"panels are there, {line.name}", time.monotonic() - remote.began_s, "s")
             remote.until("running")
-            remote.terminal.read_for(_DRIVES_S)
-            before = remote.link.down_bytes, remote.terminal.queries
-            remote.terminal.read_for(_DRIVES_S)
-            down, frames = remote.link.down_bytes - before[0], remote.terminal.queries - before[1]
-            yield Figure(f"driving, {panels}, {line.name}", down / _DRIVES_S / 1e3, "kB/s")
-            yield Figure(f"driving, {panels}, {line.name}", frames / _DRIVES_S, "frames/s")
+            yield from _driving(remote, f"driving, {panels}, {line.name}")
             remote.terminal.type(b" ")
             yield Figure(f"space until 'paused', {panels}, {line.name}", remote.until("paused"), "s", most=1)
             remote.until_quiet()
@@ -233,12 +238,7 @@ def _driven(server: Sshd, line: Line, circle: Path, words: tuple[str, str], stop
     name = f"{' '.join(words)[2:]}, {line.name}"
     with Remote(server, line, _app(str(circle), "-R", "--colors", "truecolor", *words)) as remote:
         remote.until("running")
-        remote.terminal.read_for(_DRIVES_S)
-        before = remote.link.down_bytes, remote.terminal.queries
-        remote.terminal.read_for(_DRIVES_S)
-        down, frames = remote.link.down_bytes - before[0], remote.terminal.queries - before[1]
-        yield Figure(f"driving, {name}", down / _DRIVES_S / 1e3, "kB/s")
-        yield Figure(f"driving, {name}", frames / _DRIVES_S, "frames/s")
+        yield from _driving(remote, f"driving, {name}")
         took_s = []
         for _ in range(stops):
             remote.terminal.type(b" ")

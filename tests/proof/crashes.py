@@ -3,27 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
 from random import Random
-from tempfile import TemporaryDirectory
 
-from tests.proof.injection import killed_at, numbers_of
-from tests.proof.kind import Kind, home
-from tests.proof.operations import OPERATIONS, check_after, prepared, undisturbed
+from tests.proof.injection import killed_at
+from tests.proof.kind import Kind
+from tests.proof.operations import OPERATIONS, check_after, numbers_in, prepared, undisturbed
 
 CALLS = "write,pwrite64,writev,rename,renameat,renameat2,unlink,unlinkat,fsync,fdatasync,ftruncate,mkdir,mkdirat,link"
 
 
-@cache
-def _numbers(name: str) -> list[int]:
-    with TemporaryDirectory(prefix="tuisim-proof-count-") as folder, home(Path(folder)):
-        return numbers_of(OPERATIONS[name].words, prepared(Path(folder), "count"), CALLS)
-
-
 def _names(random: Random) -> Iterator[str]:
     for name in random.sample(list(OPERATIONS), len(OPERATIONS)):
-        numbers = _numbers(name)
+        numbers = numbers_in(name, CALLS)
         yield from (f"{name}:{number}" for number in random.sample(numbers, len(numbers)))
 
 

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from functools import cache
 from pathlib import Path
 from random import Random
-from tempfile import TemporaryDirectory
 
-from tests.proof.injection import failing_at, numbers_of
-from tests.proof.kind import FaultError, Kind, home
-from tests.proof.operations import OPERATIONS, check_after, prepared, undisturbed
+from tests.proof.injection import failing_at
+from tests.proof.kind import FaultError, Kind
+from tests.proof.operations import OPERATIONS, check_after, numbers_in, prepared, undisturbed
 
 ERRORS: Mapping[str, tuple[str, ...]] = {
     "write": ("ENOSPC", "EIO", "EINTR"),
@@ -30,18 +28,15 @@ ERRORS: Mapping[str, tuple[str, ...]] = {
 """Errors by call."""
 
 
-@cache
-def _numbers(name: str, call: str) -> list[int]:
-    with TemporaryDirectory(prefix="tuisim-proof-count-") as folder, home(Path(folder)):
-        place = prepared(Path(folder), "count")
-        # Python itself opens, reads and maps hundreds of files.
-        return numbers_of(OPERATIONS[name].words, place, call, place if call in ("openat", "read", "mmap") else None)
+_OF_PYTHON = ("openat", "read", "mmap")
+"""Python itself opens, reads and maps hundreds of files: only those of an operation count."""
 
 
 def _names(random: Random) -> Iterator[str]:
     pairs = [(name, call) for name in OPERATIONS for call in ERRORS]
     for name, call in random.sample(pairs, len(pairs)):
-        cases = [f"{name}:{call}:{error}:{number}" for number in _numbers(name, call) for error in ERRORS[call]]
+        numbers = numbers_in(name, call, only_in_folder=call in _OF_PYTHON)
+        cases = [f"{name}:{call}:{error}:{number}" for number in numbers for error in ERRORS[call]]
         yield from random.sample(cases, len(cases))
 
 

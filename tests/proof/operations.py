@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 
 from tests.proof.commands import said
-from tests.proof.injection import Ended, run
+from tests.proof.injection import Ended, numbers_of, run
 from tests.proof.kind import FaultError, home
 from tuisim.cli import EXIT_OUR_MISTAKE
 from tuisim.goals.files import examples
@@ -148,6 +148,14 @@ def contents(operation: Operation, place: Path) -> dict[str, bytes | None]:
     """Return the contents of the files that an operation writes; None where there is no file."""
     found = {name: place / name for name in operation.writes}
     return {name: path.read_bytes() if path.is_file() else None for name, path in found.items()}
+
+
+@cache
+def numbers_in(name: str, calls: str, *, only_in_folder: bool = False) -> list[int]:
+    """Return which calls of an operation there are, see `injection.numbers_of`."""
+    with tempfile.TemporaryDirectory(prefix="tuisim-proof-count-") as folder, home(Path(folder)):
+        place = prepared(Path(folder), "count")
+        return numbers_of(OPERATIONS[name].words, place, calls, place if only_in_folder else None)
 
 
 @dataclass(frozen=True, slots=True)

@@ -85,6 +85,12 @@ def opened(tmp_path: Path, check: str = "show = 'chart'") -> AppSettings:
     return replace(made, spec=spec, program=read_program(prepare_program(lesson)).program)
 
 
+def with_lines(settings_: AppSettings, count: int) -> AppSettings:
+    """The same with a lesson whose text has so many lines."""
+    assert settings_.lesson is not None
+    return replace(settings_, lesson=replace(settings_.lesson, intro="\n\n".join(f"Line {at}" for at in range(count))))
+
+
 def shown(app: LabApp) -> str:
     """The text of the panel."""
     panel = app.panel_area.lesson
@@ -358,10 +364,7 @@ async def test_other_panels_do_not_replace_the_lesson(tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("home")
 async def test_page_keys_scroll_the_text_while_the_world_has_the_focus(tmp_path: Path) -> None:
-    settings_ = opened(tmp_path)
-    assert settings_.lesson is not None
-    long = replace(settings_.lesson, intro="\n\n".join(f"Line {number}" for number in range(40)))
-    async with LabApp(replace(settings_, lesson=long)).run_test(size=SMALL) as pilot:
+    async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: "Line 0" in shown(app))
         await pilot.press("pagedown")
@@ -375,10 +378,7 @@ async def test_page_keys_scroll_the_text_while_the_world_has_the_focus(tmp_path:
 # The settings are too high to stand beside a lesson in a low terminal.
 @pytest.mark.parametrize("panel", [name for name in PANELS if name not in ("lesson", "settings")])
 async def test_page_keys_scroll_the_text_beside_every_panel(panel: str, tmp_path: Path) -> None:
-    settings_ = opened(tmp_path)
-    assert settings_.lesson is not None
-    long = replace(settings_.lesson, intro="\n\n".join(f"Line {number}" for number in range(40)))
-    async with LabApp(replace(settings_, lesson=long)).run_test(size=SMALL) as pilot:
+    async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
         app.panel_area.request({panel: True, "lesson": True})
         await until(pilot, lambda: app.panel_area.shown(panel) and "Line 0" in shown(app))
@@ -396,10 +396,7 @@ async def test_page_keys_scroll_the_text_beside_every_panel(panel: str, tmp_path
 
 @pytest.mark.usefixtures("home")
 async def test_page_keys_belong_to_the_editor_while_it_is_typed_in(tmp_path: Path) -> None:
-    settings_ = opened(tmp_path)
-    assert settings_.lesson is not None
-    long = replace(settings_.lesson, intro="\n\n".join(f"Line {number}" for number in range(60)))
-    async with LabApp(replace(settings_, lesson=long)).run_test(size=(200, 60)) as pilot:
+    async with LabApp(with_lines(opened(tmp_path), 60)).run_test(size=(200, 60)) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: "Line 0" in shown(app))
         await pilot.press("d")
@@ -481,10 +478,7 @@ def test_steps_can_ask_for_every_panel() -> None:
 
 @pytest.mark.usefixtures("home")
 async def test_page_keys_scroll_the_text_after_a_run_from_the_editor(tmp_path: Path) -> None:
-    settings_ = opened(tmp_path)
-    assert settings_.lesson is not None
-    long = replace(settings_.lesson, intro="\n\n".join(f"Line {number}" for number in range(40)))
-    async with LabApp(replace(settings_, lesson=long)).run_test(size=SMALL) as pilot:
+    async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: "Line 0" in shown(app))
         await pilot.press("d", "escape", "pagedown")

@@ -140,6 +140,16 @@ class Screen:
         self._come = self._come.partition(wanted)[2]
 
 
+def check_keys_are_heard(app: subprocess.Popen[bytes], screen: Screen) -> None:
+    """Open the guide, and leave it and the app."""
+    os.write(screen.outer, b"?")
+    screen.wait(b"Guide")
+    os.write(screen.outer, b"\x11")
+    screen.wait(b"\x1b[?1049l")
+    assert app.wait(PATIENCE_S) == 0
+    os.close(screen.outer)
+
+
 @pytest.mark.slow
 def test_a_lost_terminal_ends_the_app_and_its_program(tmp_path: Path, root: Path) -> None:
     (tmp_path / "spin.py").write_text("tank_drive.on(20, 30)\nwhile True:\n    pass\n")
@@ -171,12 +181,8 @@ def test_bytes_that_are_no_utf_8_do_not_end_the_app(tmp_path: Path, root: Path) 
     with lab(tmp_path, root, "empty.py") as (app, outer):
         screen = Screen(outer)
         screen.wait(b"quit")
-        os.write(outer, b"\x1b[200~\xe4\x1b[201~\xff?")
-        screen.wait(b"Guide")
-        os.write(outer, b"\x11")
-        screen.wait(b"\x1b[?1049l")
-        assert app.wait(PATIENCE_S) == 0
-        os.close(outer)
+        os.write(outer, b"\x1b[200~\xe4\x1b[201~\xff")
+        check_keys_are_heard(app, screen)
 
 
 @pytest.mark.slow
@@ -195,13 +201,7 @@ def test_an_app_that_is_stopped_from_outside_and_not_by_ctrl_z_is_drawn_again_an
         screen.wait(b"\x1b[?1049h")
         screen.wait(b"quit")
         # Were there still another reader from before, one of the two would get each key.
-        os.write(outer, b"?")
-        screen.wait(b"Guide")
-        # As ctrl+q at any place: it leaves the guide, and the app.
-        os.write(outer, b"\x11")
-        screen.wait(b"\x1b[?1049l")
-        assert app.wait(PATIENCE_S) == 0
-        os.close(outer)
+        check_keys_are_heard(app, screen)
 
 
 async def test_a_stop_from_outside_while_the_app_suspends_leaves_the_terminal_to_the_shell(
