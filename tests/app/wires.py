@@ -12,9 +12,9 @@ from textual import events
 from textual.drivers.headless_driver import HeadlessDriver
 from textual.pilot import Pilot
 
+from tests.running import PATIENCE_S
 from tuisim.app.terminal.terminal_app import TerminalApp
 
-PATIENCE_S = 8.0
 QUERY = "\x1b[6n"
 
 

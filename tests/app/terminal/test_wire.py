@@ -13,6 +13,7 @@ from textual.pilot import Pilot
 
 from tests.app.app_help import ENDLESS, LOGS, ready, settings, until
 from tests.app.wires import on_wire, until_quiet, wire_of
+from tests.running import PATIENCE_S
 from tuisim.analysis.source import LogRequest
 from tuisim.app import app as app_module
 from tuisim.app.analyser.app import AnalyserApp
@@ -148,12 +149,9 @@ async def test_what_the_robot_does_is_shown_while_the_program_prints(monkeypatch
         assert drawn
 
 
-@pytest.mark.quick_cases("n-*")
-@pytest.mark.parametrize(("key", "shown"), [("R", (RunPhase.RUNNING, True)), ("n", (RunPhase.PAUSED, False))])
-async def test_the_first_frame_of_a_run_waits_for_its_first_tick_unless_it_is_paused(
-    monkeypatch: pytest.MonkeyPatch, key: str, shown: tuple[RunPhase, bool]
-) -> None:
-    monkeypatch.setattr(app_module, "_STARTING_S", 60.0)
+@pytest.mark.slow
+async def test_the_first_frame_of_a_run_waits_for_its_first_tick(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(app_module, "_STARTING_S", 2 * PATIENCE_S)
     async with on_wire(LabApp(settings(ENDLESS))) as pilot:
         app = await ready(pilot)
         drawn: list[tuple[RunPhase, bool]] = []
@@ -163,7 +161,19 @@ async def test_the_first_frame_of_a_run_waits_for_its_first_tick_unless_it_is_pa
             drawn.append((now.state, now.instant.tick > 0))
 
         monkeypatch.setattr(app.pacer, "drawn", note)
-        await pilot.press(key)
+        await pilot.press("R")
         await until(pilot, lambda: any(state is not RunPhase.IDLE for state, _ in drawn))
 
-        assert next(one for one in drawn if one[0] is not RunPhase.IDLE) == shown
+        assert next(one for one in drawn if one[0] is not RunPhase.IDLE) == (RunPhase.RUNNING, True)
+
+
+async def test_frames_of_a_run_that_pauses_at_its_first_line_do_not_wait_for_a_tick(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(app_module, "_STARTING_S", 2 * PATIENCE_S)
+    async with on_wire(LabApp(settings(ENDLESS))) as pilot:
+        app = await ready(pilot)
+
+        await pilot.press("n")
+
+        await until(pilot, lambda: app.run_controller.state is RunPhase.PAUSED and not app._starting_until_s)
