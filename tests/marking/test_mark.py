@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 import pytest
@@ -17,10 +18,12 @@ from tests.conftest import ROOT, Command
 from tests.marking.student import GOAL_POINTS, Student
 from tests.marking.the_class import CLASS, write_class
 from tests.running import PATIENCE_S
+from tuisim.batch import execute
 from tuisim.cli import run_command
 from tuisim.commands import mark
-from tuisim.errors import printable
+from tuisim.errors import HostError, printable
 from tuisim.marks.outcome import Outcome
+from tuisim.runs.handle import RunHandle
 
 GOALS = Path(__file__).with_name("goals.toml")
 SEEDS = "0,1"
@@ -220,3 +223,28 @@ def test_a_signal_ends_a_marking_in_good_order(
     finally:
         signal.signal(number, before)
     assert "--resume goes on" in capsys.readouterr().err
+
+
+def test_a_run_that_could_not_be_started_is_missing_in_the_marks_until_it_is_resumed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_class(tmp_path / "class", _few("ada.py"))
+    words = ["mark", str(GOALS), str(tmp_path / "class"), "--seeds", "0,1", "--jobs", "1", "--keep", "none"]
+    seeds: list[int] = []
+
+    def started(*of_run: Any, **more: Any) -> RunHandle:
+        spec = of_run[1]
+        seeds.append(spec.seed)
+        if seeds == [0, 1]:
+            raise HostError("the program's process cannot be started: Too many open files")
+        return RunHandle(*of_run, **more)
+
+    monkeypatch.setattr(execute, "RunHandle", started)
+    assert run_command(words) == 1
+    said = capsys.readouterr()
+    assert "ada.py   10      100%" in said.out
+    assert "1 run could not be started, and the marks are without: ada.py with seed 1" in said.err
+    assert "Too many open files; the same command with --resume" in said.err
+
+    assert run_command([*words, "--resume"]) == 0
+    assert seeds == [0, 1, 1]

@@ -199,3 +199,14 @@ def test_an_outcome_survives_its_plain_form() -> None:
 def test_a_class_that_was_interrupted_has_rows_without_runs() -> None:
     sheet: Sheet = sheet_of("", COLUMNS, range(4), STUDENTS[:2], {"ada": OUTCOMES["ada"][:2]})
     assert [(row.points, row.runs, row.reason) for row in sheet.rows] == [(10.0, 2, ""), (0.0, 0, "not run")]
+
+
+def test_a_run_that_could_not_be_started_says_nothing_about_the_student() -> None:
+    outcomes = {"ada": [*OUTCOMES["ada"], Outcome(4, "", "too many open files")], "ben": [Outcome(0, "", "no memory")]}
+    sheet: Sheet = sheet_of("", COLUMNS, range(5), STUDENTS[:2], outcomes)
+    assert [(row.points, row.runs, row.reason) for row in sheet.rows] == [(10.0, 4, ""), (0.0, 0, "not run")]
+
+
+def test_a_run_of_which_nothing_is_recorded_has_no_points_and_says_why() -> None:
+    sheet: Sheet = sheet_of("", COLUMNS, range(1), STUDENTS[:1], {"ada": [Outcome(0, "crashed", "it is damaged")]})
+    assert [(row.points, row.runs, row.cells[0].reason) for row in sheet.rows] == [(0.0, 1, "it is damaged")]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -23,6 +24,9 @@ from tuisim.runs.store import RunStore
 from tuisim.runs.temporary import TemporaryRun
 
 MATS_KEPT = 20
+
+_OF_THE_MACHINE = frozenset({errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.ENOSPC})
+"""Errors of files that are not the program's doing."""
 
 
 def execute(task: Task, folder: Path) -> Result:
@@ -53,9 +57,12 @@ def execute(task: Task, folder: Path) -> Result:
             run = handle.stored()
             judgements = _judged(task, run)
             result = _result(task, run, ended, judgements)
-        except LogError:
+        except LogError as error:
+            cause = error.__cause__
+            if isinstance(cause, OSError) and cause.errno in _OF_THE_MACHINE:
+                return _not_started(task, error)
             # A program can damage its own recording; that must not end the batch.
-            return _not_started(task, LogError("the program has damaged the recording of its run"))
+            return nothing_known_of(task, End.CRASHED, "the program has damaged the recording of its run")
         finally:
             handle.close()
         return replace(result, run_id=_keep(temporary, ended)) if _is_kept(task, ended, judgements) else result
@@ -108,7 +115,13 @@ def _keep(temporary: TemporaryRun, ended: Ended) -> str:
 
 
 def _not_started(task: Task, error: TuisimError) -> Result:
-    return Result(task.index, task.parameters, "", 2, str(error), str(error), 0, 0, 0.0, math.nan, math.nan, math.nan)
+    text = str(error)
+    return Result(task.index, task.parameters, "", 2, text, text, 0, 0, 0.0, math.nan, math.nan, math.nan)
+
+
+def nothing_known_of(task: Task, end: End, why: str) -> Result:
+    """Return the result of a run of which nothing is recorded, by the program's own doing."""
+    return Result(task.index, task.parameters, end.value, 1, why, why, 0, 0, 0.0, math.nan, math.nan, math.nan)
 
 
 def _result(task: Task, run: StoredRun, ended: Ended, judgements: tuple[Judgement, ...]) -> Result:

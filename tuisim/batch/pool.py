@@ -12,14 +12,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from itertools import islice
-from math import nan
 from multiprocessing import parent_process
 from multiprocessing.context import SpawnContext, SpawnProcess
 from pathlib import Path
 from typing import Any
 
-from tuisim.batch.execute import execute
+from tuisim.batch.execute import execute, nothing_known_of
 from tuisim.batch.task import Result, Task
+from tuisim.protocol import End
 from tuisim.runs.process import warm_up
 from tuisim.runs.temporary import batch_folder
 
@@ -119,7 +119,8 @@ class _Pool:
                 # One by one: which of them has ended the worker is not known.
                 self._submit([task])
             else:
-                yield _lost(task)
+                why = f"the process that ran it has ended {MOST_TRIES} times"
+                yield nothing_known_of(task, End.KILLED, why)
 
     def stop(self) -> None:
         """End the workers and what they run."""
@@ -132,11 +133,6 @@ class _Pool:
 
 def _is_done(future: Future[list[Result]]) -> bool:
     return future.done() and not future.cancelled() and future.exception() is None
-
-
-def _lost(task: Task) -> Result:
-    text = f"the process that ran it has ended {MOST_TRIES} times"
-    return Result(task.index, task.parameters, "", 1, text, text, 0, 0, 0.0, nan, nan, nan)
 
 
 def _prepare_worker() -> None:

@@ -44,6 +44,11 @@ class Outcome:
     """Its id in the store; empty if it was not kept."""
 
     @property
+    def started(self) -> bool:
+        """Whether the program could be run: if not, that was the machine, and says nothing about the student."""
+        return bool(self.end)
+
+    @property
     def gave_up(self) -> bool:
         """Whether it hung, flooded or died, so that further seeds would only cost as much time again."""
         return self.end in _GIVEN_UP

@@ -112,7 +112,8 @@ def _run(turns: Sequence[_Turn], plan: Plan, journal: Journal) -> Iterator[tuple
             turn = unknown[result.index]
             outcome = outcome_of(result, turn.seed, workspace.path / str(result.index))
             workspace.remove(result.index)
-            journal.add(turn.key, outcome)
+            if outcome.started:
+                journal.add(turn.key, outcome)
             yield turn.entry.student.name, outcome
 
 

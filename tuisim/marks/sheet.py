@@ -11,6 +11,7 @@ from tuisim.marks.outcome import Outcome
 from tuisim.marks.students import Student
 from tuisim.source import source_lines
 
+NOT_RUN = "not run"
 DIGITS = 4
 """Points and shares are rounded to so many decimals: sums of floats are not exact."""
 
@@ -108,9 +109,9 @@ def row_of(student: Student, columns: Sequence[Column], outcomes: Sequence[Outco
     if not student.source:
         cells = tuple(Cell(0.0, 0, student.problem) for _ in columns)
         return Row(student.name, student.main, 0.0, 0.0, cells, student.problem, failure=student.problem)
-    ordered = tuple(sorted(outcomes, key=lambda one: one.seed))
+    ordered = tuple(sorted((one for one in outcomes if one.started), key=lambda one: one.seed))
     if not ordered:
-        return Row(student.name, student.main, 0.0, 0.0, tuple(Cell(0.0, 0, "not run") for _ in columns), "not run")
+        return Row(student.name, student.main, 0.0, 0.0, tuple(Cell(0.0, 0, NOT_RUN) for _ in columns), NOT_RUN)
     totals = [_points(columns, one) for one in ordered]
     # In a task without points, every goal counts.
     counted_goals = [column.name for column in columns if column.points] or [column.name for column in columns]
@@ -137,20 +138,20 @@ def row_of(student: Student, columns: Sequence[Column], outcomes: Sequence[Outco
 
 
 def _points(columns: Sequence[Column], outcome: Outcome) -> float:
-    """Return the points of one run; a program that could not be started has no judgements, and no points."""
+    """Return the points of one run; one of which nothing is recorded has no judgements, and no points."""
     met = {goal.name for goal in outcome.goals if goal.met}
     return math.fsum(column.points for column in columns if column.name in met)
 
 
 def _cell(column: Column, outcomes: Sequence[Outcome]) -> Cell:
-    goals = [(one.seed, next((goal for goal in one.goals if goal.name == column.name), None)) for one in outcomes]
+    goals = [(one, next((goal for goal in one.goals if goal.name == column.name), None)) for one in outcomes]
     met = sum(goal is not None and goal.met for _, goal in goals)
     points = _rounded(column.points * met / len(goals))
-    for seed, goal in goals:
+    for outcome, goal in goals:
         if goal is None:
-            return Cell(points, met, "the program could not be started", 0, seed)
+            return Cell(points, met, outcome.failure, 0, outcome.seed)
         if not goal.met:
-            return Cell(points, met, goal.reason, goal.line, seed)
+            return Cell(points, met, goal.reason, goal.line, outcome.seed)
     return Cell(points, met)
 
 
