@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
+import time
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
+from textual import app as textual_app
+from textual import pilot as textual_pilot
 from textual._compositor import Compositor
 from textual._context import active_app, visible_screen_stack
+from textual._wait import wait_for_idle as seem_idle
 from textual.css import stylesheet
 from textual.css.model import RuleSet
 from textual.css.parse import parse
@@ -19,6 +24,7 @@ from textual.css.tokenizer import Token
 from textual.notifications import Notification
 
 from tests.app.terminals import Terminal
+from tests.running import PATIENCE_S
 from tuisim.config import preferences, user_config
 
 
@@ -46,6 +52,36 @@ def _style_sheets_are_parsed_once() -> Iterator[None]:
         patch.setattr(stylesheet, "tokenize_values", tokenize_once)
         patch.setattr(stylesheet, "parse", parse_once)
         yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _keys_are_heard_before_a_test_goes_on() -> Iterator[None]:
+    """Let `press` and `pause` wait until every message has been handled, also those that others have sent.
+
+    Textual takes a process that uses little of its processor for one that has nothing left to do. On a busy machine it
+    may only be waiting for its turn.
+    """
+
+    async def wait_for_idle(min_sleep: float = 0.0, max_sleep: float = 1.0) -> None:
+        await seem_idle(min_sleep, max_sleep)
+        await _settle()
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(textual_app, "wait_for_idle", wait_for_idle)
+        patch.setattr(textual_pilot, "wait_for_idle", wait_for_idle)
+        yield
+
+
+async def _settle() -> None:
+    """Wait until nothing is ready to run in the event loop but this."""
+    loop: Any = asyncio.get_running_loop()
+    give_up = time.monotonic() + PATIENCE_S
+    # What is ready stands in no order that this could rely on, so that it takes its turn until it is alone.
+    while True:
+        await asyncio.sleep(0)
+        if not loop._ready:
+            return
+        assert time.monotonic() < give_up, "it never comes to rest"
 
 
 _DRAWN: set[tuple[object, ...]] = set()

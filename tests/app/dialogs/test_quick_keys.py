@@ -94,6 +94,7 @@ async def test_a_closed_screen_draws_nothing(monkeypatch: pytest.MonkeyPatch) ->
         app, dialog = await ready(pilot), GuideScreen(KeyPage("Help", "", {}), Topic())
         await app.push_screen(dialog)
         await pilot.press("escape")
+        await until(pilot, lambda: dialog.is_closed)
         monkeypatch.setattr(App, "_display", lambda app, screen, renderable: drawn.append(renderable))
         app._display(dialog, "help")
         monkeypatch.undo()

@@ -217,7 +217,7 @@ async def test_help_lists_every_key() -> None:
         app = await ready(pilot)
         await pilot.press("question_mark")
         assert isinstance(app.screen, GuideScreen)
-        await pilot.pause()
+        await until(pilot, lambda: ACTIONS["run"].title in screen_text(app))
         text = screen_text(app)
         for action in ACTIONS.values():
             assert action.id.startswith("nudge") or action.title in text

@@ -6,6 +6,7 @@ import pytest
 from textual.app import App, ComposeResult
 from textual.widget import Widget
 
+from tests.app.app_help import until
 from tuisim.app.panels.code import Code
 from tuisim.app.panels.output import KEPT_LINES, MAX_LINE_CHARS, Log, shown_lines
 from tuisim.runs.records import OutputRow, Stream
@@ -86,8 +87,7 @@ async def test_lines_wrap_anew_when_the_panel_gets_narrower() -> None:
         await pilot.pause()
         assert lines(pilot.app)[0] == "one two three four five six"
         await pilot.resize_terminal(16, 6)
-        await pilot.pause()
-        assert lines(pilot.app)[:2] == ["one two three", "four five six"]
+        await until(pilot, lambda: lines(pilot.app)[:2] == ["one two three", "four five six"])
 
 
 async def test_the_line_of_an_error_is_brought_into_view() -> None:
