@@ -56,9 +56,9 @@ Run = Callable[..., Done]
 """The fixture `run`."""
 
 
-def over(handle: RunHandle, patience_s: float = 60.0) -> Done:
+def over(handle: RunHandle) -> Done:
     """Wait for the end of a run."""
-    ended = handle.wait(patience_s)
+    ended = handle.wait(PATIENCE_S)
     assert ended is not None
     return Done(handle, ended)
 

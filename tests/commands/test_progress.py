@@ -12,9 +12,8 @@ from typing import Any
 import pytest
 
 from tests.conftest import Command
+from tests.running import PATIENCE_S
 from tuisim.commands.echo import Progress, echo, echo_error, progress_hidden, tell
-
-PATIENCE_S = 20.0
 
 
 class Terminal(io.StringIO):
@@ -70,14 +69,16 @@ def test_work_is_told_with_its_part(show: Show) -> None:
 @pytest.mark.parametrize("write", [echo, echo_error], ids=["stdout", "stderr"])
 def test_bar_makes_room_for_lines(show: Show, write: Callable[[str], None]) -> None:
     terminal = show()
-    with Progress("working"):
+    with Progress("working") as bar:
         terminal.until("working")
-        write("a line")
-        before, _, after = terminal.getvalue().partition("a line\n")
+        # As long as the test looks, the bar is not drawn anew.
+        with bar._lock:
+            write("a line")
+            before, _, after = terminal.getvalue().partition("a line\n")
+            terminal.seek(0)
+            terminal.truncate()
         # Taken away before the line, drawn anew after it.
         assert before.endswith("\x1b[2K")
-        terminal.seek(0)
-        terminal.truncate()
         terminal.until("working")
     assert after == ""
     assert terminal.getvalue().endswith("\x1b[2K")

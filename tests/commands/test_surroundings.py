@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Command
+from tests.running import PATIENCE_S
 
 SIBLINGS = {
     "its own": ("import random\nprint('A:', random.x)", 0, "A: 1\n", ""),
@@ -65,7 +66,7 @@ def test_too_few_open_files_are_told_in_a_sentence(tmp_path: Path, root: Path, a
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (allowed, allowed)),
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=PATIENCE_S,
         check=False,
     )
     said = f"tuisim: this shell allows no more than {allowed} open files (tuisim needs 64: ulimit -n 64)\n"

@@ -14,6 +14,7 @@ from jupyter_client.manager import KernelManager, start_new_kernel
 
 import tuisim
 from tests.conftest import ROOT
+from tests.running import PATIENCE_S
 from tuisim.cli import run_command
 
 
@@ -88,7 +89,7 @@ class Kernel:
     def message(self, parent: str, wanted: Callable[[dict[str, Any]], bool]) -> dict[str, Any]:
         """Wait for a message of a cell."""
         while True:
-            message: dict[str, Any] = self.client.get_iopub_msg(timeout=20)
+            message: dict[str, Any] = self.client.get_iopub_msg(timeout=PATIENCE_S)
             if message["parent_header"].get("msg_id") == parent and wanted(message):
                 return message
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from tests.notebook.conftest import Cell, Kernel
+from tests.running import PATIENCE_S
 from tuisim.guide.catalogue import find_page
 
 TALK = """\
@@ -162,7 +163,7 @@ def test_where_nobody_can_answer_it_is_said(
 @pytest.mark.slow
 def test_a_kernel_asks_its_user(kernel: Kernel) -> None:
     parent = kernel.client.execute(ASKS, allow_stdin=True)
-    question = kernel.client.get_stdin_msg(timeout=20)
+    question = kernel.client.get_stdin_msg(timeout=PATIENCE_S)
     assert question["content"]["prompt"] == "Name? "
     kernel.client.input("Ada")
     kernel.message(parent, lambda message: message["content"].get("text") == "Hello Ada 0.0\n")

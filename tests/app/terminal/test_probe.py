@@ -10,6 +10,7 @@ from collections.abc import Mapping
 
 import pytest
 
+from tests.running import PATIENCE_S
 from tuisim.app.terminal import probe
 from tuisim.app.terminal.probe import best_cells, cells_of, cells_without_asking
 from tuisim.config.options import CellSet
@@ -80,7 +81,7 @@ class Answers:
 
     def close(self) -> None:
         os.close(self.inside)
-        self.reader.join(5)
+        self.reader.join(PATIENCE_S)
         os.close(self.outside)
 
 
@@ -101,6 +102,7 @@ def test_a_terminal_is_asked(
     terminal = Answers(answers)
     monkeypatch.setenv("TERM", "xterm-256color")
     monkeypatch.setattr(probe, "first_environment", lambda: {"LANG": "C.UTF-8"})
+    monkeypatch.setattr(probe, "ANSWER_S", PATIENCE_S if answers else 0.1)
     with open(terminal.inside, "rb+", buffering=0, closefd=False) as tty:
         monkeypatch.setattr(sys, "stdin", tty)
         monkeypatch.setattr(sys, "stdout", tty)
