@@ -173,10 +173,14 @@ class Monkey:
             if not outside:
                 terminal.check_restored()
             before = terminal.written.count(b"\x1b[?1049h")
-            terminal.go_on()
-            terminal.until(
-                lambda: terminal.is_over or terminal.written.count(b"\x1b[?1049h") > before, "the app that goes on"
-            )
+
+            def goes_on() -> bool:
+                # A ctrl+z from before, which it reads only now, stops it once more.
+                if terminal.is_stopped:
+                    terminal.go_on()
+                return terminal.is_over or terminal.written.count(b"\x1b[?1049h") > before
+
+            terminal.until(goes_on, "the app that goes on")
         return "stop" if outside else "suspend"
 
 
@@ -218,13 +222,18 @@ def _check_processes(home: Path) -> None:
         time.sleep(0.02)
 
 
-def _check_files(folder: Path, place: Path) -> None:
-    """Raise a fault if something lies where nothing belongs, or if something in the home cannot be read."""
-    if outside := [str(path) for name in ("user", "tmp") for path in (folder / name).rglob("*")]:
+def _check_files(folder: Path, place: Path, was_killed: bool) -> None:
+    """Raise a fault if something lies where nothing belongs, or if something in the home cannot be read.
+
+    What is killed may leave temporary files behind.
+    """
+    outside = [str(path) for name in ("user", "tmp") for path in (folder / name).rglob("*")]
+    if outside and not was_killed:
         raise FaultError(f"files outside of the home and the working directory: {outside}")
     for words in (["runs", "--json"], ["config"], ["learn", "status"], ["runs", "show", "last"]):
         check_said(words, (0,))
-    if half := [str(path) for path in place.rglob("*.tmp")]:
+    half = [str(path) for path in place.rglob("*.tmp")]
+    if half and not was_killed:
         raise FaultError(f"half-written files: {half}")
 
 
@@ -275,7 +284,8 @@ def _check(name: str, folder: Path) -> None:
             terminal.take(QUIET_S)
             _check_end(terminal, False)
         _check_processes(place / "home")
-        _check_files(folder, place)
+        # Before the app listens for it, a hang-up ends it at once.
+        _check_files(folder, place, terminal.code == -signal.SIGHUP)
     except FaultError as fault:
         raise FaultError(f"{fault}\nafter {' '.join(monkey.done)}") from fault
     finally:

@@ -67,6 +67,8 @@ It forwards a hang-up to its job, as most shells do, or leaves the job to itself
 """
 
 _MODE = re.compile(rb"\x1b\[\?([\d;]+)([hl])")
+_MOST_QUIETS = 20
+"""How many times as long as the silence that is wanted something may come; then it draws without an end."""
 _USUALLY_ON = {b"7", b"25"}
 """Modes of a terminal that are on before anything is set: lines wrap, the cursor is shown."""
 
@@ -114,7 +116,8 @@ class Terminal:
         self._open = [self.outer, self._heard]
 
     def take(self, quiet_s: float) -> None:
-        """Take what comes until nothing comes for this long, or the command is stopped or over."""
+        """Take what comes until nothing comes for this long; of what never ends, take some."""
+        give_up = time.monotonic() + _MOST_QUIETS * quiet_s
         while self._open:
             readable, _, _ = select.select(self._open, [], [], quiet_s)
             for fd in readable:
@@ -128,7 +131,7 @@ class Terminal:
                     self.written += some
                 else:
                     self._take_words(some)
-            if not readable:
+            if not readable or (quiet_s and time.monotonic() > give_up):
                 break
 
     def _take_words(self, some: bytes) -> None:
@@ -179,9 +182,13 @@ class Terminal:
         self._open.remove(self.outer)
 
     def check_restored(self) -> None:
-        """Raise a fault if the terminal is not as it was before."""
-        if left := modes_left(self.written):
-            raise FaultError(f"left on the terminal: {', '.join(left)}")
+        """Raise a fault if the terminal does not become as it was before."""
+        give_up = time.monotonic() + PATIENCE_S
+        # The system hands on what was written only when it finds the time.
+        while left := modes_left(self.written):
+            if time.monotonic() > give_up:
+                raise FaultError(f"left on the terminal: {', '.join(left)}")
+            self.take(0.02)
         if (now := termios.tcgetattr(self.outer)) != self.before:
             raise FaultError(f"the terminal was {self.before}, and is {now}")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import errno
 import io
 import os
@@ -220,6 +221,20 @@ async def test_a_stop_from_outside_while_the_app_suspends_leaves_the_terminal_to
     monkeypatch.setattr(os, "isatty", lambda _: True)
     driver.stop_as_job()
     assert done == ["leaves the terminal", "stops", "takes it"]
+
+
+async def test_the_terminal_is_taken_again_by_the_event_loop_and_not_where_the_signal_interrupts_the_app(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(signal, "signal", lambda *_: None)
+    driver, done = TerminalDriver(cast(App[object], LabApp(settings()))), list[str]()
+    monkeypatch.setattr(driver, "resume_application_mode", lambda: done.append("takes it"))
+    monkeypatch.setattr(os, "isatty", lambda _: True)
+    # The app may be writing, and the output has a lock that nobody can take twice.
+    driver._sigcont_application()
+    before = list(done)
+    await asyncio.sleep(0)
+    assert (before, done) == ([], ["takes it"])
 
 
 @pytest.mark.slow

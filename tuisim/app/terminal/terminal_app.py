@@ -494,12 +494,16 @@ class TerminalDriver(LinuxDriver):
         return stopped
 
     def _sigcont_application(self, *_: object) -> None:
-        # The signal also arrives when the terminal is lost, so that nothing can resume, and after a stop without
-        # preparation, where the former reader and writer must end before they are started again.
         if self._is_stopping:
             self._was_continued = True
-            return
-        if not self._auto_restart or not os.isatty(self.fileno):
+        elif self._auto_restart and not self._loop.is_closed():
+            # The signal may come while the app holds the lock of its output, which is not to be taken twice.
+            self._loop.call_soon_threadsafe(self._take_terminal_again)
+
+    def _take_terminal_again(self) -> None:
+        # The signal also arrives when the terminal is lost, so that nothing can resume, and after a stop without
+        # preparation, where the former reader and writer must end before they are started again.
+        if is_leaving(self._app) or not self._auto_restart or not os.isatty(self.fileno):
             return
         if self._writer_thread is not None and self._writer_thread.is_alive():
             self.suspend_application_mode()
