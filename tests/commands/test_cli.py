@@ -229,7 +229,8 @@ def test_signal_stops_the_run_and_exports_its_rows(number: signal.Signals, code:
     (tmp_path / "prog.py").write_text(FIVE + "while True:\n    pass\n")
     running = start(tmp_path, "run", "prog.py", "--speed", "1", "--export", "rows.csv")
     assert running.stdout is not None
-    running.stdout.readline()
+    for _ in range(5):
+        running.stdout.readline()
     running.send_signal(number)
     _, errors = running.communicate(timeout=PATIENCE_S)
     assert running.returncode == code, errors

@@ -34,6 +34,7 @@ from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_CHUNK, TELEMETRY_FILE, Ou
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
 from tuisim.runs.store import PACKER_LOCK_FILE, PACKERS, RunStore
 from tuisim.runs.views import TelemetryView
+from tuisim.runtime.interrupts import STACK_FILE
 from tuisim.source import Program
 
 ENDLESS = """
@@ -185,7 +186,8 @@ def test_export_that_fails_does_not_hinder_the_others(
 def _delete_once_begun(home: Path, delete: Callable[[Path], None]) -> threading.Thread:
     def wait() -> None:
         give_up = time.monotonic() + PATIENCE_S
-        while not (begun := list((home / "runs").glob(f"*/{OUTPUT_FILE}"))) and time.monotonic() < give_up:
+        # The last file that a run begins with; one that came into a folder as it is deleted would stay there.
+        while not (begun := list((home / "runs").glob(f"*/{STACK_FILE}"))) and time.monotonic() < give_up:
             time.sleep(0.01)
         delete(begun[0].parent)
 

@@ -8,7 +8,7 @@ import pytest
 
 from tests.notebook.conftest import Kernel
 
-DRIVE = "%%sim_magic_preloaded -b Grey_bands -x 100 -RXF 0.05 --speed 4\n" \
+DRIVE = "%%sim_magic_preloaded -b Grey_bands -x 100 -RXF 0.05 --speed 0.5\n" \
     "tank_drive.on_for_seconds(SpeedPercent(50), SpeedPercent(50), 2)\n"  # fmt: skip
 
 
