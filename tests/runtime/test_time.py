@@ -14,6 +14,11 @@ PROGRAMS = {
         ["1.0"],
     ),
     "date": ("import datetime\nprint(datetime.datetime.now().year, datetime.date.today())", ["2020 2020-01-01"]),
+    "clock imported anew": (
+        "import importlib, sys, time\ndel sys.modules['time']\nimport time\nprint(round(time.time()))\n"
+        "importlib.reload(time)\nprint(round(time.time()))",
+        ["1577836800", "1577836800"],
+    ),
     "random": ("import random\nprint(random.random())", ["0.8444218515250481"]),
     "queue": (
         "import queue, threading, time\nq = queue.Queue()\n"

@@ -6,6 +6,7 @@ from tuisim.runtime import wallclock  # isort: skip - must come first: it saves 
 from tuisim.runtime import no_gc  # isort: skip  # noqa: F401 - imported for its effect
 
 import os
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
@@ -33,7 +34,7 @@ from tuisim.runtime.patches.clock import (
 )
 from tuisim.runtime.patches.file_waits import FileWaits
 from tuisim.runtime.patches.randomness import finish_random, finish_uuid, patch_urandom
-from tuisim.runtime.patches.replacement import replace
+from tuisim.runtime.patches.replacement import PatchedModules, replace
 from tuisim.runtime.run_config import RunConfig, read_config
 from tuisim.runtime.session import Limits, Session
 from tuisim.runtime.stack import finish_inspect, finish_traceback
@@ -133,6 +134,7 @@ class Child:
             replace,
             lambda file: own_files(session.program_file)(file),
         )
+        sys.meta_path.insert(0, PatchedModules())
 
         def leave(outcome: Outcome) -> NoReturn:
             interrupts.remove()

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import sys
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import wraps
+from importlib.machinery import ModuleSpec
 from typing import Any
+
+_patched: dict[str, types.ModuleType] = {}
+"""The modules in which a function was replaced, by name."""
 
 _SAME = ("__name__", "__qualname__", "__module__", "__doc__", "__self__", "__text_signature__")
 
@@ -76,5 +80,24 @@ def replace(
     real = getattr(module, name)
     replacement = wraps(real)(does) if isinstance(real, types.FunctionType) else replacement_for(real, does, takes)
     for place in (module, sys.modules.get(real.__module__)):
-        if getattr(place, name, None) is real:
+        if place is not None and getattr(place, name, None) is real:
             setattr(place, name, replacement)
+            _patched[place.__name__] = place
+
+
+class PatchedModules:
+    """Finds a patched module again that the program has removed from `sys.modules`: a fresh one has the real clock."""
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None = None, target: types.ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """Return how to load a patched module; None for others."""
+        loader: Any = self
+        return ModuleSpec(fullname, loader) if fullname in _patched else None
+
+    def create_module(self, spec: ModuleSpec) -> types.ModuleType:
+        """Return the module as it is."""
+        return _patched[spec.name]
+
+    def exec_module(self, module: types.ModuleType) -> None:
+        """Leave the module as it is."""
