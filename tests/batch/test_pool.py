@@ -20,9 +20,10 @@ from tuisim.batch.pool import run_many
 from tuisim.batch.task import Keep, Result, Task
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
+from tuisim.errors import LogError
 from tuisim.goals.judgement import GoalState
 from tuisim.goals.spec import Finish, Goal, Reach
-from tuisim.runs import store
+from tuisim.runs import store, temporary
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
@@ -201,3 +202,22 @@ def test_a_script_needs_no_guard(tmp_path: Path, root: Path) -> None:
         [sys.executable, str(script)], capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(root)}
     )
     assert (done.stdout, done.stderr) == ("['finished', 'finished', 'finished']\n", "")
+
+
+def test_a_batch_without_a_folder_for_its_runs_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    missing = tmp_path / "missing"
+    monkeypatch.setattr(temporary, "_parent", lambda: missing)
+    with pytest.raises(LogError, match=r"missing: no folder for temporary runs can be created: No such file"):
+        next(run_many([task("print(1)")], 1))
+
+
+def test_a_run_without_a_folder_is_told(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match=r"missing: no folder for temporary runs can be created: No such file"):
+        execute(task("print(1)"), tmp_path / "missing")
+
+
+def test_a_run_whose_folder_is_gone_is_not_started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(temporary, "RUN_FILE", "missing/run.json")
+    result = execute(task("print(1)"), tmp_path)
+    assert (result.end, result.exit_code) == ("", 2)
+    assert "cannot be written: No such file" in result.summary

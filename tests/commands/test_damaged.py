@@ -144,6 +144,8 @@ DAMAGES: dict[str, Damage] = {
     "a folder of actions": folder_for(ACTIONS_FILE),
     "a stop that is none": text(STOP_FILE, "[]"),
     "a stop without end": text(STOP_FILE, '{"tick": 1e999}'),
+    "a stop nested without end": text(STOP_FILE, "[" * 100_000),
+    "notes nested without end": text("notes.jsonl", "[" * 100_000 + "\n"),
     "notes that are none": text("notes.jsonl", "{\n"),
     "a folder of notes": folder_for("notes.jsonl"),
     "a run file that is none": text(RUN_FILE, "{"),

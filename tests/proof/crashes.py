@@ -8,15 +8,18 @@ from random import Random
 
 from tests.proof.injection import killed_at
 from tests.proof.kind import Kind
-from tests.proof.operations import OPERATIONS, check_after, numbers_in, prepared, undisturbed
+from tests.proof.operations import OPERATIONS, calls_in, check_after, in_turns, prepared, undisturbed
 
 CALLS = "write,pwrite64,writev,rename,renameat,renameat2,unlink,unlinkat,fsync,fdatasync,ftruncate,mkdir,mkdirat,link"
 
 
 def _names(random: Random) -> Iterator[str]:
-    for name in random.sample(list(OPERATIONS), len(OPERATIONS)):
-        numbers = numbers_in(name, CALLS)
-        yield from (f"{name}:{number}" for number in random.sample(numbers, len(numbers)))
+    yield from in_turns(_names_of(name, random) for name in random.sample(list(OPERATIONS), len(OPERATIONS)))
+
+
+def _names_of(operation: str, random: Random) -> Iterator[str]:
+    count = len(calls_in(operation, CALLS))
+    yield from (f"{operation}:{number}" for number in random.sample(range(1, count + 1), count))
 
 
 def _check(case: str, folder: Path) -> None:

@@ -14,7 +14,8 @@ from tests.conftest import ROOT
 from tests.proof.kind import FaultError
 from tests.running import PATIENCE_S
 
-_STRACE = ("strace", "-f", "--seccomp-bpf", "-qq", "-y")
+_STRACE = ("strace", "-qq", "-y")
+_AND_CHILDREN = ("-f", "--seccomp-bpf")
 _CALL = re.compile(r"(?P<process>\d+) +(?P<call>\w+)\((?P<rest>.*)")
 
 
@@ -44,33 +45,47 @@ def run(words: Sequence[str], folder: Path, strace: Sequence[str] = ()) -> Ended
     return Ended(done.returncode, done.stdout, done.stderr)
 
 
-def numbers_of(words: Sequence[str], folder: Path, calls: str, place: Path | None = None) -> list[int]:
-    """Return which calls of the command's first process there are, from 1.
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A system call."""
 
-    Args:
-        calls: The names of the calls, separated by commas.
-        place: Only those that name this folder, or a file in it.
-    """
+    name: str
+    is_in_folder: bool
+    """Whether it names the folder in which the command runs, or a file in it."""
+
+
+def calls_of(words: Sequence[str], folder: Path, names: str) -> list[Call]:
+    """Return the calls of the command's first process with these names, which are separated by commas, in order."""
     log = folder / "strace.log"
-    ended = run(words, folder, ["-e", f"trace={calls}", "-e", "signal=none", "-o", str(log)])
+    ended = run(words, folder, [*_AND_CHILDREN, "-e", f"trace={names}", "-e", "signal=none", "-o", str(log)])
     if ended.code:
         raise FaultError(f"the calls of {' '.join(words)} cannot be counted: {ended.err}")
     found = [match for line in log.read_text(errors="replace").splitlines() if (match := _CALL.match(line))]
     log.unlink()
-    first = [match["rest"] for match in found if match["process"] == found[0]["process"]]
-    # The working directory is part of every name.
-    rests = [rest.partition(">, ")[2] if rest.startswith("AT_FDCWD") else rest for rest in first]
-    return [number for number, rest in enumerate(rests, 1) if place is None or str(place) in rest]
+    return [
+        Call(match["call"], str(folder) in _without_working_directory(match["rest"]))
+        for match in found
+        if match["process"] == found[0]["process"]
+    ]
+
+
+def _without_working_directory(rest: str) -> str:
+    """Return the arguments of a call without the working directory, which is part of every name."""
+    return rest.partition(">, ")[2] if rest.startswith("AT_FDCWD") else rest
 
 
 def killed_at(words: Sequence[str], folder: Path, calls: str, number: int) -> Ended:
     """Run a command that is killed as it begins a call."""
-    return run(words, folder, ["-e", f"trace={calls}", "-e", f"inject={calls}:signal=KILL:when={number}", *_NOWHERE])
+    which = ["-e", f"trace={calls}", "-e", f"inject={calls}:signal=KILL:when={number}"]
+    return run(words, folder, [*_AND_CHILDREN, *which, *_NOWHERE])
 
 
-def failing_at(words: Sequence[str], folder: Path, call: str, error: str, number: int) -> Ended:
-    """Run a command of which a call fails."""
-    return run(words, folder, ["-e", f"trace={call}", "-e", f"inject={call}:error={error}:when={number}", *_NOWHERE])
+def failing_at(
+    words: Sequence[str], folder: Path, call: str, error: str, number: int, *, in_children: bool = True
+) -> Ended:
+    """Run a command of which a call fails: in each process, or in the first one only, the one of this number."""
+    which = ["-e", f"trace={call}", "-e", f"inject={call}:error={error}:when={number}"]
+    return run(words, folder, [*(_AND_CHILDREN if in_children else ()), *which, *_NOWHERE])
 
 
 _NOWHERE = ("-o", os.devnull)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from random import Random
 
 ODD_BYTES = (
-    b"\0", b"\xff\xfe", b"\xef\xbb\xbf", b"\x1b[2J\x1b]0;x\x07", b"\n" * 50, b"\r", b"\x80", b'"', b"'", b"[" * 300,
+    b"\0", b"\xff\xfe", b"\xef\xbb\xbf", b"\x1b[2J\x1b]0;x\x07", b"\n" * 50, b"\r", b"\x80", b'"', b"'", b"[" * 100_000,
     b"{" * 300, b"9" * 500, b"1e999", b"nan", b"-inf", b"\xe2\x80\xae", b"../" * 9, b"<script>", b"\xed\xa0\x80",
 )  # fmt: skip
 ODD_TOKENS = (

@@ -6,13 +6,13 @@ import atexit
 import os
 import shutil
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 from tests.proof.commands import said
-from tests.proof.injection import Ended, numbers_of, run
+from tests.proof.injection import Call, Ended, calls_of, run
 from tests.proof.kind import FaultError, home
 from tuisim.cli import EXIT_OUR_MISTAKE
 from tuisim.goals.files import examples
@@ -151,11 +151,22 @@ def contents(operation: Operation, place: Path) -> dict[str, bytes | None]:
 
 
 @cache
-def numbers_in(name: str, calls: str, *, only_in_folder: bool = False) -> list[int]:
-    """Return which calls of an operation there are, see `injection.numbers_of`."""
+def calls_in(name: str, names: str) -> list[Call]:
+    """Return the calls of an operation, see `injection.calls_of`."""
     with tempfile.TemporaryDirectory(prefix="tuisim-proof-count-") as folder, home(Path(folder)):
         place = prepared(Path(folder), "count")
-        return numbers_of(OPERATIONS[name].words, place, calls, place if only_in_folder else None)
+        return calls_of(OPERATIONS[name].words, place, names)
+
+
+def in_turns(sources: Iterable[Iterator[str]]) -> Iterator[str]:
+    """Yield from each source in its turn: a few cases have something of everything."""
+    left = list(sources)
+    while left:
+        for source in tuple(left):
+            if name := next(source, ""):
+                yield name
+            else:
+                left.remove(source)
 
 
 @dataclass(frozen=True, slots=True)

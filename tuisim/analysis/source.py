@@ -146,7 +146,7 @@ def read_notes(place: Path) -> tuple[Note, ...]:
             fields = json.loads(line)
             start_s, stop_s = float(fields["start_s"]), float(fields["stop_s"])
             found.append(Note(str(fields["text"]), start_s, stop_s, str(fields.get("variable", ""))))
-        except (ValueError, TypeError, KeyError, AttributeError) as error:
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
             raise LogError("not a note", file=str(place), row=row) from error
     return tuple(found)
 

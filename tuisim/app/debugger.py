@@ -47,7 +47,7 @@ def load_kept(program: str) -> Kept:
         data = json.loads(file_of_program(FOLDER, program).read_bytes())
         breaks = tuple(parse_break(text) for text in data["breaks"][:MAX_KEPT])
         return Kept(breaks, tuple(str(text) for text in data["watches"][:MAX_KEPT]))
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, ConfigError):
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError, ConfigError):
         return Kept()
 
 

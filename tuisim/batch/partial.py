@@ -144,5 +144,5 @@ def _encoded(row: Mapping[str, Any]) -> bytes:
 def _decoded(line: bytes) -> object:
     try:
         return json.loads(line)
-    except ValueError:
+    except (ValueError, RecursionError):
         return None

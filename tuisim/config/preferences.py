@@ -35,6 +35,6 @@ def keep(name: str, value: object) -> None:
 def _all() -> dict[str, object]:
     try:
         found = json.loads(preferences_file().read_bytes())
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return {}
     return found if isinstance(found, dict) else {}

@@ -153,7 +153,7 @@ def metadata_in(schema: pa.Schema) -> Mapping[str, Any]:
     """Return the metadata of our own exports; empty for other files."""
     try:
         found = json.loads((schema.metadata or {}).get(METADATA_KEY, b"{}"))
-    except ValueError:
+    except (ValueError, RecursionError):
         return {}
     return found if isinstance(found, dict) else {}
 

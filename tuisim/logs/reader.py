@@ -152,7 +152,7 @@ def _metadata_beside(path: Path) -> Mapping[str, Any]:
     """Return the metadata in the companion file of an export; empty if there is none."""
     try:
         found = json.loads(companion_of(path).read_bytes())
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return {}
     return found if isinstance(found, dict) else {}
 

@@ -75,7 +75,7 @@ class Journal:
             try:
                 entry = json.loads(line)
                 found[str(entry["key"])] = outcome_from_plain(entry["outcome"])
-            except (ValueError, TypeError, KeyError):
+            except (ValueError, TypeError, KeyError, RecursionError):
                 continue
         return found
 

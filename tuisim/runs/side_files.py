@@ -109,7 +109,7 @@ def read_stop_tick(folder: Path) -> int | None:
         return int(json.loads((folder / STOP_FILE).read_text("utf-8"))["tick"])
     except FileNotFoundError:
         return None
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
         raise LogError(f"cannot be read: {error}", file=str(folder / STOP_FILE)) from error
 
 
@@ -161,7 +161,7 @@ def read_modules(run_folder: Path) -> list[OwnModule]:
         ]
     except FileNotFoundError:
         return []
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
         raise LogError(f"cannot be read: {error}", file=str(path)) from error
 
 

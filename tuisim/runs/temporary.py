@@ -16,6 +16,7 @@ from types import TracebackType
 from typing import Any
 
 from tuisim.core.spec import RunSpec
+from tuisim.errors import LogError
 from tuisim.protocol import Ended
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, new_run_data, read_run, read_run_file, write_run_file
 from tuisim.runs.store import NewRun
@@ -30,13 +31,25 @@ _LEFT_OVER_S = 24 * 3600.0
 
 
 def batch_folder() -> Path:
-    """Create a folder for the temporary runs of a batch, and delete what killed processes have left a day ago."""
+    """Create a folder for the temporary runs of a batch, and delete what killed processes have left a day ago.
+
+    Raises:
+        LogError: it cannot be created.
+    """
     parent = _parent()
     for folder in parent.glob(f"{_PREFIX}*"):
         with suppress(OSError):
             if time.time() - folder.stat().st_mtime > _LEFT_OVER_S:
                 shutil.rmtree(folder, ignore_errors=True)
-    return Path(tempfile.mkdtemp(prefix=_PREFIX, dir=parent))
+    return _new_folder(parent, _PREFIX)
+
+
+def _new_folder(parent: Path, prefix: str = "") -> Path:
+    try:
+        return Path(tempfile.mkdtemp(prefix=prefix, dir=parent))
+    except OSError as error:
+        reason = error.strerror or error
+        raise LogError(f"no folder for temporary runs can be created: {reason}", file=str(parent)) from error
 
 
 def _parent() -> Path:
@@ -54,10 +67,13 @@ class TemporaryRun:
 
     Args:
         parent: Where it is created; see `batch_folder`.
+
+    Raises:
+        LogError: it cannot be created.
     """
 
     def __init__(self, parent: Path) -> None:
-        self.folder = Path(tempfile.mkdtemp(dir=parent))
+        self.folder = _new_folder(parent)
 
     def __enter__(self) -> TemporaryRun:
         return self
@@ -75,11 +91,19 @@ class TemporaryRun:
         options: Mapping[str, Any] | None = None,
         live: bool = False,
     ) -> NewRun:
-        """Write the `run.json` of a run that is about to start; arguments as in `RunStore.new_run`."""
+        """Write the `run.json` of a run that is about to start; arguments as in `RunStore.new_run`.
+
+        Raises:
+            LogError: it cannot be written.
+        """
         created = datetime.now(UTC).isoformat(timespec="milliseconds")
         run_id = self.folder.name
         data = new_run_data(run_id, 0, created, program, spec, field, options, live)
-        (self.folder / RUN_FILE).write_text(json.dumps(data), "utf-8")
+        file = self.folder / RUN_FILE
+        try:
+            file.write_text(json.dumps(data), "utf-8")
+        except OSError as error:
+            raise LogError(f"cannot be written: {error.strerror or error}", file=str(file)) from error
         return NewRun(run_id, 0, self.folder)
 
     def finish(self, _run_id: str, _end: Ended) -> None:

@@ -136,7 +136,7 @@ def find_draft(path: str) -> Draft | None:
     try:
         found = json.loads(file_of_program(FOLDER, path).read_bytes())
         draft = Draft(str(found["path"]), str(found["text"]), float(found["written_s"]))
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         # Drafts are written atomically; a malformed file has nothing to restore.
         return None
     return draft if draft.path == path else None

@@ -1,0 +1,102 @@
+"""JSON that is nested without end is damage like any other, although Python raises no `ValueError` for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pyarrow as pa
+import pytest
+
+from tuisim.analysis.source import read_notes
+from tuisim.app import debugger
+from tuisim.app.editor import text_file
+from tuisim.batch.partial import _decoded
+from tuisim.config.preferences import preference, preferences_file
+from tuisim.errors import LogError
+from tuisim.logs.arrow import METADATA_KEY, metadata_in
+from tuisim.logs.export import companion_of
+from tuisim.logs.reader import _metadata_beside
+from tuisim.marks.journal import Journal
+from tuisim.runs.side_files import MODULES_FILE, STOP_FILE, read_modules, read_stop_tick
+
+DEEP = b"[" * 100_000 + b"\n"
+PROGRAM = "drive.py"
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TUISIM_HOME", str(tmp_path / "home"))
+
+
+def deep(file: Path) -> Path:
+    """Fill a file; return it."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_bytes(DEEP)
+    return file
+
+
+def of_preferences(_folder: Path) -> object:
+    deep(preferences_file())
+    return preference("theme")
+
+
+def of_draft(_folder: Path) -> object:
+    deep(text_file.file_of_program(text_file.FOLDER, PROGRAM))
+    return text_file.find_draft(PROGRAM)
+
+
+def of_breakpoints(_folder: Path) -> object:
+    deep(text_file.file_of_program(debugger.FOLDER, PROGRAM))
+    return debugger.load_kept(PROGRAM)
+
+
+def of_companion(folder: Path) -> object:
+    deep(companion_of(folder / "a.csv"))
+    return _metadata_beside(folder / "a.csv")
+
+
+def of_schema(_folder: Path) -> object:
+    return metadata_in(pa.schema([], {METADATA_KEY: DEEP}))
+
+
+def of_journal(folder: Path) -> object:
+    with Journal(deep(folder / "marks.jsonl"), resumes=True) as journal:
+        return journal.known
+
+
+def of_batch(_folder: Path) -> object:
+    return _decoded(DEEP)
+
+
+@pytest.mark.parametrize(
+    ("read", "nothing"),
+    [
+        (of_preferences, None),
+        (of_draft, None),
+        (of_breakpoints, debugger.Kept()),
+        (of_companion, {}),
+        (of_schema, {}),
+        (of_journal, {}),
+        (of_batch, None),
+    ],
+)
+def test_what_can_be_left_out_is_left_out(read: Callable[[Path], object], nothing: object, tmp_path: Path) -> None:
+    assert read(tmp_path) == nothing
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "read"),
+    [
+        pytest.param("notes.jsonl", DEEP, lambda folder: read_notes(folder / "notes.jsonl"), id="notes"),
+        pytest.param(MODULES_FILE, DEEP, read_modules, id="modules"),
+        pytest.param(STOP_FILE, DEEP, read_stop_tick, id="stop"),
+        pytest.param(STOP_FILE, b'{"tick": 1e999}', read_stop_tick, id="stop-at-infinity"),
+    ],
+)
+def test_what_is_needed_is_an_error_that_names_the_file(
+    name: str, data: bytes, read: Callable[[Path], object], tmp_path: Path
+) -> None:
+    (tmp_path / name).write_bytes(data)
+    with pytest.raises(LogError, match=name):
+        read(tmp_path)
