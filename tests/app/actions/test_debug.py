@@ -72,8 +72,8 @@ async def press(pilot: Pilot[Any], app: LabApp, key: str, *lines: int) -> None:
 
 
 def drawn(app: LabApp) -> str:
-    assert app.panel_area.debug is not None
-    return "\n".join("".join(text for text, _ in row) for row in app.panel_area.debug._lines)
+    panel = app.panel_area.debug
+    return "\n".join("".join(text for text, _ in row) for row in (panel._lines if panel else ()))
 
 
 async def test_steps_from_the_first_line(home: object) -> None:
@@ -86,7 +86,7 @@ async def test_steps_from_the_first_line(home: object) -> None:
         assert app.panel_area.shown("debug")
         await press(pilot, app, "n", 6, 3, 4)
         assert values(app)["i"] == "1"
-        assert "line 4" in drawn(app)
+        await until(pilot, lambda: "line 4" in drawn(app))
 
 
 @pytest.mark.slow
@@ -99,7 +99,7 @@ async def test_one_line_back_and_on_again(home: object) -> None:
         await press(pilot, app, "N", 5, 4)
         assert values(app)["total"] == "0"
         assert app.debugger.looks_back
-        assert "past" in drawn(app)
+        await until(pilot, lambda: "past" in drawn(app))
         await press(pilot, app, "n", 5)
         assert values(app)["total"] == "1"
         await pilot.press("end")
@@ -116,10 +116,10 @@ async def test_going_on_from_the_past_ends_at_now(home: object, key: str) -> Non
         await ready(pilot)
         await press(pilot, app, "n", 1, 2, 3, 4, 5, 6)
         await press(pilot, app, "N", 5)
-        assert "past" in drawn(app)
+        await until(pilot, lambda: "past" in drawn(app))
         await press(pilot, app, key, 6)
         assert not app.debugger.is_away
-        assert "past" not in drawn(app) and "…" not in drawn(app)
+        await until(pilot, lambda: "past" not in drawn(app) and "…" not in drawn(app))
         await press(pilot, app, "n", 3)
 
 
@@ -198,7 +198,7 @@ async def test_the_variables_of_any_former_instant(home: object) -> None:
         app.run_controller.timeline.go(42)
         await until(pilot, lambda: app.debugger.view is not None and not app.debugger.busy)
         assert values(app) == {"total": "36", "i": "8"}
-        assert "sleeps until 0.45 s" in drawn(app)
+        await until(pilot, lambda: "sleeps until 0.45 s" in drawn(app))
         app.run_controller.timeline.go(7)
         await until(pilot, lambda: values(app) == {"total": "1", "i": "1"})
         await press(pilot, app, "n", 6)

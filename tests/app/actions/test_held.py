@@ -178,10 +178,10 @@ async def test_lines_back_add_up_and_the_end_key_comes_back_from_a_line_of_the_s
             await pilot.press("n")
             await until(pilot, partial(at_line, app, line))
             # The panels are there from the first line on.
-            assert app.panel_area.shown("code") and app.panel_area.shown("debug")
+            await until(pilot, lambda: app.panel_area.shown("code") and app.panel_area.shown("debug"))
         await pilot.press("N", "N", "n")
         await until(pilot, lambda: at_line(app, 2) and not app.debugger.busy)
-        assert "past 0.00 s" in screen_text(app)
+        await until(pilot, lambda: "past 0.00 s" in screen_text(app))
         # As the end key does it: the run at work is not let on from a former line.
         await pilot.press("full_stop")
         await until(pilot, partial(at_line, app, 4))
@@ -219,4 +219,4 @@ async def test_a_line_of_a_module_beside_the_program_is_shown(tmp_path: Path, mo
             await until(pilot, partial(at_line, app, line))
         await pilot.press("s")
         await until(pilot, lambda: "line 2 of helper.py" in screen_text(app))
-        assert "  return by + 1" in screen_text(app)
+        await until(pilot, lambda: "  return by + 1" in screen_text(app))

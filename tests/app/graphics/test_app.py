@@ -27,6 +27,7 @@ from tuisim.app.terminal.cell_view import PixelView
 from tuisim.app.terminal.plot_view import PlotView
 from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, facts_in
 from tuisim.app.terminal.screenshot import screen_cells
+from tuisim.app.terminal.sharpness import Sharpness
 from tuisim.charts.traces import TRACE_COLORS
 from tuisim.config.options import AUTO, CellSet, Protocol
 
@@ -170,7 +171,7 @@ def _is_of_pixels(view: PlotView) -> bool:
 
 
 @pytest.mark.slow
-async def test_a_chart_falls_back_to_characters_and_returns_to_pixels() -> None:
+async def test_a_chart_falls_back_to_characters_and_returns_to_pixels(monkeypatch: pytest.MonkeyPatch) -> None:
     async with on_wire(LabApp(settings(panels_on=frozenset({"chart"}))), "truecolor") as pilot:
         await _answered(pilot, ANSWERS[Protocol.KITTY])
         view = _fed(pilot, 5.0)
@@ -182,8 +183,10 @@ async def test_a_chart_falls_back_to_characters_and_returns_to_pixels() -> None:
         lab(pilot).choose_cells(AUTO)
         assert _is_of_pixels(view)
         lab(pilot).picture_mode.is_slow = lambda: True
-        pilot.app.query_one(Chart).append("Colour", [5.0], [0.0])
-        await until(pilot, lambda: view._tiles is None)
+        with monkeypatch.context() as patch:
+            patch.setattr(Sharpness, "is_still", False)
+            pilot.app.query_one(Chart).append("Colour", [5.0], [0.0])
+            await until(pilot, lambda: view._tiles is None)
         await until(pilot, lambda: view._tiles is not None)
 
 
@@ -248,7 +251,9 @@ async def test_glyphs_that_the_user_has_chosen_are_shown_instead() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("protocol", Protocol)
-async def test_on_a_slow_link_half_blocks_are_sent_for_what_moves(protocol: Protocol) -> None:
+async def test_on_a_slow_link_half_blocks_are_sent_for_what_moves(
+    protocol: Protocol, monkeypatch: pytest.MonkeyPatch
+) -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await _answered(pilot, ANSWERS[protocol])
         world = pilot.app.query_one(WorldView)
@@ -257,11 +262,13 @@ async def test_on_a_slow_link_half_blocks_are_sent_for_what_moves(protocol: Prot
         await until_quiet(pilot)
         wire_of(pilot).sent.clear()
         lab(pilot).picture_mode.is_slow = lambda: True
-        await pilot.press("right")
-        assert world._tiles is not None and world._tiles.is_coarse
-        codes = "".join(wire_of(pilot).sent)
-        assert "▀" in codes and len(codes) < 4_000
-        wire_of(pilot).sent.clear()
+        with monkeypatch.context() as patch:
+            patch.setattr(Sharpness, "is_still", False)
+            await pilot.press("right")
+            assert world._tiles is not None and world._tiles.is_coarse
+            codes = "".join(wire_of(pilot).sent)
+            assert "▀" in codes and len(codes) < 4_000
+            wire_of(pilot).sent.clear()
         await _sharp(pilot, world)
         assert len("".join(wire_of(pilot).sent)) < 20_000
 

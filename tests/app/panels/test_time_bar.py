@@ -122,7 +122,7 @@ async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> 
     async with LabApp(settings(ENDLESS, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await until(
-            pilot, lambda: app.run_controller.state == RunPhase.RUNNING and app.run_controller.timeline.newest > 60
+            pilot, lambda: app.run_controller.state == RunPhase.RUNNING and app.run_controller.timeline.newest > 300
         )
         await pilot.press("less_than_sign", "home")
         await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
