@@ -34,7 +34,7 @@ async def test_the_welcome_appears_once(size: tuple[int, int], home: Path) -> No
             app = await ready(pilot)
             assert isinstance(app.screen, Welcome) is is_first
             if is_first:
-                assert "3 Open a file" in screen_text(app)
+                await until_shown(pilot, "3 Open a file")
                 await pilot.press("escape")
                 await until(pilot, partial(is_closed, app))
 

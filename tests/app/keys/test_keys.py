@@ -31,11 +31,8 @@ SIZES = [(80, 24), (120, 40), (200, 60)]
 async def test_first_picture(size: tuple[int, int]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
         app = await ready(pilot)
-        text = screen_text(app)
-        assert "World" in text
-        assert "Instrumentation" in text
-        assert "R run" in text
-        assert text.count("\n") == size[1] - 1
+        await until(pilot, lambda: all(words in screen_text(app) for words in ("World", "Instrumentation", "R run")))
+        assert screen_text(app).count("\n") == size[1] - 1
 
 
 @pytest.mark.slow
