@@ -16,13 +16,12 @@ from random import Random
 
 from tests.proof.commands import check_said, said
 from tests.proof.kind import FaultError, Kind, home
-from tests.proof.mutations import damaged
+from tests.proof.mutations import damaged, damaged_at_edge
 from tuisim.analysis.source import read_notes
 from tuisim.app.layout.kept import load_borders, load_layout
 from tuisim.app.panels import TerminalSize
 from tuisim.batch.batch_file import load_batch
 from tuisim.config.build import build_run_spec
-from tuisim.config.folders import programs_folder
 from tuisim.config.options import Settings, settings_of
 from tuisim.config.preferences import preference
 from tuisim.config.shared_options import parse_words
@@ -58,9 +57,11 @@ _TEXTS = {
     "preferences.json": '{"theme": "tuisim-light", "cells": "octant", "welcomed": true, "layout": {'
     '"small": {"preset": "drive", "panels": [["chart", true]]}, '
     '"borders": {"wide": {"a": 0.5}}}}',
+    "notebook.ipynb": '{"cells": [{"cell_type": "markdown", "source": "Drive"}, {"cell_type": "code", "source": ["'
+    '%%sim_magic -b Loop\\n", "tank_drive.on(20, 20)"]}], "nbformat": 4, "nbformat_minor": 5, "metadata": {}}',
     "notes.jsonl": '{"text": "a band", "start_s": 1.5, "stop_s": 2.5, "variable": "Colour"}\n' * 3,
 }
-"""Files that only the app writes."""
+"""Files that no command writes."""
 
 
 def _done(words: Sequence[str]) -> str:
@@ -94,7 +95,6 @@ def samples() -> Path:
     )
     for source, name in ((examples()[0], "goals.toml"), (shipped_paths()["band-values"], "lesson.md")):
         shutil.copy(source, folder / name)
-    shutil.copy(programs_folder() / "sensor_to_chart.ipynb", folder / "notebook.ipynb")
     for name, text in _TEXTS.items():
         (folder / name).write_text(text)
     return folder
@@ -205,14 +205,16 @@ def _names(random: Random) -> Iterator[str]:
     while True:
         for name in FORMATS:
             yield f"{name}:{random.getrandbits(32)}"
+            yield f"{name}:{random.getrandbits(32)}:edge"
 
 
 def _check(name: str, folder: Path) -> None:
-    form, _, seed = name.partition(":")
+    form, seed, *edge = name.split(":")
     found = FORMATS[form]
     source = samples() / found.sound
     path = folder / source.name
-    path.write_bytes(damaged(source.read_bytes(), Random(seed), found.is_text))
+    damage = damaged_at_edge if edge else damaged
+    path.write_bytes(damage(source.read_bytes(), Random(seed), found.is_text))
     _, hard = resource.getrlimit(resource.RLIMIT_AS)
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY_MB << 20, hard))
     try:

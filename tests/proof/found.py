@@ -12,6 +12,7 @@ FOUND: Sequence[tuple[str, str]] = (
     ("damage", "arrow:3568964177"),
     ("damage", "batch:1302420243"),
     ("damage", "catalogue:554407099"),
+    ("damage", "jsonl:3488657884"),
     ("damage", "parquet:1485874645"),
     ("damage", "parquet:1560589855"),
     ("damage", "parquet:644934153"),

@@ -88,6 +88,21 @@ BINARY: Sequence[Callable[[bytes, Random], bytes]] = (flip_bits, cut, drop, repe
 TEXT = (*BINARY, change_token, change_token, change_token, change_token, move_line, move_line)
 
 
+EDGE_BYTES = 64
+"""As long as the header of a recording."""
+
+
+def damaged_at_edge(data: bytes, random: Random, is_text: bool) -> bytes:
+    """Return the data with changes in its first bytes, or its last ones, or only what is left of the first ones."""
+    head, tail = data[:EDGE_BYTES], data[-EDGE_BYTES:]
+    match random.randrange(3):
+        case 0:
+            return damaged(head, random, is_text) + data[EDGE_BYTES:]
+        case 1:
+            return data[:-EDGE_BYTES] + damaged(tail, random, is_text)
+    return damaged(head, random, is_text)
+
+
 def damaged(data: bytes, random: Random, is_text: bool) -> bytes:
     """Return the data with one to three changes."""
     for _ in range(random.choice((1, 1, 1, 2, 3))):

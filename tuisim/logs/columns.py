@@ -39,6 +39,8 @@ _UNIT = re.compile(
     r"(?:[ _]*[(\[](?P<bracket>[^)\]]*)[)\]]|\s*/\s*(?P<slash>[^\W\d_]+)|[_ ](?:in[_ ])?(?P<end>[^\W\d_]+))$"
 )
 """The unit at the end of a name: `time (ms)`, `Time [s]`, `t/s`, `timestamp_ms`, `time in ms`."""
+_LONGEST_UNIT = 200
+"""Characters at the end of a name in which a unit is looked for: a search takes their square."""
 _SINCE_1970_S = (6.3e8, 4.2e9)
 """Seconds since 1970 of the years 1990 to 2103: times of this size are dates."""
 UNIT_NAMES = {seconds: words[-1] for seconds, words in _UNIT_WORDS_S.items()}
@@ -57,7 +59,7 @@ class TimeName(NamedTuple):
 def time_name(name: str) -> TimeName:
     """Return the name without its unit, and the unit; a name such as `ms` is its own unit."""
     text = name.strip().lower()
-    found = _UNIT.search(text)
+    found = _UNIT.search(text, max(0, len(text) - _LONGEST_UNIT))
     unit_s = None
     if found is not None and found.start() > 0:
         word = next(part for part in found.groups() if part is not None).strip()
