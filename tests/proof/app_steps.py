@@ -88,10 +88,12 @@ class AppSteps:
             raise FaultError(f"runs are gone: {sorted(gone)}")
         for run_id in listed:
             run = self._model.store.load_run(run_id)
+            # Asked before it is read: it may end and grow in between.
+            is_running = run.state is Unended.RUNNING
             before, now = self._model.seen.get(run_id, Seen(b"", [])), Seen.of(run)
             before.check_grown(now, run_id, run_id in self._running)
             self._model.seen[run_id] = now
-            (self._running.add if run.state is Unended.RUNNING else self._running.discard)(run_id)
+            (self._running.add if is_running else self._running.discard)(run_id)
         self._check_shown()
 
     def _check_shown(self) -> None:
