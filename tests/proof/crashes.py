@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from random import Random
@@ -18,15 +19,19 @@ def _names(random: Random) -> Iterator[str]:
 
 
 def _names_of(operation: str, random: Random) -> Iterator[str]:
-    count = len(calls_in(operation, CALLS))
-    yield from (f"{operation}:{number}" for number in random.sample(range(1, count + 1), count))
+    counts: Counter[str] = Counter()
+    cases = []
+    for call in calls_in(operation, CALLS):
+        counts[call.name] += 1
+        cases.append(f"{operation}:{call.name}:{counts[call.name]}")
+    yield from random.sample(cases, len(cases))
 
 
 def _check(case: str, folder: Path) -> None:
-    name, _, number = case.partition(":")
+    name, call, number = case.split(":")
     undisturbed(name)
     place = prepared(folder, "place")
-    check_after(name, place, killed_at(OPERATIONS[name].words, place, CALLS, int(number)))
+    check_after(name, place, killed_at(OPERATIONS[name].words, place, call, int(number)))
 
 
 CRASHES = Kind("commands that are killed at each write and rename", _names, _check)

@@ -11,6 +11,7 @@ import pytest
 
 from tests.proof import __main__, attempts, kind
 from tests.proof.found import FOUND
+from tests.proof.injection import killed_at
 from tests.proof.kind import FaultError, Kind
 from tests.proof.kinds import KINDS
 
@@ -30,6 +31,12 @@ def test_a_little_of_each_kind_shows_no_fault(name: str) -> None:
     cases = KINDS[name].names(Random(f"{seed} {name}"))
     for _, case in zip(range(FEWER.get(name, CASES)), cases, strict=False):
         assert kind.fault_of(KINDS[name], case) == "", f"python -m tests.proof {name} --case {case} (seed {seed})"
+
+
+@pytest.mark.proof
+def test_a_command_is_killed_before_its_call(tmp_path: Path) -> None:
+    ended = killed_at(("-c", "import os; os.mkdir('a'); os.mkdir('b')"), tmp_path, "mkdir", 2)
+    assert (ended.code, [path.name for path in tmp_path.iterdir()]) == (-9, ["a"])
 
 
 def _names(random: Random) -> Iterator[str]:
