@@ -243,7 +243,7 @@ def test_a_run_that_could_not_be_started_is_missing_in_the_marks_until_it_is_res
     assert run_command(words) == 1
     said = capsys.readouterr()
     assert "ada.py   10      100%" in said.out
-    assert "1 run could not be started, and the marks are without: ada.py with seed 1" in said.err
+    assert "this machine could not make 1 run; the marks are without: ada.py with seed 1" in said.err
     assert "Too many open files; the same command with --resume" in said.err
 
     assert run_command([*words, "--resume"]) == 0

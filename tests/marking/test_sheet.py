@@ -201,8 +201,8 @@ def test_a_class_that_was_interrupted_has_rows_without_runs() -> None:
     assert [(row.points, row.runs, row.reason) for row in sheet.rows] == [(10.0, 2, ""), (0.0, 0, "not run")]
 
 
-def test_a_run_that_could_not_be_started_says_nothing_about_the_student() -> None:
-    outcomes = {"ada": [*OUTCOMES["ada"], Outcome(4, "", "too many open files")], "ben": [Outcome(0, "", "no memory")]}
+def test_a_run_that_this_machine_could_not_make_says_nothing_about_the_student() -> None:
+    outcomes = {"ada": [*OUTCOMES["ada"], Outcome(4, "", "too many open files")], "ben": [Outcome(0, "disk_full")]}
     sheet: Sheet = sheet_of("", COLUMNS, range(5), STUDENTS[:2], outcomes)
     assert [(row.points, row.runs, row.reason) for row in sheet.rows] == [(10.0, 4, ""), (0.0, 0, "not run")]
 

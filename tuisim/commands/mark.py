@@ -78,8 +78,8 @@ _OPTIONS = (
     Programs run in the world of GOALS; if it names none, in that of their magic line. A program that hangs, floods or
     crashes affects its own marks only, but tuisim is not a sandbox: see --isolate.
 
-    Exit code: 0 all programs have marks, 1 some runs could not be started (--resume runs them), 2 bad input,
-    130 interrupted (--resume goes on).
+    Exit code: 0 all programs have marks, 1 this machine could not make some runs (--resume makes them), 2 bad
+    input, 130 interrupted (--resume goes on).
     """,
 )
 def mark(**given: Any) -> int:
@@ -126,16 +126,16 @@ def mark(**given: Any) -> int:
         # First, so that marks are seen also if a file cannot be written.
         _print(sheet, found.ignored)
         _write(sheet, students, found.ignored, arguments)
-    return _tell_not_started(outcomes)
+    return _tell_missing(outcomes)
 
 
-def _tell_not_started(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
+def _tell_missing(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
     """Tell which runs are missing in the marks; return the exit code."""
-    missing = [(name, one) for name, every in outcomes.items() for one in every if not one.started]
+    missing = [(name, one) for name, every in outcomes.items() for one in every if not one.counts]
     if not missing:
         return 0
     names = listed([f"{printable(name)} with seed {one.seed}" for name, one in missing])
-    echo_error(f"tuisim: {counted(len(missing), 'run')} could not be started, and the marks are without: {names}")
+    echo_error(f"tuisim: this machine could not make {counted(len(missing), 'run')}; the marks are without: {names}")
     echo_error(f"tuisim: {missing[0][1].failure}; the same command with --resume runs what is missing")
     return 1
 

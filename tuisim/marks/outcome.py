@@ -30,7 +30,7 @@ class Outcome:
 
     seed: int
     end: str
-    """A value of `End`; empty if the program could not be started."""
+    """A value of `End`; empty if this machine could not start the program."""
     failure: str = ""
     """Why the program did not finish, one line; empty if it finished."""
     line: int = 0
@@ -44,9 +44,9 @@ class Outcome:
     """Its id in the store; empty if it was not kept."""
 
     @property
-    def started(self) -> bool:
-        """Whether the program could be run: if not, that was the machine, and says nothing about the student."""
-        return bool(self.end)
+    def counts(self) -> bool:
+        """Whether it is the program's: not if this machine could not start it, or had no room for its recording."""
+        return bool(self.end) and self.end != End.DISK_FULL
 
     @property
     def gave_up(self) -> bool:

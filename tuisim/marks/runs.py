@@ -112,7 +112,7 @@ def _run(turns: Sequence[_Turn], plan: Plan, journal: Journal) -> Iterator[tuple
             turn = unknown[result.index]
             outcome = outcome_of(result, turn.seed, workspace.path / str(result.index))
             workspace.remove(result.index)
-            if outcome.started:
+            if outcome.counts:
                 journal.add(turn.key, outcome)
             yield turn.entry.student.name, outcome
 

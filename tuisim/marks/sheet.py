@@ -109,7 +109,7 @@ def row_of(student: Student, columns: Sequence[Column], outcomes: Sequence[Outco
     if not student.source:
         cells = tuple(Cell(0.0, 0, student.problem) for _ in columns)
         return Row(student.name, student.main, 0.0, 0.0, cells, student.problem, failure=student.problem)
-    ordered = tuple(sorted((one for one in outcomes if one.started), key=lambda one: one.seed))
+    ordered = tuple(sorted((one for one in outcomes if one.counts), key=lambda one: one.seed))
     if not ordered:
         return Row(student.name, student.main, 0.0, 0.0, tuple(Cell(0.0, 0, NOT_RUN) for _ in columns), NOT_RUN)
     totals = [_points(columns, one) for one in ordered]
