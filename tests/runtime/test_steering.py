@@ -15,7 +15,8 @@ from tests.running import PATIENCE_S, Run, Start, until
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.errors import HostError
 from tuisim.protocol import Answer, Message, Paused, Resume, SetNoise, SetPose, StepTicks
-from tuisim.runs.process import decode_event
+from tuisim.runs import handle
+from tuisim.runs.process import decode_event, waited_s
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -68,6 +69,39 @@ def test_cleaning_up_runs_after_a_stop(start: Start) -> None:
     run.stop()
     run.wait(PATIENCE_S)
     assert [row.text for row in run.output.all_rows()] == ["A: 1", "clean"]
+
+
+def test_a_program_whose_turn_does_not_come_is_not_taken_for_stuck(
+    start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cleans = "sum(range(10**7))\n    print('clean')"
+    run = start(f"try:\n    print('A: 1')\n    while True: pass\nfinally:\n    {cleans}", live=True)
+    until(run, lambda: run.output.length > 0)
+    # So busy a machine that the program has done nothing but wait, while any time at all is too long.
+    monkeypatch.setattr(handle, "waited_s", lambda pid: time.monotonic())
+    monkeypatch.setattr(handle, "STUCK_AFTER_S", 0.001)
+    run.stop()
+    run.wait(PATIENCE_S)
+    assert [row.text for row in run.output.all_rows()] == ["A: 1", "clean"]
+
+
+def test_the_time_that_a_process_waits_for_a_processor_is_known() -> None:
+    # Two processes for one processor: at least one of them waits.
+    only = {min(os.sched_getaffinity(0))}
+    spinning = [
+        subprocess.Popen([sys.executable, "-c", f"import os; os.sched_setaffinity(0, {only})\nwhile True: pass"])
+        for _ in range(2)
+    ]
+    try:
+        give_up = time.monotonic() + PATIENCE_S
+        while sum(waited_s(process.pid) for process in spinning) < 0.1:
+            assert time.monotonic() < give_up
+            time.sleep(0.01)
+    finally:
+        for process in spinning:
+            process.kill()
+            process.wait()
+    assert waited_s(spinning[0].pid) == 0.0
 
 
 def test_pause_steps_and_resume(start: Start) -> None:

@@ -49,6 +49,7 @@ from tuisim.runs.process import (
     prepare_template,
     start_child,
     stuck_line,
+    waited_s,
     what_ended,
     write_command,
 )
@@ -59,7 +60,7 @@ from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
 
 STUCK_AFTER_S = 0.4
-"""A child that has not ended this long after a stop is killed."""
+"""A child that has not ended this long after a stop is killed; see `RunHandle._fair_time_s`."""
 ASK_AGAIN_S = 0.05
 ENDED_CHILD_S = 0.2
 """Time for a child to exit after its last event."""
@@ -178,6 +179,7 @@ class RunHandle:
         self._unsent: list[Message] = []
         """Commands sent before the child listens: the signal that announces one would kill it."""
         self._end_of_events = False
+        self._waited_s = 0.0
         self._stop_at: float | None = None
         self._asked_at = 0.0
         self._progress = (0, time.monotonic())
@@ -344,9 +346,9 @@ class RunHandle:
             rest = ASK_AGAIN_S if until is None else min(ASK_AGAIN_S, until - now)
             if rest <= 0:
                 break
-            if self._stop_at is not None and now < self._stop_at + STUCK_AFTER_S:
+            if self._stop_at is not None and (left := self._stop_at + STUCK_AFTER_S - self._fair_time_s()) > 0:
                 # A stuck child is killed on time.
-                rest = min(rest, self._stop_at + STUCK_AFTER_S - now)
+                rest = min(rest, left)
             self.wait_for_event(rest)
             self.pump()
         return self.ended
@@ -389,14 +391,14 @@ class RunHandle:
     def stop(self) -> None:
         """Ask the program to stop; `pump` or `wait` kill the child if it does not."""
         if self._stop_at is None:
-            self._stop_at = time.monotonic()
+            self._stop_at = self._fair_time_s()
         self._asked_at = time.monotonic()
         self.send(Stop())
 
     def kill(self) -> None:
         """Kill the child immediately; what it has written is kept."""
         if self._stop_at is None:
-            self._stop_at = time.monotonic()
+            self._stop_at = self._fair_time_s()
         end_group(self._process.pid)
 
     def prepare_next(self) -> None:
@@ -413,17 +415,17 @@ class RunHandle:
 
     def _enforce_stop(self) -> None:
         """Repeat a stop that has had no effect, and kill what is stuck."""
-        now = time.monotonic()
         if self._announced is not None:
             return
+        now = self._fair_time_s()
         if self._stop_at is None and not self.folder.is_dir():
             # Deleted while it runs: nobody can see its results.
             self.stop()
         if self._stop_at is not None:
             if now - self._stop_at > STUCK_AFTER_S:
                 self._read_stack_and_kill()
-            elif self.started and now - self._asked_at > ASK_AGAIN_S:
-                self._asked_at = now
+            elif self.started and time.monotonic() - self._asked_at > ASK_AGAIN_S:
+                self._asked_at = time.monotonic()
                 self._signal(COMMAND_SIGNAL)
         elif self._options.stall_limit_s and not self.paused:
             tick = self._ticks()
@@ -431,6 +433,11 @@ class RunHandle:
                 self._progress = (tick, now)
             elif now - self._progress[1] > STALL_FACTOR * self._options.stall_limit_s:
                 self._read_stack_and_kill()
+
+    def _fair_time_s(self) -> float:
+        """Return the time without that in which the child waited for a processor: it cannot help that others run."""
+        self._waited_s = max(self._waited_s, waited_s(self._process.pid))
+        return time.monotonic() - self._waited_s
 
     def _read_stack_and_kill(self) -> None:
         if not self._stack_asked:

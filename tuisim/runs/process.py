@@ -19,6 +19,7 @@ from typing import IO, TYPE_CHECKING, ClassVar
 import msgspec
 
 from tuisim.atomic import private
+from tuisim.core.profile import NS_PER_S
 from tuisim.errors import HostError
 from tuisim.protocol import EVENTS, Message
 from tuisim.runs.isolation import spawn_isolated
@@ -199,6 +200,15 @@ def mark(pid: int) -> int:
     except (AttributeError, OSError, ValueError):
         return 0
     return wanted
+
+
+def waited_s(pid: int) -> float:
+    """Return how long a process has waited for its turn on a processor; 0 if it is gone, or where that is unknown."""
+    try:
+        # Nanoseconds on a processor, and in the queue: Documentation/scheduler/sched-stats.rst of Linux.
+        return int(Path(f"/proc/{pid}/schedstat").read_bytes().split()[1]) / NS_PER_S
+    except (OSError, ValueError, IndexError):
+        return 0.0
 
 
 def end_group(pid: int) -> None:
