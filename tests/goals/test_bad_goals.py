@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -194,6 +195,20 @@ LINES = {
 @pytest.mark.parametrize(("text", "key", "line"), LINES.values(), ids=LINES)
 def test_line_of_key(text: str, key: str, line: int) -> None:
     assert line_of_key(text, key) == line
+
+
+def test_a_long_list_is_not_parsed_for_each_of_its_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+    parsed: list[str] = []
+    read = tomllib.loads
+
+    def counted(text: str) -> dict[str, object]:
+        parsed.append(text)
+        return read(text)
+
+    monkeypatch.setattr(tomllib, "loads", counted)
+    numbers = " 1,\n" * 500
+    assert line_of_key(f"a = [\n{numbers}]\nb = 1\nc = 2\n", "b") == 503
+    assert len(parsed) < 10
 
 
 def test_world_of_another_file_is_overridden(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from random import Random
@@ -17,21 +17,30 @@ from random import Random
 from tests.proof.commands import check_said, said
 from tests.proof.kind import FaultError, Kind, home
 from tests.proof.mutations import damaged, damaged_at_edge
+from tests.proof.odd_values import Syntax, with_odd_value
 from tuisim.analysis.source import read_notes
+from tuisim.app import debugger
+from tuisim.app.editor import text_file
 from tuisim.app.layout.kept import load_borders, load_layout
 from tuisim.app.panels import TerminalSize
 from tuisim.batch.batch_file import load_batch
 from tuisim.config.build import build_run_spec
+from tuisim.config.folders import home_folder
 from tuisim.config.options import Settings, settings_of
-from tuisim.config.preferences import preference
+from tuisim.config.preferences import preference, preferences_file
+from tuisim.config.profiles import profile_lines
 from tuisim.config.shared_options import parse_words
+from tuisim.config.user_config import config_file, load_config
 from tuisim.config.worlds import save_world
+from tuisim.core.profile import PROFILES
 from tuisim.errors import TuisimError
 from tuisim.goals.files import examples, load_task
 from tuisim.lessons.catalogue import shipped_paths
 from tuisim.lessons.files import load_lesson
 from tuisim.lessons.progress import load_progress
+from tuisim.marks.journal import Journal
 from tuisim.notebook.cells import notebook_programs
+from tuisim.runs.side_files import ACTIONS_FILE, MODULES_FILE, STOP_FILE, read_actions, read_modules, read_stop_tick
 
 MEMORY_MB = 4096
 """More address space than this has no process that reads damaged files."""
@@ -60,6 +69,17 @@ _TEXTS = {
     "notebook.ipynb": '{"cells": [{"cell_type": "markdown", "source": "Drive"}, {"cell_type": "code", "source": ["'
     '%%sim_magic -b Loop\\n", "tank_drive.on(20, 20)"]}], "nbformat": 4, "nbformat_minor": 5, "metadata": {}}',
     "notes.jsonl": '{"text": "a band", "start_s": 1.5, "stop_s": 2.5, "variable": "Colour"}\n' * 3,
+    "config.toml": '[simulation]\nbackground = "Grey_bands"\nrobot = "Explorer"\n\n[app]\ntheme = "tuisim-light"\n'
+    '\n[keys]\nrun = ["x", "f5"]\n',
+    "breaks.json": '{"breaks": ["7", "12 if x > 3"], "watches": ["x", "y + 1"]}',
+    "draft.json": '{"path": "program.py", "text": "print(1)", "written_s": 1.5}',
+    "marks.jsonl": '{"key": "a", "outcome": {"seed": 1, "end": "finished", "line": 3, "time_s": 1.5, "goals": ['
+    '{"name": "house", "met": true, "reason": "", "line": 0}]}}\n' * 2,
+    ACTIONS_FILE: '{"tick": 5, "kind": "set_pose", "x_mm": 100.0, "y_mm": 200.0, "heading_deg": 90.0}\n'
+    '{"tick": 9, "kind": "set_noise", "light": 5, "motor": 10}\n',
+    MODULES_FILE: '{"name": "tools", "file": "tools.py", "folders": null, "text": "x = 1"}\n'
+    '{"name": "pack", "file": "", "folders": ["pack"], "text": ""}\n',
+    STOP_FILE: '{"tick": 12}',
 }
 """Files that no command writes."""
 
@@ -88,8 +108,9 @@ def samples() -> Path:
         _done(["runs", "compact", "1"])
     for run in list((folder / "home" / "runs").iterdir()):
         run.rename(run.with_name("packed" if (run / "telemetry.bin.packed").exists() else "plain"))
-    for kind, name in (("robots", "Explorer"), ("obstacles", "Square_posts"), ("profiles", "ev3")):
+    for kind, name in (("robots", "Explorer"), ("obstacles", "Square_posts")):
         (folder / f"{kind}.toml").write_text(_done([kind, name]))
+    (folder / "profile.toml").write_text("\n".join(profile_lines(replace(PROFILES["ev3"], name="own"))))
     save_world(
         build_run_spec(Settings(background="Grey_bands", obstacles="Wall", pen_width_mm=3)), folder / "world.toml"
     )
@@ -120,13 +141,12 @@ def _tells(*words: str) -> Callable[[str], None]:
     return check
 
 
-def _home(read: Callable[[], object], name: str) -> Callable[[str], None]:
-    """Return a check of what is read from a file of the home folder."""
+def _home(read: Callable[[], object], place: Callable[[], Path]) -> Callable[[str], None]:
+    """Return a check of what is read from a file at a place in the home folder."""
 
     def check(path: str) -> None:
-        place = Path(os.environ["TUISIM_HOME"], name)
-        place.parent.mkdir(parents=True)
-        shutil.copy(path, place)
+        place().parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(path, place())
         with suppress(TuisimError):
             read()
 
@@ -159,6 +179,19 @@ def _settings(word: str) -> Callable[[str], object]:
     return lambda path: build_run_spec(settings_of(parse_words([word, path])))
 
 
+def _breaks() -> Path:
+    return text_file.file_of_program(debugger.FOLDER, "program.py")
+
+
+def _draft() -> Path:
+    return text_file.file_of_program(text_file.FOLDER, "program.py")
+
+
+def _journal(path: str) -> None:
+    with Journal(Path(path), resumes=True) as journal:
+        _ = [(outcome.started, outcome.gave_up) for outcome in journal.known.values()]
+
+
 def _layout() -> object:
     return load_borders("wide"), load_layout(TerminalSize.SMALL)
 
@@ -171,50 +204,73 @@ class Format:
     """A sound file, in the folder of the samples."""
     check: Callable[[str], None]
     """Reads a damaged file; raises an exception for a fault."""
-    is_text: bool = True
+    syntax: Syntax = Syntax.TOML
+    is_slow: bool = False
+    """Whether a check takes much longer than most others: it has fewer cases, or it would take all the time."""
 
 
 _LOG = _tells("log summary FILE", "log bands FILE --json", "log export FILE --out out.csv")
 _SHOWN = ("runs show RUN", "log summary RUN", "log export RUN --telemetry --out out.csv", "runs list")
 FORMATS: Mapping[str, Format] = {
-    "csv": Format("log.csv", _LOG),
-    "jsonl": Format("log.jsonl", _LOG),
-    "parquet": Format("log.parquet", _LOG, is_text=False),
-    "arrow": Format("log.arrow", _LOG, is_text=False),
+    "csv": Format("log.csv", _LOG, Syntax.CSV, is_slow=True),
+    "jsonl": Format("log.jsonl", _LOG, Syntax.ROWS, is_slow=True),
+    "parquet": Format("log.parquet", _LOG, Syntax.PARQUET, is_slow=True),
+    "arrow": Format("log.arrow", _LOG, Syntax.ARROW, is_slow=True),
     "robot": Format("robots.toml", _tells("robots FILE")),
     "obstacles": Format("obstacles.toml", _tells("obstacles FILE")),
-    "profile": Format("profiles.toml", _tells("profiles FILE")),
+    "profile": Format("profile.toml", _tells("profiles FILE")),
     "world": Format("world.toml", _reads(_settings("--world"))),
     "batch": Format("batch.toml", _reads(lambda path: load_batch(Path(path)))),
     "goals": Format("goals.toml", _reads(lambda path: load_task(Path(path)))),
-    "lesson": Format("lesson.md", _reads(load_lesson)),
-    "notebook": Format("notebook.ipynb", _reads(lambda path: notebook_programs(Path(path)))),
-    "progress": Format("progress.json", _home(load_progress, "lessons/progress.json")),
-    "preferences": Format("preferences.json", _home(lambda: preference("theme"), "preferences.json")),
-    "borders": Format("preferences.json", _home(_layout, "preferences.json")),
-    "notes": Format("notes.jsonl", _reads(lambda path: read_notes(Path(path)))),
-    "telemetry": Format("home/runs/plain/telemetry.bin", _run("plain", *_SHOWN), is_text=False),
-    "output": Format("home/runs/plain/output.bin", _run("plain", *_SHOWN), is_text=False),
-    "run": Format("home/runs/plain/run.json", _run("plain", *_SHOWN)),
-    "packed": Format("home/runs/packed/telemetry.bin.packed", _run("packed", *_SHOWN), is_text=False),
-    "catalogue": Format("home/runs.db", _catalogue, is_text=False),
+    "config": Format("config.toml", _home(load_config, config_file)),
+    "lesson": Format("lesson.md", _reads(load_lesson), Syntax.FRONT),
+    "notebook": Format("notebook.ipynb", _reads(lambda path: notebook_programs(Path(path))), Syntax.JSON),
+    "progress": Format(
+        "progress.json", _home(load_progress, lambda: home_folder() / "lessons/progress.json"), Syntax.JSON
+    ),
+    "preferences": Format("preferences.json", _home(lambda: preference("theme"), preferences_file), Syntax.JSON),
+    "borders": Format("preferences.json", _home(_layout, preferences_file), Syntax.JSON),
+    "breaks": Format("breaks.json", _home(lambda: debugger.load_kept("program.py"), _breaks), Syntax.JSON),
+    "draft": Format("draft.json", _home(lambda: text_file.find_draft("program.py"), _draft), Syntax.JSON),
+    "notes": Format("notes.jsonl", _reads(lambda path: read_notes(Path(path))), Syntax.ROWS),
+    "marks": Format("marks.jsonl", _reads(_journal), Syntax.ROWS),
+    "actions": Format(ACTIONS_FILE, _reads(lambda path: read_actions(Path(path).parent)), Syntax.ROWS),
+    "modules": Format(MODULES_FILE, _reads(lambda path: read_modules(Path(path).parent)), Syntax.ROWS),
+    "stop": Format(STOP_FILE, _reads(lambda path: read_stop_tick(Path(path).parent)), Syntax.JSON),
+    "telemetry": Format("home/runs/plain/telemetry.bin", _run("plain", *_SHOWN), Syntax.FIELDS, is_slow=True),
+    "output": Format("home/runs/plain/output.bin", _run("plain", *_SHOWN), Syntax.FIELDS, is_slow=True),
+    "run": Format("home/runs/plain/run.json", _run("plain", *_SHOWN), Syntax.JSON, is_slow=True),
+    "packed": Format("home/runs/packed/telemetry.bin.packed", _run("packed", *_SHOWN), Syntax.FIELDS, is_slow=True),
+    "catalogue": Format("home/runs.db", _catalogue, Syntax.SQLITE, is_slow=True),
 }
+_TURNS = 5
+"""Rounds of the quick formats to one of the slow ones, which still take most of the time."""
 
 
 def _names(random: Random) -> Iterator[str]:
+    forms = list(FORMATS)
     while True:
-        for name in FORMATS:
-            yield f"{name}:{random.getrandbits(32)}"
-            yield f"{name}:{random.getrandbits(32)}:edge"
+        for turn in range(_TURNS):
+            random.shuffle(forms)
+            for name in forms:
+                if turn == 0 or not FORMATS[name].is_slow:
+                    for way in ("", ":edge", ":value"):
+                        yield f"{name}:{random.getrandbits(32)}{way}"
 
 
 def _check(name: str, folder: Path) -> None:
-    form, seed, *edge = name.split(":")
+    form, seed, *way = name.split(":")
     found = FORMATS[form]
     source = samples() / found.sound
     path = folder / source.name
-    damage = damaged_at_edge if edge else damaged
-    path.write_bytes(damage(source.read_bytes(), Random(seed), found.is_text))
+    data, random = source.read_bytes(), Random(seed)
+    match way:
+        case ["value"]:
+            path.write_bytes(with_odd_value(data, random, found.syntax))
+        case ["edge"]:
+            path.write_bytes(damaged_at_edge(data, random, found.syntax.is_text))
+        case _:
+            path.write_bytes(damaged(data, random, found.syntax.is_text))
     _, hard = resource.getrlimit(resource.RLIMIT_AS)
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY_MB << 20, hard))
     try:
@@ -223,4 +279,6 @@ def _check(name: str, folder: Path) -> None:
         resource.setrlimit(resource.RLIMIT_AS, (resource.RLIM_INFINITY, hard))
 
 
-DAMAGE = Kind("files of every format with changed bits, pieces and tokens", _names, _check, limit_s=20.0)
+DAMAGE = Kind(
+    "files of every format with changed bits, pieces, tokens and types of values", _names, _check, limit_s=20.0
+)

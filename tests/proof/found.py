@@ -6,16 +6,22 @@ from collections.abc import Sequence
 
 FOUND: Sequence[tuple[str, str]] = (
     ("damage", "arrow:1013840480"),
+    ("damage", "arrow:1104241721:value"),
     ("damage", "arrow:1112074422"),
+    ("damage", "arrow:2069109442:value"),
     ("damage", "arrow:2208802654"),
     ("damage", "arrow:3138981886"),
     ("damage", "arrow:3568964177"),
     ("damage", "batch:1302420243"),
     ("damage", "catalogue:554407099"),
+    ("damage", "csv:1619606507:edge"),
     ("damage", "jsonl:3488657884"),
+    ("damage", "marks:115627938:value"),
     ("damage", "parquet:1485874645"),
     ("damage", "parquet:1560589855"),
+    ("damage", "parquet:2962725307:value"),
     ("damage", "parquet:644934153"),
+    ("damage", "progress:4157507265:value"),
     ("damage", "run:2508605289"),
     ("damage", "run:3138339898"),
 )

@@ -7,6 +7,8 @@ import tomllib
 from bisect import bisect_left
 from typing import Any
 
+_STATEMENT = re.compile(r"[ \t]*(?:[\w\"'-].*=|\[.*\][ \t]*(?:#.*)?$)")
+"""What a line looks like that begins a statement; some others look like it, too."""
 _STEP = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
 
 
@@ -22,13 +24,18 @@ def line_of_key(text: str, key: str) -> int:
     while path and not _has(_parsed(lines), path):
         path.pop()
 
+    # Only where statements begin: a value on thousands of lines would be parsed as often.
+    starts = [index for index, line in enumerate(lines) if _STATEMENT.match(line)]
+    ends = [*starts, len(lines)]
+
     def begun(count: int) -> bool:
-        """Whether the value begins in the first lines; a value that they cut off is read to its end."""
-        while (found := _parsed(lines[:count])) is None:
+        """Whether the value begins in the first statements; a value that they cut off is read to its end."""
+        while (found := _parsed(lines[: ends[count]])) is None:
             count += 1
         return _has(found, path)
 
-    return bisect_left(range(len(lines) + 1), True, key=begun) or 1
+    statements = bisect_left(range(len(ends)), True, key=begun)
+    return starts[statements - 1] + 1 if statements else 1
 
 
 def _parsed(lines: list[str]) -> Any:

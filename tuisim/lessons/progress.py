@@ -104,7 +104,7 @@ def load_progress() -> dict[str, LessonProgress]:
         raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(path)) from None
     try:
         return {name: _lesson(entry) for name, entry in json.loads(text).items()}
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
         raise ConfigError("is damaged", "delete it to begin all lessons anew", file=str(path)) from None
 
 

@@ -266,7 +266,9 @@ def _named(part: pa.Table, notes: Notes) -> pa.Table:
     for at, field in enumerate(part.schema):
         usual = _usual(field.type)
         if usual != field.type:
-            renamed = renamed.set_column(at, renamed.field(at).with_type(usual), part.column(at).cast(usual))
+            renamed = renamed.set_column(
+                at, renamed.field(at).with_type(usual), part.column(at).cast(usual, safe=False)
+            )
     return renamed.replace_schema_metadata(part.schema.metadata)
 
 
@@ -274,6 +276,9 @@ def _usual(kind: pa.DataType) -> pa.DataType:
     """Return the type in which columns of a type are processed; mostly the same."""
     if pa.types.is_decimal(kind):
         return pa.float64()
+    # Times of day have no nanoseconds in pandas.
+    if kind == pa.time64("ns"):
+        return pa.time64("us")
     return pa.string() if pa.types.is_string_view(kind) else kind
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from tuisim.core.css_colors import css_names
 from tuisim.errors import counted
+from tuisim.logs.columns import numeric_columns
 from tuisim.logs.log import Log, Series
 from tuisim.logs.plateaus import Plateau, plateaus
 from tuisim.runs.arrays import FloatArray
@@ -191,8 +192,7 @@ def light_noise(metadata: Mapping[str, Any], run: int) -> int:
 
 def driven_mm(log: Log, series: Series) -> FloatArray | None:
     """Return the distance driven at each sample, shape (n,); None if the log has no positions."""
-    names = log.table.column_names
-    if "x_mm" not in names or "y_mm" not in names or not len(series.rows):
+    if not {"x_mm", "y_mm"} <= set(numeric_columns(log.table.schema)) or not len(series.rows):
         return None
     x_mm, y_mm = (log.numbers(name)[series.rows] for name in ("x_mm", "y_mm"))
     if not (np.isfinite(x_mm).all() and np.isfinite(y_mm).all()):

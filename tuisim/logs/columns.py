@@ -214,6 +214,11 @@ def is_numeric(kind: pa.DataType) -> bool:
     return bool(pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_boolean(kind))
 
 
+def numeric_columns(schema: pa.Schema) -> list[str]:
+    """Return the names of the numeric columns."""
+    return [field.name for field in schema if is_numeric(field.type)]
+
+
 def is_time(kind: pa.DataType) -> bool:
     """Return whether a type is a date, a time or a time span."""
     return bool(pa.types.is_temporal(kind) and not pa.types.is_interval(kind))

@@ -14,7 +14,7 @@ from tuisim.core.drive import mm_per_degree
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import RobotSpec, from_plain
 from tuisim.errors import LogError, listed
-from tuisim.logs.columns import is_numeric
+from tuisim.logs.columns import is_numeric, numeric_columns
 from tuisim.logs.expressions import FUNCTIONS, Functions, evaluate, names_in
 from tuisim.logs.log import Log, Series
 from tuisim.logs.signals import derivative, integral, known_at, known_in_order, moving_average, resample
@@ -119,7 +119,7 @@ def _column(log: Log, name: str, base: Series) -> FloatArray:
     schema = log.table.schema
     if name in schema.names and is_numeric(schema.field(name).type):
         return log.numbers(name)[base.rows]
-    numbers = [at.name for at in schema if is_numeric(at.type)]
+    numbers = numeric_columns(schema)
     there = dict.fromkeys((*(known.partition(" #")[0] for known in log.names), *numbers, TIME))
     raise LogError(f"no variable {name!r}", f"there are {listed(there)}", file=log.title)
 
@@ -191,9 +191,12 @@ def reckoned_series(log: Log) -> list[Series]:
     Raises:
         LogError: the log is not telemetry, or has no metadata of the robot.
     """
-    missing = [name for name in NEEDED if name not in log.table.column_names]
+    numbers = numeric_columns(log.table.schema)
+    missing = [name for name in NEEDED if name not in numbers]
     if missing:
-        raise LogError(f"no column {missing[0]!r}", "a stored run, or its telemetry exported", file=log.title)
+        raise LogError(
+            f"no column {missing[0]!r} with numbers", "a stored run, or its telemetry exported", file=log.title
+        )
     try:
         spec = from_plain({k: v for k, v in log.metadata["runs"][0].items() if k not in ("run", "program")})
     except (KeyError, IndexError, TypeError) as error:

@@ -168,7 +168,7 @@ def typed_frame(table: LogTable) -> pd.DataFrame:
         column = frame[name]
         if isinstance(column.dtype, pd.CategoricalDtype):
             frame[name] = column = column.astype(column.cat.categories.dtype)
-        if name in TIMEDELTA and pd.api.types.is_string_dtype(column.dtype):
+        if name in TIMEDELTA and pd.api.types.is_string_dtype(column):
             spans = pd.to_timedelta(column, errors="coerce")
             frame[name] = column if spans.isna().any() else spans.astype("timedelta64[ns]")
         elif name in WHOLE and pd.api.types.is_float_dtype(column.dtype):

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
+import msgspec
+
 from tuisim.protocol import End
 
 _GIVEN_UP = frozenset({End.STALLED, End.OUTPUT_LIMIT, End.CRASHED, End.KILLED, End.STOPPED, End.DISK_FULL})
@@ -64,4 +66,8 @@ def outcome_from_plain(data: Mapping[str, Any]) -> Outcome:
     Raises:
         TypeError, KeyError: it is not the description of an outcome.
     """
-    return Outcome(**{**data, "goals": tuple(GoalOutcome(**goal) for goal in data["goals"])})
+    outcome = Outcome(**{**data, "goals": tuple(GoalOutcome(**goal) for goal in data["goals"])})
+    try:
+        return msgspec.convert(outcome.to_plain(), Outcome)
+    except msgspec.ValidationError as error:
+        raise TypeError(f"not the description of an outcome: {error}") from None

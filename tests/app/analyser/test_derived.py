@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pyarrow as pa
 import pytest
 
 from tests.app.analyser.logs import long_log, model_of, wide_log
@@ -10,7 +11,9 @@ from tuisim.analysis.model import derive
 from tuisim.app.analyser.panes import PANES
 from tuisim.app.dialogs.question import completed
 from tuisim.errors import LogError
-from tuisim.logs.derived import definition_of, derived
+from tuisim.logs.columns import guess_columns
+from tuisim.logs.derived import NEEDED, definition_of, derived, reckoned_series
+from tuisim.logs.log import Log
 
 FALLING = 90.0 - 10.0 * np.arange(10)
 DEFINED = {
@@ -47,6 +50,12 @@ REFUSED = {
     "what was never derived": ("w =", "no derived variable 'w'"),
     "no wheels": ("reckoning", "no column 'left_position_deg'"),
 }
+
+
+def test_wheels_without_numbers_cannot_be_reckoned() -> None:
+    table = pa.table({"time": [0.0, 1.0], "value": [1.0, 2.0], **{name: ["a", "b"] for name in NEEDED}})
+    with pytest.raises(LogError, match="no column 'left_position_deg' with numbers"):
+        reckoned_series(Log("test", table, guess_columns(table)))
 
 
 @pytest.mark.parametrize(("text", "said"), REFUSED.values(), ids=REFUSED)
