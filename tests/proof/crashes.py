@@ -9,22 +9,21 @@ from random import Random
 
 from tests.proof.injection import killed_at
 from tests.proof.kind import Kind
-from tests.proof.operations import OPERATIONS, calls_in, check_after, in_turns, prepared, undisturbed
+from tests.proof.operations import OPERATIONS, calls_in, check_after, prepared, rare_first, spread, undisturbed
 
 CALLS = "write,pwrite64,writev,rename,renameat,renameat2,unlink,unlinkat,fsync,fdatasync,ftruncate,mkdir,mkdirat,link"
 
 
 def _names(random: Random) -> Iterator[str]:
-    yield from in_turns(_names_of(name, random) for name in random.sample(list(OPERATIONS), len(OPERATIONS)))
+    used = Counter[str]()
+    yield from spread(lambda name: rare_first(name, _cases_of, used, random), random)
 
 
-def _names_of(operation: str, random: Random) -> Iterator[str]:
-    counts: Counter[str] = Counter()
-    cases = []
+def _cases_of(operation: str) -> Iterator[str]:
+    counts = Counter[str]()
     for call in calls_in(operation, CALLS):
         counts[call.name] += 1
-        cases.append(f"{operation}:{call.name}:{counts[call.name]}")
-    yield from random.sample(cases, len(cases))
+        yield f"{operation}:{call.name}:{counts[call.name]}"
 
 
 def _check(case: str, folder: Path) -> None:

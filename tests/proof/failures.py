@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from random import Random
 
-from tests.proof.injection import Call, failing_at
+from tests.proof.injection import failing_at
 from tests.proof.kind import FaultError, Kind
-from tests.proof.operations import OPERATIONS, calls_in, check_after, in_turns, prepared, undisturbed
+from tests.proof.operations import OPERATIONS, calls_in, check_after, prepared, rare_first, spread, undisturbed
 
 ERRORS: Mapping[str, tuple[str, ...]] = {
     "write": ("ENOSPC", "EIO", "EINTR"),
@@ -33,19 +34,16 @@ _OF_PYTHON = ("openat", "read", "mmap")
 
 
 def _names(random: Random) -> Iterator[str]:
-    yield from in_turns(_names_of(name, random) for name in random.sample(list(OPERATIONS), len(OPERATIONS)))
+    used = Counter[str]()
+    yield from spread(lambda name: rare_first(name, _cases_of, used, random), random)
 
 
-def _names_of(operation: str, random: Random) -> Iterator[str]:
+def _cases_of(operation: str) -> Iterator[str]:
     found = calls_in(operation, ",".join(ERRORS))
-    yield from in_turns([_cases(operation, call, found, random) for call in random.sample(list(ERRORS), len(ERRORS))])
-
-
-def _cases(operation: str, call: str, found: Sequence[Call], random: Random) -> Iterator[str]:
-    same = [one for one in found if one.name == call]
-    numbers = [number for number, one in enumerate(same, 1) if one.is_in_folder or call not in _OF_PYTHON]
-    cases = [f"{operation}:{call}:{error}:{number}" for number in numbers for error in ERRORS[call]]
-    yield from random.sample(cases, len(cases))
+    for call, errors in ERRORS.items():
+        same = [one for one in found if one.name == call]
+        numbers = [number for number, one in enumerate(same, 1) if one.is_in_folder or call not in _OF_PYTHON]
+        yield from (f"{operation}:{call}:{error}:{number}" for number in numbers for error in errors)
 
 
 def _check(case: str, folder: Path) -> None:
@@ -60,6 +58,9 @@ def _check(case: str, folder: Path) -> None:
         return
     if ended.code < 0:
         raise FaultError(f"ended by signal {-ended.code}: {ended.err}")
+    # Only where the call was one that writes to the terminal, or to the pipe of a run, which has no errors.
+    if call != "write" and any(sign in ended.err + ended.out for sign in ("tuisim: cannot write:", "lost sys.")):
+        raise FaultError(f"an error that nobody handled, and that names no file: {ended.err}{ended.out}")
     # A batch prints why runs have failed as a result.
     if ended.code and not (ended.err + ended.out).strip() and not (call == "write" and error != "EINTR"):
         raise FaultError(f"exit code {ended.code} without a word")

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import atexit
+import json
 import os
+import re
 import shutil
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from random import Random
 
 from tests.proof.commands import said
 from tests.proof.injection import Call, Ended, calls_of, run
@@ -27,6 +31,9 @@ for _ in range(5):
 tank_drive.off()
 """
 _OLD = "# the content before\n"
+_MISTAKES = ("Traceback", "internal error")
+_ID = re.compile(r"\d{8}T\d{6}-[0-9a-f]{6}|[0-9a-f]{32}")
+"""The id of a run, or of a folder that is marked."""
 _COMMAND = ("-P", "-m", "tuisim")
 """Not from the working directory, which Python would list to import from it."""
 
@@ -50,24 +57,35 @@ class Operation:
     """Whether it removes run 1."""
     again: tuple[str, ...] = ()
     """The words that go on after a crash; then `writes` have the content after."""
+    exports_last: bool = False
+    """Whether it exports the run that it has made, which may have ended early, to `writes`."""
+    is_list: bool = False
+    """Whether it lists the runs: those that it cannot read are listed as damaged."""
+    is_slow: bool = False
+    """Whether it takes seconds."""
 
 
 OPERATIONS: Mapping[str, Operation] = {
-    "run": Operation((*_COMMAND, "run", "program.py", "-b", "Grey_bands")),
+    "run": Operation((*_COMMAND, "run", "program.py", "-b", "Grey_bands"), is_slow=True),
     "run-export": Operation(
-        (*_COMMAND, "run", "program.py", "-b", "Grey_bands", "--telemetry", "out.csv"), ("out.csv", "out.csv.json")
+        (*_COMMAND, "run", "program.py", "-b", "Grey_bands", "--telemetry", "out.csv"), ("out.csv", "out.csv.json"),
+        exports_last=True, is_slow=True,
     ),
-    "csv": Operation((*_COMMAND, "runs", "export", "1", "out.csv"), ("out.csv", "out.csv.json")),
-    "parquet": Operation((*_COMMAND, "log", "export", "1", "--out", "out.parquet"), ("out.parquet",)),
-    "plot": Operation((*_COMMAND, "log", "plot", "1", "--out", "out.svg"), ("out.svg",)),
-    "picture": Operation((*_COMMAND, "runs", "picture", "1", "--out", "out.png"), ("out.png",)),
+    "csv": Operation((*_COMMAND, "runs", "export", "1", "out.csv"), ("out.csv", "out.csv.json"), is_slow=True),
+    "parquet": Operation((*_COMMAND, "log", "export", "1", "--out", "out.parquet"), ("out.parquet",), is_slow=True),
+    "plot": Operation((*_COMMAND, "log", "plot", "1", "--out", "out.svg"), ("out.svg",), is_slow=True),
+    "picture": Operation((*_COMMAND, "runs", "picture", "1", "--out", "out.png"), ("out.png",), is_slow=True),
     "compact": Operation((*_COMMAND, "runs", "compact", "1")),
     "remove": Operation((*_COMMAND, "runs", "rm", "1"), removes=True),
     "rerun": Operation((*_COMMAND, "runs", "rerun", "1")),
     "catalogue": Operation(
-        _call("import os; os.truncate('home/runs.db', 9); from tuisim.cli import run_command; run_command(['runs'])")
+        _call(
+            "import os; os.truncate('home/runs.db', 9); from tuisim.cli import run_command; "
+            "sys.exit(run_command(['runs']))"
+        ),
+        is_list=True,
     ),
-    "guide": Operation((*_COMMAND, "guide", "--html", "out"), ("out/index.html", "out/keys.html")),
+    "guide": Operation((*_COMMAND, "guide", "--html", "out"), ("out/index.html", "out/keys.html"), is_slow=True),
     "lesson": Operation((*_COMMAND, "learn", "new", "out.md"), ("out.md",)),
     "robot": Operation(
         _call("from tuisim.config import robots; robots.save_robot(robots.load_robot('Small_Robot'), 'out.toml')"),
@@ -100,11 +118,11 @@ OPERATIONS: Mapping[str, Operation] = {
     ),
     "batch": Operation(
         (*_COMMAND, "batch", "program.py", "--seeds", "0..2", "--jobs", "1", "--out", "out.csv"), ("out.csv",),
-        again=("--resume",),
+        again=("--resume",), is_slow=True,
     ),
     "mark": Operation(
         (*_COMMAND, "mark", "goals.toml", "class", "--seeds", "0..1", "--jobs", "1", "--export", "out.csv"),
-        ("out.csv",), again=("--resume",),
+        ("out.csv",), again=("--resume",), is_slow=True,
     ),
 }  # fmt: skip
 """Every operation by name."""
@@ -158,6 +176,38 @@ def calls_in(name: str, names: str) -> list[Call]:
         return calls_of(OPERATIONS[name].words, place, names)
 
 
+def spread(cases_of: Callable[[str], Iterator[str]], random: Random) -> Iterator[str]:
+    """Yield the cases of all operations in turns, those that are quick three times as often."""
+    names = random.sample(list(OPERATIONS), len(OPERATIONS))
+    quick = in_turns([cases_of(name) for name in names if not OPERATIONS[name].is_slow])
+    slow = in_turns([cases_of(name) for name in names if OPERATIONS[name].is_slow])
+    return in_turns([quick, quick, quick, slow])
+
+
+def rare_first(
+    name: str, cases_of: Callable[[str], Iterator[str]], used: Counter[str], random: Random
+) -> Iterator[str]:
+    """Yield the cases of an operation: first one of each call, and what was `used` least by all operations."""
+    cases, own = list(cases_of(name)), Counter[str]()
+    left = random.sample(cases, len(cases))
+
+    def uses(case: str) -> tuple[int, int]:
+        call = case.split(":")[1]
+        return own[call], used[_what(case)]
+
+    while left:
+        case = min(left, key=uses)
+        left.remove(case)
+        own[case.split(":")[1]] += 1
+        used[_what(case)] += 1
+        yield case
+
+
+def _what(case: str) -> str:
+    """Return call and error of a case, without its operation and number."""
+    return case.partition(":")[2].rpartition(":")[0]
+
+
 def in_turns(sources: Iterable[Iterator[str]]) -> Iterator[str]:
     """Yield from each source in its turn: a few cases have something of everything."""
     left = list(sources)
@@ -177,6 +227,8 @@ class Undisturbed:
     after: dict[str, bytes | None]
     telemetry: bytes
     """That of run 1."""
+    effect: dict[str, list[str]]
+    """See `_effect`."""
 
 
 @cache
@@ -189,36 +241,61 @@ def undisturbed(name: str) -> Undisturbed:
         done = run(operation.words, place)
         if done.code:
             raise FaultError(f"{name} fails by itself: {done.err}")
-        after = contents(operation, place)
-    return Undisturbed(before, after, telemetry)
+        after, effect = contents(operation, place), _effect(place, done.out)
+    return Undisturbed(before, after, telemetry, effect)
+
+
+def _effect(place: Path, out: str) -> dict[str, list[str]]:
+    """Return what an operation has printed, all files that there are then, and all runs as they are listed."""
+    listed = said(["runs", "--json"])
+    if listed.code:
+        raise FaultError(f"the runs cannot be listed: {listed.err}")
+    first = _first_run()
+    files = [str(path.relative_to(place)) for path in place.rglob("*") if path.is_file()]
+    return {
+        "stdout": out.splitlines(),
+        "files": sorted(_ID.sub("id", name.replace(first, "first")) for name in files if "/cache/" not in name),
+        "runs": sorted(f"{run['end']} {run['ticks']} {run['samples']}" for run in json.loads(listed.out)),
+    }
 
 
 def _telemetry(place: Path) -> bytes:
     """Return that of run 1, named by its folder: a run whose file cannot be read for a while gets another number."""
-    out = place / "telemetry.jsonl"
-    done = said(["runs", "export", str(place / "home" / "runs" / _first_run()), "--telemetry", str(out)])
-    if done.code:
-        raise FaultError(f"run 1 cannot be exported: {done.err}")
-    found = out.read_bytes()
-    out.unlink()
-    return found
+    with tempfile.TemporaryDirectory(dir=place) as folder:
+        out = Path(folder, "telemetry.jsonl")
+        done = said(["runs", "export", str(place / "home" / "runs" / _first_run()), "--telemetry", str(out)])
+        if done.code:
+            raise FaultError(f"run 1 cannot be exported: {done.err}")
+        return out.read_bytes()
+
+
+def _of_last_run(operation: Operation, path: str, place: Path) -> bytes | None:
+    """Return the content of one of `writes` if it is that of the last run."""
+    if not operation.exports_last:
+        return None
+    with tempfile.TemporaryDirectory(dir=place) as folder:
+        said(["runs", "export", "last", "--telemetry", str(Path(folder, "out.csv"))])
+        return Path(folder, path).read_bytes()
 
 
 def check_after(name: str, place: Path, ended: Ended) -> None:
     """Check what must hold after an operation to which something has happened."""
     operation, sound = OPERATIONS[name], undisturbed(name)
-    if ended.code in (EXIT_OUR_MISTAKE, 1) and ("Traceback" in ended.err or "internal error" in ended.err):
-        raise FaultError(f"a mistake of ours: {ended.err}")
+    if ended.code == EXIT_OUR_MISTAKE or any(sign in ended.err + ended.out for sign in _MISTAKES):
+        raise FaultError(f"a mistake of ours: {ended.err}{ended.out}")
+    effect = _effect(place, ended.out)
     found = contents(operation, place)
     # What could not be run is a row, too, until one goes on.
     for path, content in found.items() if not operation.again else ():
-        if content not in (sound.before[path], sound.after[path]):
+        if content not in (sound.before[path], sound.after[path]) and content != _of_last_run(operation, path, place):
             raise FaultError(f"{path} has neither the content before nor the one after: {(content or b'')[:200]!r}")
         if ended.code == 0 and content != sound.after[path]:
             raise FaultError(f"{path} was not written, but the exit code is 0: {ended.err}")
-    listed = said(["runs", "--json"])
-    if listed.code:
-        raise FaultError(f"the runs cannot be listed: {listed.err}")
+    for what, value in effect.items() if ended.code == 0 else ():
+        less, more = Counter(sound.effect[what]) - Counter(value), Counter(value) - Counter(sound.effect[what])
+        # A temporary file that could not be removed may be left.
+        if (less or (more and what != "files")) and (what == "files" or not operation.is_list):
+            raise FaultError(f"exit code 0, but {what} without {[*less]} and with {[*more]}: {ended.err}")
     is_gone = operation.removes and not (place / "home" / "runs" / _first_run()).exists()
     if not is_gone and _telemetry(place) != sound.telemetry:
         raise FaultError("the telemetry of run 1 has changed")

@@ -140,6 +140,22 @@ def test_a_catalogue_that_another_process_has_made_meanwhile_is_kept(
     assert Catalogue(home, lambda: ()).add(_info("b")) == 2
 
 
+def test_what_sqlite_leaves_of_a_catalogue_that_cannot_be_made_is_removed(tmp_path: Path) -> None:
+    readers = []
+
+    def scan() -> Iterator[RunInfo]:
+        # SQLite keeps its files while somebody reads, as where it cannot write to the end.
+        for fresh in tmp_path.glob(".*.tmp"):
+            readers.append(sqlite3.connect(fresh))
+            readers[-1].execute("PRAGMA user_version").fetchone()
+        yield _info("a")
+
+    assert [info.id for info in Catalogue(tmp_path, scan).rows()] == ["a"]
+    assert len(readers) == 1
+    assert list(tmp_path.glob(".*")) == []
+    readers[0].close()
+
+
 @pytest.mark.slow
 def test_two_processes_start_runs_at_once(tmp_path: Path) -> None:
     command = [sys.executable, "-c", MANY, str(tmp_path / "home")]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import shutil
@@ -10,6 +11,7 @@ from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -18,6 +20,7 @@ from tuisim.config.folders import home_folder
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.errors import LogError
 from tuisim.protocol import End, Ended, SetNoise, SetPen, Unended, UserAction
+from tuisim.runs import side_files
 from tuisim.runs.catalogue import CATALOGUE_FILE, RunInfo
 from tuisim.runs.records import OUTPUT_FILE
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, noise_at
@@ -143,6 +146,20 @@ def test_run_that_is_just_starting_is_running(store: RunStore, spec: RunSpec) ->
     run = store.new_run(PROGRAM, spec)
     assert is_held(run.folder) is None
     assert (store.runs()[0].end, store.runs()[0].ticks) == (Unended.RUNNING, 0)
+
+
+def test_runs_are_listed_where_no_lock_can_be_asked_for(
+    store: RunStore, spec: RunSpec, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = store.new_run(PROGRAM, spec)
+    os.close(hold(run.folder))
+    os.utime(run.folder, (0, 0))
+
+    def fail(descriptor: int, operation: int) -> None:
+        raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
+
+    monkeypatch.setattr(side_files, "fcntl", SimpleNamespace(flock=fail, LOCK_SH=0, LOCK_NB=0))
+    assert [info.end for info in store.runs()] == [Unended.INTERRUPTED]
 
 
 def test_run_that_never_started_is_interrupted(store: RunStore, spec: RunSpec) -> None:

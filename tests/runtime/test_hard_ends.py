@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from tests.conftest import Command
-from tests.running import Run, Start, over, until
+from tests.running import PATIENCE_S, Run, Start, over, until
+from tuisim.protocol import End, Ended
+from tuisim.runs.process import decode_event
 
 CAFE = "b'caf\\xe9'.decode('utf-8', 'surrogateescape')"
 """A text that no UTF-8 can hold, such as a file name of another system."""
@@ -218,3 +222,19 @@ def test_signals_are_the_programs(start: Start, text: str, end: str) -> None:
     until(handle, lambda: handle.telemetry.count > 2 or handle.ended is not None)
     handle.stop()
     assert over(handle).ended.end == end
+
+
+def test_a_run_whose_folder_cannot_be_used_says_why(tmp_path: Path) -> None:
+    (commands, _), (events, event_fd), (lifeline, _) = pipes = [os.pipe() for _ in range(3)]
+    fds = (commands, event_fd, lifeline)
+    try:
+        words = [sys.executable, "-m", "tuisim.runtime", str(tmp_path / "gone"), *map(str, fds)]
+        done = subprocess.run(words, pass_fds=fds, capture_output=True, timeout=PATIENCE_S, check=False)
+        os.close(event_fd)
+        with open(events, "rb", closefd=False) as file:
+            told = [decode_event(line) for line in file]
+    finally:
+        for fd in {fd for pipe in pipes for fd in pipe} - {event_fd}:
+            os.close(fd)
+    reason = "the run cannot begin: No such file or directory"
+    assert (told, done.stderr) == ([Ended(End.CRASHED, 0, 0, 1, reason)], b"")

@@ -187,7 +187,9 @@ class Catalogue:
                     self._path.with_name(CATALOGUE_FILE + suffix).unlink(missing_ok=True)
                 os.replace(fresh, self._path)
             finally:
-                fresh.unlink(missing_ok=True)
+                # Where SQLite could not write to the end, it leaves its own files.
+                for suffix in ("", "-wal", "-shm"):
+                    fresh.with_name(fresh.name + suffix).unlink(missing_ok=True)
 
     def _fill(self, connection: sqlite3.Connection) -> None:
         with _transaction(connection):

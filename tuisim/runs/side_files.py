@@ -49,7 +49,7 @@ def hold(folder: Path) -> int:
 
 
 def is_held(folder: Path) -> bool | None:
-    """Return whether a living process holds the lock; None if it was never acquired."""
+    """Return whether a living process holds the lock; None if it was never acquired, or cannot be asked for."""
     try:
         descriptor = os.open(folder / LOCK_FILE, os.O_RDONLY | os.O_CLOEXEC)
     except OSError:
@@ -58,6 +58,8 @@ def is_held(folder: Path) -> bool | None:
         fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except BlockingIOError:
         return True
+    except OSError:
+        return None
     finally:
         os.close(descriptor)
     return False

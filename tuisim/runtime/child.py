@@ -67,11 +67,12 @@ def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
         child = Child(config) if prepared is None else prepared
         child.connect(config, channel)
     except OSError as error:
-        if not is_full(error):
-            raise
         for name in (TELEMETRY_FILE, OUTPUT_FILE):
             (folder / name).unlink(missing_ok=True)
-        channel.send(protocol.Ended(protocol.End.DISK_FULL, 0, 0, 1, _no_room(error)))
+        end, summary = protocol.End.DISK_FULL, _no_room(error)
+        if not is_full(error):
+            end, summary = protocol.End.CRASHED, f"the run cannot begin: {error.strerror or error}"
+        channel.send(protocol.Ended(end, 0, 0, 1, summary))
         wallclock.exit_process(0)
     child.run()
 
