@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import sqlite3
+import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from datetime import UTC, datetime, timedelta
@@ -14,6 +15,7 @@ import pytest
 
 from tests.conftest import Command
 from tests.runs.run_recorder import PROGRAM, Recorder
+from tuisim.cli import run_command
 from tuisim.commands import runs as runs_command
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.simulation import Simulation
@@ -163,3 +165,13 @@ def test_a_recording_that_lost_all_its_ticks_is_called_cut_off(
     telemetry.write_bytes(telemetry.read_bytes()[:100])
     done = here(*words)
     assert (done.returncode, said in done.stderr) == (2, True), done.stderr
+
+
+def test_rerun_without_a_folder_for_temporary_runs_is_told(
+    make: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    make("a: 1")
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "missing"))
+    assert run_command(["runs", "rerun", "last"]) == 2
+    reason = "no folder for temporary runs can be created: No such file or directory"
+    assert capsys.readouterr().err == f"tuisim: {tmp_path}/missing: {reason}\n"

@@ -189,7 +189,7 @@ def _draft() -> Path:
 
 def _journal(path: str) -> None:
     with Journal(Path(path), resumes=True) as journal:
-        _ = [(outcome.started, outcome.gave_up) for outcome in journal.known.values()]
+        _ = [(outcome.counts, outcome.gave_up) for outcome in journal.known.values()]
 
 
 def _layout() -> object:

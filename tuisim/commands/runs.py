@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from tuisim.commands.echo import Progress, echo, echo_error, echo_json, echo_json_head, echo_lines, table, tell
 from tuisim.commands.exit_status import describe, last_state
@@ -25,6 +24,7 @@ from tuisim.runs.records import OutputRow, Stream, line_of
 from tuisim.runs.rerun import rerun, same
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import COMPACT_TICKS, RunStore, bytes_in, compact_run
+from tuisim.runs.temporary import temporary_home
 
 QUICK_BYTES = 8 << 20
 """Samples are not counted in outputs longer than this."""
@@ -176,8 +176,8 @@ def rerun_runs(words: Sequence[str], as_json: bool) -> int:
 
 def _rerun(run: StoredRun, *, as_json: bool) -> int:
     """Run it again and print whether the result is the same; return the exit code."""
-    with TemporaryDirectory(prefix="tuisim-", ignore_cleanup_errors=True) as home:
-        scratch = RunStore(Path(home))
+    with temporary_home() as home:
+        scratch = RunStore(home)
         handle = rerun(run, scratch)
         what, ticks = f"rerunning run {run.number}: {run.program.name}", run.telemetry.count
         tell(what, 0, ticks)

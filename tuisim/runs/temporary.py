@@ -7,8 +7,8 @@ import os
 import shutil
 import tempfile
 import time
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
@@ -42,6 +42,20 @@ def batch_folder() -> Path:
             if time.time() - folder.stat().st_mtime > _LEFT_OVER_S:
                 shutil.rmtree(folder, ignore_errors=True)
     return _new_folder(parent, _PREFIX)
+
+
+@contextmanager
+def temporary_home() -> Iterator[Path]:
+    """Create a home folder for temporary runs, and delete it afterwards.
+
+    Raises:
+        LogError: it cannot be created.
+    """
+    folder = _new_folder(Path(tempfile.gettempdir()), "tuisim-")
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _new_folder(parent: Path, prefix: str = "") -> Path:
