@@ -14,6 +14,7 @@ goes to stderr, to a notice in the app, and to the notebook.
 from __future__ import annotations
 
 import math
+import reprlib
 from collections.abc import Iterable, Sequence
 
 SIGNALLED = 128
@@ -183,7 +184,7 @@ def require(
     """
     number = isinstance(value, int) or (isinstance(value, float) and not whole and math.isfinite(value))
     if not number or isinstance(value, bool):
-        raise error(f"must be a {'whole ' if whole else ''}number, got {value!r}", key=key)
+        raise error(f"must be a {'whole ' if whole else ''}number, got {reprlib.repr(value)}", key=key)
     if not low <= value <= high:
         raise error(f"must be from {low:g} to {high:g}, got {value!r}", key=key)
 
@@ -205,4 +206,4 @@ def require_one_of(
     """
     allowed = tuple(allowed)
     if value not in allowed or isinstance(value, bool):
-        raise error(f"no such {what} {value!r}", f"one of {', '.join(map(str, allowed))}", key=key)
+        raise error(f"no such {what} {reprlib.repr(value)}", f"one of {', '.join(map(str, allowed))}", key=key)

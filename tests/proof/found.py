@@ -8,6 +8,8 @@ FOUND: Sequence[tuple[str, str]] = (
     ("damage", "arrow:1013840480"),
     ("damage", "arrow:1104241721:value"),
     ("damage", "arrow:1112074422"),
+    ("damage", "arrow:116652808:value"),
+    ("damage", "arrow:1306604838:value"),
     ("damage", "arrow:2069109442:value"),
     ("damage", "arrow:2208802654"),
     ("damage", "arrow:3138981886"),
@@ -20,9 +22,12 @@ FOUND: Sequence[tuple[str, str]] = (
     ("damage", "parquet:1485874645"),
     ("damage", "parquet:1560589855"),
     ("damage", "parquet:2962725307:value"),
+    ("damage", "parquet:3152310975:value"),
     ("damage", "parquet:644934153"),
     ("damage", "progress:4157507265:value"),
     ("damage", "run:2508605289"),
+    ("damage", "run:2527031845:value"),
     ("damage", "run:3138339898"),
+    ("damage", "run:4217672325:value"),
 )
 """Kind, and name of the case."""

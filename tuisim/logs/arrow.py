@@ -285,8 +285,11 @@ def _usual(kind: pa.DataType) -> pa.DataType:
 def frame_of(table: pa.Table) -> pd.DataFrame:
     """Return a table as a frame, without the types that pandas has stored with it if they are damaged."""
     try:
-        return table.to_pandas()
-    except (pa.ArrowException, ValueError, KeyError, TypeError, AttributeError):
+        frame = table.to_pandas()
+        # The names of columns may have become anything; pandas needs them to be hashable.
+        hash(tuple(frame.columns))
+        return frame
+    except (pa.ArrowException, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         metadata = {key: text for key, text in (table.schema.metadata or {}).items() if key != _PANDAS_KEY}
         return table.replace_schema_metadata(metadata).to_pandas()
 

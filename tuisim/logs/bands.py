@@ -182,11 +182,10 @@ def light_scale(values: FloatArray) -> float:
 
 def light_noise(metadata: Mapping[str, Any], run: int) -> int:
     """Return the light noise of a run (0: the first) from the metadata of its log; 0 if they do not say."""
-    runs = metadata.get("runs", ())
-    found = [entry for entry in runs if isinstance(entry, Mapping) and run in (0, entry.get("run"))]
     try:
+        found = [entry for entry in metadata["runs"] if isinstance(entry, Mapping) and run in (0, entry.get("run"))]
         return int(found[0]["world"]["noise"]["light"])
-    except (IndexError, KeyError, TypeError, ValueError):
+    except (IndexError, KeyError, TypeError, ValueError, OverflowError):
         return 0
 
 

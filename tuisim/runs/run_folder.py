@@ -280,7 +280,7 @@ def mat_files(run: StoredRun) -> FieldFiles:
     except ConfigError as error:
         raise _no_mat(run, error) from error
     # The system refuses some names that come from damaged files.
-    except (KeyError, TypeError, ValueError, OSError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError, OSError) as error:
         raise LogError(f"the mat of the run is not named: {error}", file=str(run.folder)) from error
     return found
 
