@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -248,3 +249,12 @@ def test_a_run_that_could_not_be_started_is_missing_in_the_marks_until_it_is_res
 
     assert run_command([*words, "--resume"]) == 0
     assert seeds == [0, 1, 1]
+
+
+def test_a_marking_without_a_place_for_copies_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, here: Command
+) -> None:
+    write_class(tmp_path / "class", _few("ada.py"))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "nowhere"))
+    done = here("mark", GOALS, "class", "--jobs", "1")
+    assert (done.returncode, "no folder for temporary runs can be created" in done.stderr) == (2, True), done.stderr

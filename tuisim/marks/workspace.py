@@ -6,7 +6,6 @@ import errno
 import hashlib
 import os
 import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
@@ -15,6 +14,7 @@ from typing import Any, Self
 
 from tuisim.errors import LogError
 from tuisim.marks.students import Student
+from tuisim.runs.temporary import temporary_home
 from tuisim.source import Program
 
 _LEFT_OUT = shutil.ignore_patterns("__pycache__", ".git", ".venv", "venv", "node_modules")
@@ -23,16 +23,20 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 
 
 class Workspace:
-    """A temporary folder with a copy of a student's files for each run, as a context manager."""
+    """A temporary folder with a copy of a student's files for each run, as a context manager.
+
+    Raises:
+        LogError: by `__enter__`, if the folder cannot be created.
+    """
 
     def __enter__(self) -> Self:
-        self._folder = tempfile.TemporaryDirectory(prefix="tuisim-mark-", ignore_cleanup_errors=True)
+        self._home = temporary_home()
         # A program sees resolved paths.
-        self.path = Path(self._folder.name).resolve()
+        self.path = self._home.__enter__().resolve()
         return self
 
-    def __exit__(self, *_: object) -> None:
-        self._folder.cleanup()
+    def __exit__(self, *of_error: Any) -> None:
+        self._home.__exit__(*of_error)
 
     def copy(self, student: Student, index: int) -> Path:
         """Return a new folder with a copy of a student's files.
