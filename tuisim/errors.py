@@ -22,13 +22,20 @@ SIGNALLED = 128
 EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = SIGNALLED + 2, SIGNALLED + 13
 """The exit codes of a program that was ended by SIGINT or SIGPIPE."""
 MOST_LISTED = 20
+MOST_REASON = 500
+"""Characters of a reason in a message."""
 MOST_NAME = 80
 """Characters of a listed name; a longer one is no name, but comes from a damaged file."""
 
 
+def shortened(text: str, most: int = MOST_REASON) -> str:
+    """Return a text of at most so many characters; the rest, which comes from a damaged file, is cut off."""
+    return text if len(text) <= most else f"{text[:most]}…"
+
+
 def listed(names: Iterable[str]) -> str:
     """Return names as a comma-separated list, shortened to `MOST_LISTED`; `none` if there are none."""
-    every = [name if len(name) <= MOST_NAME else f"{name[:MOST_NAME]}…" for name in names]
+    every = [shortened(name, MOST_NAME) for name in names]
     more = len(every) - MOST_LISTED
     return ", ".join(every[:MOST_LISTED]) + (f" and {more} more" if more > 0 else "") or "none"
 

@@ -27,6 +27,7 @@ FOUND: Sequence[tuple[str, str]] = (
     ("damage", "progress:4157507265:value"),
     ("damage", "run:2508605289"),
     ("damage", "run:2527031845:value"),
+    ("damage", "run:2445617949:edge"),
     ("damage", "run:3138339898"),
     ("damage", "run:4217672325:value"),
 )

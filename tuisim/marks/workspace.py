@@ -30,7 +30,7 @@ class Workspace:
     """
 
     def __enter__(self) -> Self:
-        self._home = temporary_home()
+        self._home = temporary_home("tuisim-mark-")
         # A program sees resolved paths.
         self.path = self._home.__enter__().resolve()
         return self

@@ -16,7 +16,7 @@ from tuisim.config.mats import background
 from tuisim.core.field import Field
 from tuisim.core.profile import NS_PER_S, MotorLaw, due_ns, law_of_earlier
 from tuisim.core.spec import NoiseSpec, RunSpec, from_plain, to_plain
-from tuisim.errors import ConfigError, LogError, TuisimError
+from tuisim.errors import ConfigError, LogError, TuisimError, shortened
 from tuisim.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
 from tuisim.runs.side_files import is_held, read_actions
 from tuisim.runs.views import OutputView, TelemetryView, TickRecord
@@ -227,7 +227,7 @@ def read_run(folder: Path) -> StoredRun:
         raise
     except (KeyError, TypeError, ValueError, OverflowError, AttributeError, TuisimError) as error:
         what = f"{error} is missing" if isinstance(error, KeyError) else str(error)
-        raise LogError(f"damaged: {what}", file=str(folder / RUN_FILE)) from error
+        raise LogError(f"damaged: {shortened(what)}", file=str(folder / RUN_FILE)) from error
 
 
 def _model_note(profile: Mapping[str, Any]) -> str:

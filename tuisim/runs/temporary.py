@@ -45,13 +45,13 @@ def batch_folder() -> Path:
 
 
 @contextmanager
-def temporary_home() -> Iterator[Path]:
-    """Create a home folder for temporary runs, and delete it afterwards.
+def temporary_home(prefix: str = "tuisim-") -> Iterator[Path]:
+    """Create a home folder for temporary runs, and delete it afterwards; its name begins with the prefix.
 
     Raises:
         LogError: it cannot be created.
     """
-    folder = _new_folder(Path(tempfile.gettempdir()), "tuisim-")
+    folder = _new_folder(Path(tempfile.gettempdir()), prefix)
     try:
         yield folder
     finally:
