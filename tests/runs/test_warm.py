@@ -23,8 +23,9 @@ from tuisim.source import Program
 SURROUNDINGS = {
     "modules": "print(sorted(sys.modules))",
     "environment": "print(sorted(os.environ.items()))",
+    # Another test may replace a file of the cache, which is then "(deleted)".
     "files": "print(sorted(os.path.basename(os.path.realpath(f'/proc/self/fd/{fd}')).partition(':')[0]"
-    " for fd in os.listdir('/proc/self/fd') if os.path.exists(f'/proc/self/fd/{fd}')))",
+    ".partition(' ')[0] for fd in os.listdir('/proc/self/fd') if os.path.exists(f'/proc/self/fd/{fd}')))",
     "limits": "print([resource.getrlimit(getattr(resource, n)) for n in dir(resource) if n.startswith('RLIMIT')])",
     "random": "print(random.random(), os.urandom(4), hash('a'), uuid.uuid4())",
     "interpreter": "print(sys.flags, sys.path, list(map(type, sys.meta_path)), gc.get_threshold(), gc.isenabled())",

@@ -282,4 +282,4 @@ async def test_a_page_that_has_the_focus_from_the_start_keeps_it(serve: Serve) -
         await tab.until(lambda: "idle" in tab.text)
         await tab.resize(90, 28)
         await tab.until(lambda: "quit" in tab._screen.display[27])
-        assert tab.color(0, 0) == "5fafff"
+        await tab.until(lambda: tab.color(0, 0) == "5fafff")
