@@ -229,7 +229,15 @@ def test_a_run_whose_folder_cannot_be_used_says_why(tmp_path: Path) -> None:
     fds = (commands, event_fd, lifeline)
     try:
         words = [sys.executable, "-m", "tuisim.runtime", str(tmp_path / "gone"), *map(str, fds)]
-        done = subprocess.run(words, pass_fds=fds, capture_output=True, timeout=PATIENCE_S, check=False)
+        done = subprocess.run(
+            # In a group of its own: the child asks for a signal to its group at the end of the lifeline.
+            words,
+            pass_fds=fds,
+            capture_output=True,
+            start_new_session=True,
+            timeout=PATIENCE_S,
+            check=False,
+        )
         os.close(event_fd)
         with open(events, "rb", closefd=False) as file:
             told = [decode_event(line) for line in file]
