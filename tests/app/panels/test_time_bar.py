@@ -151,7 +151,7 @@ async def test_the_bar_is_clicked_and_dragged() -> None:
         world = app.panel_area.world
         assert world is not None
         bar = world.time_bar
-        await until(pilot, lambda: bar.display and bar.region.width > 0)
+        await until(pilot, lambda: bar._moment is not None and bar.region.width > 0)
         await pilot.mouse_down(bar, offset=(0, 0))
         await until(pilot, lambda: app.run_controller.timeline.at == 0)
         await pilot.hover(bar, offset=(20, 0))

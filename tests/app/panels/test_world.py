@@ -10,7 +10,9 @@ from textual import events
 from textual.geometry import Region
 
 from tests.app.panel_help import PanelApp, moment, white_mat
+from tuisim.app.layout.tree import TIME_BAR_ROWS
 from tuisim.app.panels.world import TURN_STEP_DEG, World, WorldView
+from tuisim.app.snapshot import RunPhase
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 
@@ -40,8 +42,20 @@ async def test_it_shows_mat_and_robot(size: tuple[int, int]) -> None:
         app.panel.show(moment())
         await pilot.pause()
 
-        assert view(app.panel)._cells.shape == (size[1], size[0])
+        assert view(app.panel)._cells.shape == (size[1] - TIME_BAR_ROWS, size[0])
         assert colours(app.panel) > 5
+
+
+async def test_the_world_keeps_its_size_when_a_run_starts() -> None:
+    app = PanelApp(World())
+    async with app.run_test(size=(40, 12)) as pilot:
+        app.panel.set_mat(white_mat())
+        app.panel.show(moment(state=RunPhase.IDLE))
+        await pilot.pause()
+        before = view(app.panel).size
+        app.panel.show(moment(now_tick=321))
+        await pilot.pause()
+        assert (view(app.panel).size, len(app.panel.time_bar._lines)) == (before, 1)
 
 
 async def test_it_is_blank_until_the_mat_is_there() -> None:

@@ -473,7 +473,7 @@ def bar_cells(moment: Moment, marks: Mapping[int, Run], columns: int) -> list[Ru
 class TimeBar(LinesView):
     """The time bar."""
 
-    DEFAULT_CSS = "TimeBar { height: 1; width: 1fr; display: none; }"
+    DEFAULT_CSS = "TimeBar { height: 1; width: 1fr; }"
 
     @dataclass
     class Scrubbed(Message):
@@ -492,11 +492,10 @@ class TimeBar(LinesView):
         self._dragging = False
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment of a run; before the first run there is no bar."""
-        there = snapshot.state != RunPhase.IDLE and (snapshot.now_tick > 0 or snapshot.past)
-        if self.display != there:
-            self.display = there
-        if not there:
+        """Show a moment of a run; before the first run the row is empty, so that the world keeps its size."""
+        if snapshot.state == RunPhase.IDLE or not (snapshot.now_tick > 0 or snapshot.past):
+            self._moment = None
+            self.set_lines([])
             return
         tick = snapshot.instant.tick if snapshot.past else snapshot.now_tick
         hz = snapshot.spec.profile.tick_hz
