@@ -167,9 +167,10 @@ async def test_a_click_on_what_has_just_been_removed_does_nothing() -> None:
     async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         text = Static("gone", id="gone")
-        await app.push_screen(GuideScreen(KeyPage("Help", "", {}), Topic()))
-        await app.screen.mount(text)
-        await until(pilot, lambda: text.region.area > 0)
+        guide = GuideScreen(KeyPage("Help", "", {}), Topic())
+        await app.push_screen(guide)
+        await guide.mount(text)
+        await until(pilot, lambda: guide.is_ready and text.region.area > 0)
         x, y = text.region.offset
         with app.batch_update():
             # No layout comes in between.
@@ -177,6 +178,22 @@ async def test_a_click_on_what_has_just_been_removed_does_nothing() -> None:
             await app.on_event(events.MouseDown(None, x, y, 0, 0, 1, False, False, False, screen_x=x, screen_y=y))
         await pilot.press("escape")
         await until(pilot, lambda: len(app.screen_stack) == 1)
+
+
+@pytest.mark.parametrize("is_ready", [False, True])
+async def test_a_screen_that_is_not_drawn_yet_does_not_hear_the_mouse(
+    is_ready: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        guide, heard = GuideScreen(KeyPage("Help", "", {}), Topic()), list[events.Event]()
+        await app.push_screen(guide)
+        await until(pilot, lambda: guide.is_ready)
+        guide.is_ready = is_ready
+        monkeypatch.setattr(guide, "_forward_event", heard.append)
+        click = events.MouseDown(None, 20, 10, 0, 0, 1, False, False, False, screen_x=20, screen_y=10)
+        await app.on_event(click)
+        assert heard == [click] * is_ready
 
 
 @pytest.mark.slow

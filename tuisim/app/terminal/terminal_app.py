@@ -191,7 +191,8 @@ class TerminalApp(App[None]):
             return True
         if not isinstance(event, events.MouseEvent):
             return False
-        if self.too_small is not None:
+        # A screen that is not drawn yet has no styles yet, either: to select text in it fails.
+        if self.too_small is not None or self._is_opening:
             return True
         if not isinstance(event, events.MouseDown):
             return False
