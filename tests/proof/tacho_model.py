@@ -148,7 +148,8 @@ class TachoMotor:
     def run_direct(self) -> None:
         """Do the command of that name."""
         self._command()
-        self._run()
+        # No ramp limits it.
+        self.state = Flags(("running",), ("ramping", "holding"))
         self.duty_cycle = self.settings["duty_cycle_sp"]
         self.rising = _sign(self.duty_cycle)
 

@@ -167,6 +167,9 @@ MOTOR = Table(
         Check("time.sleep(1); m.ramp_down_sp = 2000; m.off(); time.sleep(1)"),
         Check("510 < m.speed < 540, m.state", "(True, ['running', 'ramping'])", "Motor.ramp_down_sp"),
         Check("m.wait_until_not_moving(), m.state", "(True, ['holding'])"),
+        # A duty cycle acts at once.
+        Check("m.run_direct(duty_cycle_sp=50); m.duty_cycle_sp = -50; time.sleep(0.1)"),
+        Check("m.speed, m.state, m.stop(), m.wait_until_not_moving()", "(-525, ['running'], None, True)"),
         Check("m.position = 0; t = time.time(); m.on_for_degrees(50, 720)"),
         Check("m.position, 1.3 < time.time() - t < 2.4", "(720, True)", "Motor.ramp_down_sp"),
         Check("list(motor.list_motors(address='outC'))[0].position", "0", "list_motors"),

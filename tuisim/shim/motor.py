@@ -159,7 +159,7 @@ class TachoMotor(_Tacho):
             return "running overloaded stalled"
         if motor.target_dps == 0.0 and sim.tick >= self._standstill_tick + sim.stall_ticks:
             return "running stalled"
-        return "running ramping" if motor.speed_dps != motor.target_dps else "running"
+        return "running ramping" if motor.speed_dps != motor.target_dps and not self._direct else "running"
 
     def _set_position(self, value: int) -> None:
         self._motor.position_deg = float(value * self._sign)
@@ -199,9 +199,13 @@ class TachoMotor(_Tacho):
         self._begun()
 
     def _begun(self) -> None:
-        """Handle the rare cases of a move: ramps, and target speed 0."""
-        if self._ramps or self._motor.target_dps == 0.0:
+        """Handle the rare cases of a move: ramps, which a duty cycle does not have, and target speed 0."""
+        if self._ramps and not self._direct:
             self._ramp()
+        motor = self._motor
+        if motor.target_dps == 0.0:
+            step = motor.ramp_step
+            self._standstill_tick = self._session.sim.tick + (math.ceil(abs(motor.speed_dps) / step) if step else 0)
 
     def _stop(self) -> None:
         """Stop, decelerating first if a ramp is set."""
@@ -240,16 +244,12 @@ class TachoMotor(_Tacho):
         return self._kind.max_speed_dps / ramp_ms * 1000 if ramp_ms else 0.0
 
     def _ramp(self) -> None:
-        """Pass the ramp set points to the motor, and compute when a motor with target speed 0 stops."""
-        motor, sim = self._motor, self._session.sim
-        if self._numbers["ramp_up_sp"] or self._numbers["ramp_down_sp"]:
-            faster = abs(motor.target_dps) > abs(motor.speed_dps)
-            motor.slowest_ramp_dps2 = self._ramp_dps2("ramp_up_sp" if faster else "ramp_down_sp")
-            if motor.mode in (TIMED, POSITION):
-                motor.approach_dps2 = self._ramp_dps2("ramp_down_sp")
-        if motor.target_dps == 0.0:
-            step = motor.ramp_step
-            self._standstill_tick = sim.tick + (math.ceil(abs(motor.speed_dps) / step) if step else 0)
+        """Pass the ramp set points to the motor."""
+        motor = self._motor
+        faster = abs(motor.target_dps) > abs(motor.speed_dps)
+        motor.slowest_ramp_dps2 = self._ramp_dps2("ramp_up_sp" if faster else "ramp_down_sp")
+        if motor.mode in (TIMED, POSITION):
+            motor.approach_dps2 = self._ramp_dps2("ramp_down_sp")
 
     def _run_absolute(self, speed: float) -> None:
         goal = float(self._numbers["position_sp"] * self._sign)
