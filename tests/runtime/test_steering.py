@@ -15,7 +15,7 @@ import pytest
 from tests.running import PATIENCE_S, Run, Start, until
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.errors import HostError
-from tuisim.protocol import Answer, Message, Paused, Resume, SetNoise, SetPose, StepTicks
+from tuisim.protocol import Answer, Message, Paused, Resume, SetNoise, SetPose, SetSpeed, StepTicks
 from tuisim.runs import handle
 from tuisim.runs.process import decode_event, waited_s
 
@@ -62,6 +62,17 @@ def test_stop_before_the_first_line(start: Start) -> None:
     ended = run.wait(PATIENCE_S)
     assert ended is not None
     assert ended.end == "stopped"
+
+
+@pytest.mark.parametrize("speeds", [(0.0,), (20.0, 0.0), (0.5, 1000.0)], ids=str)
+def test_the_speed_may_change_while_a_program_sleeps(start: Start, speeds: tuple[float, ...]) -> None:
+    run = start("import time\nprint('A: 1')\ntime.sleep(500)\nprint('A: 2')", live=True, time_limit_s=1000.0)
+    until(run, lambda: run.telemetry.count > 1)
+    for speed in speeds:
+        run.send(SetSpeed(speed))
+    ended = run.wait(PATIENCE_S)
+    assert ended is not None
+    assert (ended.end, [row.text for row in run.output.all_rows()]) == ("finished", ["A: 1", "A: 2"])
 
 
 def test_cleaning_up_runs_after_a_stop(start: Start) -> None:

@@ -259,11 +259,12 @@ class RunControl:
 
     def _pace(self, session: Session, most: int) -> int:
         sim = session.sim
-        while True:
+        # A command that is received meanwhile can change it, also to full speed.
+        while speed := self._speed:
             wall, simulated = wallclock.monotonic(), sim.due_ns(sim.tick + 1)
-            if self._anchor is None:
-                self._anchor = (wall, sim.due_ns(sim.tick))
-            wait_s = self._anchor[0] + (simulated - self._anchor[1]) / 1e9 / self._speed - wall
+            # A signal may remove it at any moment.
+            anchor = self._anchor = self._anchor or (wall, sim.due_ns(sim.tick))
+            wait_s = anchor[0] + (simulated - anchor[1]) / 1e9 / speed - wall
             if wait_s < -BEHIND_S:
                 self._anchor = None
                 return 1
@@ -277,6 +278,7 @@ class RunControl:
                     return most
                 if self._paused:
                     return self.before_ticks(session, most)
+        return min(most, FAST_SLICE_TICKS)
 
     # User actions
 
