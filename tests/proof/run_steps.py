@@ -263,7 +263,8 @@ def _export(model: RunModel, random: Random) -> None:
 
 
 def _remove(model: RunModel, random: Random) -> None:
-    for run in model.live.values():
+    # One that is not paused may end at any moment.
+    if run := model.one_paused(random):
         with suppress(LogError):
             model.store.remove(run.run_id)
             raise FaultError(f"run {run.number} was removed while it ran")
