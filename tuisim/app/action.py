@@ -15,7 +15,7 @@ from rich.text import Text
 from textual import events
 from textual.app import App
 from textual.binding import Binding, BindingType
-from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
+from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
 from textual.dom import DOMNode
 from textual.keys import format_key
 from textual.message import Message
@@ -189,11 +189,6 @@ class ActionHost(DOMNode):
 
 class Palette(CommandPalette, ClosesOnce[None]):
     """Textual's command palette, as one of the app's screens that close once."""
-
-    def _action_command_list(self, action: str) -> None:
-        # A list that was never shown has no pages and no lines yet.
-        if self.query_one(CommandList).size:
-            super()._action_command_list(action)
 
     def _on_click(self, event: events.Click) -> None:  # type: ignore[override]
         # Where the terminal was until it became smaller there is nothing any more to be found.

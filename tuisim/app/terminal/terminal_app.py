@@ -35,6 +35,7 @@ from textual.filter import LineFilter
 from textual.geometry import Size
 from textual.screen import Screen
 from textual.theme import Theme
+from textual.widgets import OptionList
 
 from tuisim.app import background
 from tuisim.app.action import ActionProvider, Palette
@@ -43,6 +44,7 @@ from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.graphics import kitty
 from tuisim.app.graphics.choice import graphics_of
 from tuisim.app.render.cells import PALETTE_256
+from tuisim.app.terminal import option_list
 from tuisim.app.terminal.answers import AnswerParser, TerminalAnswered
 from tuisim.app.terminal.browser import in_browser, offer
 from tuisim.app.terminal.cell_view import RowsView
@@ -431,8 +433,10 @@ class InputDecoder(utf_8.IncrementalDecoder):
         return super().decode(data, final)
 
 
-# A screen makes its compositor itself, and the driver its parser and its decoder.
+# A screen makes its compositor itself, the palette its list, and the driver its parser and its decoder.
 textual_screen.Compositor = ThoroughCompositor  # type: ignore[attr-defined]
+OptionList._on_click = option_list.click  # type: ignore[method-assign, assignment]
+OptionList._move_page = option_list.move_page  # type: ignore[method-assign, assignment]
 linux_driver.XTermParser = AnswerParser  # type: ignore[attr-defined]
 linux_driver.getincrementaldecoder = lambda _: InputDecoder  # type: ignore[attr-defined, assignment]
 
