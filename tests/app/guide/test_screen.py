@@ -87,7 +87,17 @@ async def test_the_scroll_bar_covers_no_letter() -> None:
     async with LabApp(settings()).run_test(size=SMALL) as pilot:
         screen = await opened(pilot, "G")
         page = screen._page
-        await until(pilot, lambda: page.max_scroll_y > 0 and page.scrollable_content_region.width == screen._width)
+        await until(pilot, lambda: page.max_scroll_y > 0 and page.scrollable_content_region.width == page.drawn_columns)
+
+
+async def test_a_page_is_drawn_again_when_only_its_own_width_changes() -> None:
+    async with LabApp(settings()).run_test(size=MEDIUM) as pilot:
+        screen = await opened(pilot)
+        page = screen._page
+        await until(pilot, lambda: page.scrollable_content_region.width == page.drawn_columns > 0)
+        before = page.drawn_columns
+        screen._contents.styles.width = 30
+        await until(pilot, lambda: before < page.scrollable_content_region.width == page.drawn_columns)
 
 
 @pytest.mark.quick_cases("take a screenshot")

@@ -94,6 +94,55 @@ class _Contents(Tree[Place | None]):
         return found
 
 
+class _Page(VerticalScroll):
+    """A page as wide as there is room, drawn again at each other width.
+
+    Args:
+        keys: The page with every key.
+        topic: What is shown first.
+    """
+
+    def __init__(self, keys: KeyPage, topic: Topic) -> None:
+        super().__init__(id="page")
+        self._keys, self._topic = keys, topic
+        self.place: Place = (topic.page, "")
+        """What is in view, and the section that was gone to."""
+        self._with_keys = bool(topic.page)
+        """Whether the keys of the topic stand above the page."""
+        self.drawn_columns = 0
+        """The columns that it was drawn for; 0 if it was not in view."""
+        self._text = Static(markup=False)
+
+    def compose(self) -> ComposeResult:
+        yield self._text
+
+    def on_resize(self) -> None:
+        if self.scrollable_content_region.width != self.drawn_columns:
+            self._draw()
+
+    def show(self, place: Place) -> None:
+        """Show another page or section."""
+        self.place, self._with_keys = place, False
+        self._draw()
+
+    def _draw(self) -> None:
+        self.drawn_columns = width = self.scrollable_content_region.width
+        if not width:
+            return
+        name, heading = self.place
+        if not name:
+            self._text.update(Text(f"{self._keys.start}\n\n").append_text(key_table(self._keys.groups, width)))
+            self.scroll_home(animate=False)
+            return
+        lines = page_lines(pages()[name], width)
+        drawn = _text_of(lines)
+        groups = {group: self._keys.groups[group] for group in self._topic.groups if self._with_keys}
+        self._text.update(key_table(groups, width).append("\n").append_text(drawn) if groups else drawn)
+        rows = [number for number, line in enumerate(lines) if heading == "".join(part for part, _ in line).strip()]
+        row = rows[0] if heading and rows else 0
+        self.call_after_refresh(self.scroll_to, y=row, animate=False)
+
+
 class GuideScreen(Dialog[None]):
     """The guide; `?` closes it as well.
 
@@ -115,32 +164,27 @@ class GuideScreen(Dialog[None]):
     def __init__(self, keys: KeyPage, topic: Topic) -> None:
         super().__init__()
         self._keys, self._topic = keys, topic
-        self._shown: Place = (topic.page, "")
-        self._with_keys = bool(topic.page)
-        """Whether the keys of the topic stand above the page."""
-        self._width = 0
         self._question = ""
 
     def content(self) -> ComposeResult:
         yield Input(placeholder="Search: words or a question", compact=True, id="search")
         with Horizontal(id="both"):
             yield _Contents()
-            with VerticalScroll(id="page"):
-                yield Static(id="text", markup=False)
+            yield _Page(self._keys, self._topic)
 
     def on_mount(self) -> None:
         super().on_mount()
         self._contents.show_all(self._keys.title)
         self._page.focus()
-        self.call_after_refresh(self._contents.go_to, self._shown)
+        self.call_after_refresh(self._contents.go_to, self.place)
 
     @property
     def _contents(self) -> _Contents:
         return self.query_one(_Contents)
 
     @property
-    def _page(self) -> VerticalScroll:
-        return self.query_one("#page", VerticalScroll)
+    def _page(self) -> _Page:
+        return self.query_one(_Page)
 
     @property
     def _search(self) -> Input:
@@ -149,15 +193,13 @@ class GuideScreen(Dialog[None]):
     @property
     def place(self) -> Place:
         """The page in view, and the section that was gone to."""
-        return self._shown
+        return self._page.place
 
     def on_resize(self, event: events.Resize) -> None:
         self._arrange(self._page.has_focus)
-        self.call_after_refresh(self._draw)
 
     def on_descendant_focus(self, event: events.DescendantFocus) -> None:
         self._arrange(event.widget is self._page)
-        self.call_after_refresh(self._draw)
 
     def _arrange(self, reading: bool) -> None:
         """Leave out one of the two sides where there is no room for both."""
@@ -165,43 +207,17 @@ class GuideScreen(Dialog[None]):
         self._contents.display = columns >= _SIDE_BY_SIDE or not reading
         self._page.display = columns >= _PREVIEW or reading
 
-    def _draw(self) -> None:
-        """Draw the page again if it has another width."""
-        # It may be removed before it was drawn.
-        is_there = self.is_mounted and bool(self.query("#page"))
-        if is_there and self._page.scrollable_content_region.width != self._width:
-            self._show(self._shown, with_keys=self._with_keys)
-
-    def _show(self, place: Place, *, with_keys: bool = False) -> None:
-        self._shown, self._with_keys = place, with_keys
-        self._width = width = self._page.scrollable_content_region.width
-        if not width:
-            return
-        name, heading = place
-        text = self.query_one("#text", Static)
-        if not name:
-            text.update(Text(f"{self._keys.start}\n\n").append_text(key_table(self._keys.groups, width)))
-            self._page.scroll_home(animate=False)
-            return
-        lines = page_lines(pages()[name], width)
-        drawn = _text_of(lines)
-        groups = {group: self._keys.groups[group] for group in self._topic.groups if with_keys}
-        text.update(key_table(groups, width).append("\n").append_text(drawn) if groups else drawn)
-        rows = [number for number, line in enumerate(lines) if heading == "".join(part for part, _ in line).strip()]
-        row = rows[0] if heading and rows else 0
-        self.call_after_refresh(self._page.scroll_to, y=row, animate=False)
-
     @on(Tree.NodeHighlighted)
     def _preview(self, event: Tree.NodeHighlighted[Place | None]) -> None:
         if event.node.data is not None and self._contents.has_focus:
-            self._show(event.node.data)
+            self._page.show(event.node.data)
 
     @on(Tree.NodeSelected)
     def _open(self, event: Tree.NodeSelected[Place | None]) -> None:
         if event.node.data is None:
             event.node.toggle()
             return
-        self._show(event.node.data)
+        self._page.show(event.node.data)
         self.action_page()
 
     @on(Input.Changed)
@@ -225,7 +241,7 @@ class GuideScreen(Dialog[None]):
         self._contents.show_found(found)
         if found:
             self._contents.cursor_line = 0
-            self._show((found[0].name, found[0].heading))
+            self._page.show((found[0].name, found[0].heading))
 
     @on(Input.Submitted)
     def _to_results(self) -> None:
