@@ -105,6 +105,21 @@ def test_a_run_is_forked_from_the_process_that_an_earlier_one_has_prepared(warm:
             assert (_parent(first), _parent(second)) == (warm._process.pid, template._process.pid)
 
 
+SLOW = "import os, time; lead = os.setsid; os.setsid = lambda: (time.sleep(0.2), lead()); "
+
+
+@pytest.mark.usefixtures("warm")
+def test_a_child_that_was_just_forked_can_be_killed_with_its_group(monkeypatch: pytest.MonkeyPatch) -> None:
+    process.cool_down()
+    monkeypatch.setattr(process, "BOOT", SLOW + process.BOOT)
+    process.warm_up()
+    handle = _start()
+    leads = os.getpgid(handle._process.pid) == handle._process.pid
+    handle._process.send_signal(signal.SIGKILL)
+    handle.close()
+    assert leads
+
+
 @pytest.mark.slow
 def test_a_process_that_was_forked_does_not_use_the_warm_process_of_the_other(warm: WarmProcess) -> None:
     pid = os.fork()

@@ -112,7 +112,7 @@ class ForkServer:
         files: Sequence[int],
         serves: bool = False,
     ) -> ForkedChild:
-        """Fork a child. Blocks until it exists, about a millisecond; the first time until the server is ready.
+        """Fork a child. Blocks until it leads its process group, a few milliseconds; first until the server is ready.
 
         Args:
             folder: The run folder.

@@ -122,7 +122,6 @@ class ForkServer:
             if not pid:
                 self._become_child(request, given, status_fd)
                 return request
-            _report(status_fd, pid)
             self._status_fds[pid] = status_fd
         for fd in given:
             os.close(fd)
@@ -141,9 +140,11 @@ class ForkServer:
             os.close(status_fd)
 
     def _become_child(self, request: dict[str, Any], given: list[int], status_fd: int) -> None:
+        os.setsid()
+        # Not before: the host may kill it at once, and kills its process group.
+        _report(status_fd, os.getpid())
         signal.set_wakeup_fd(-1)
         wallclock.set_signal(signal.SIGCHLD, int(signal.SIG_DFL))
-        os.setsid()
         self._socket.close()
         for fd in (self._ended, self._wake, status_fd, *self._status_fds.values()):
             os.close(fd)
