@@ -9,14 +9,13 @@ from random import Random
 
 from tests.proof.injection import killed_at
 from tests.proof.kind import Kind
-from tests.proof.operations import OPERATIONS, calls_in, check_after, prepared, rare_first, spread, undisturbed
+from tests.proof.operations import OPERATIONS, calls_in, check_after, prepared, spread, undisturbed
 
 CALLS = "write,pwrite64,writev,rename,renameat,renameat2,unlink,unlinkat,fsync,fdatasync,ftruncate,mkdir,mkdirat,link"
 
 
 def _names(random: Random) -> Iterator[str]:
-    used = Counter[str]()
-    yield from spread(lambda name: rare_first(name, _cases_of, used, random), random)
+    return spread(_cases_of, random)
 
 
 def _cases_of(operation: str) -> Iterator[str]:

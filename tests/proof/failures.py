@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from random import Random
 
 from tests.proof.injection import failing_at
 from tests.proof.kind import FaultError, Kind
-from tests.proof.operations import OPERATIONS, calls_in, check_after, prepared, rare_first, spread, undisturbed
+from tests.proof.operations import OPERATIONS, calls_in, check_after, prepared, spread, undisturbed
 
 ERRORS: Mapping[str, tuple[str, ...]] = {
     "write": ("ENOSPC", "EIO", "EINTR"),
@@ -34,8 +33,7 @@ _OF_PYTHON = ("openat", "read", "mmap")
 
 
 def _names(random: Random) -> Iterator[str]:
-    used = Counter[str]()
-    yield from spread(lambda name: rare_first(name, _cases_of, used, random), random)
+    return spread(_cases_of, random)
 
 
 def _cases_of(operation: str) -> Iterator[str]:

@@ -63,7 +63,7 @@ def with_odd_value(data: bytes, random: Random, syntax: Syntax) -> bytes:
     return data.replace(f'"{_DEEP}"'.encode(), opened * depth + b"1" + closed * depth)
 
 
-_DEEP_JSON = b"[" * 20_000 + b"]" * 20_000
+_TOO_DEEP = b"[" * 20_000 + b"]" * 20_000
 _JSON_DEEP = ((b"[", b"]"), (b'{"x":', b"}"))
 _TOML_DEEP = ((b"[\n", b"]\n"),)
 """Its lines are short, since long ones are refused before."""
@@ -165,7 +165,7 @@ def _changed_table(table: pa.Table, random: Random) -> pa.Table:
 
 def _metadata(text: bytes, random: Random) -> bytes:
     # What a change before has nested deeply, Python cannot read either.
-    return text if _DEEP_JSON in text else _json(text, random).replace(f'"{_DEEP}"'.encode(), _DEEP_JSON)
+    return text if _TOO_DEEP in text else _json(text, random).replace(f'"{_DEEP}"'.encode(), _TOO_DEEP)
 
 
 def _parquet(data: bytes, random: Random) -> bytes:

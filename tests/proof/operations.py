@@ -177,18 +177,16 @@ def calls_in(name: str, names: str) -> list[Call]:
 
 
 def spread(cases_of: Callable[[str], Iterator[str]], random: Random) -> Iterator[str]:
-    """Yield the cases of all operations in turns, those that are quick three times as often."""
-    names = random.sample(list(OPERATIONS), len(OPERATIONS))
-    quick = in_turns([cases_of(name) for name in names if not OPERATIONS[name].is_slow])
-    slow = in_turns([cases_of(name) for name in names if OPERATIONS[name].is_slow])
-    return in_turns([quick, quick, quick, slow])
+    """Yield the cases of all operations in turns, those that are quick three times as often, and rare calls first."""
+    names, used = random.sample(list(OPERATIONS), len(OPERATIONS)), Counter[str]()
+    quick = _in_turns([_rare_first(cases_of(name), used, random) for name in names if not OPERATIONS[name].is_slow])
+    slow = _in_turns([_rare_first(cases_of(name), used, random) for name in names if OPERATIONS[name].is_slow])
+    return _in_turns([quick, quick, quick, slow])
 
 
-def rare_first(
-    name: str, cases_of: Callable[[str], Iterator[str]], used: Counter[str], random: Random
-) -> Iterator[str]:
+def _rare_first(of_operation: Iterator[str], used: Counter[str], random: Random) -> Iterator[str]:
     """Yield the cases of an operation: first one of each call, and what was `used` least by all operations."""
-    cases, own = list(cases_of(name)), Counter[str]()
+    cases, own = list(of_operation), Counter[str]()
     left = random.sample(cases, len(cases))
 
     def uses(case: str) -> tuple[int, int]:
@@ -208,7 +206,7 @@ def _what(case: str) -> str:
     return case.partition(":")[2].rpartition(":")[0]
 
 
-def in_turns(sources: Iterable[Iterator[str]]) -> Iterator[str]:
+def _in_turns(sources: Iterable[Iterator[str]]) -> Iterator[str]:
     """Yield from each source in its turn: a few cases have something of everything."""
     left = list(sources)
     while left:

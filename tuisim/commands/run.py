@@ -21,7 +21,7 @@ from tuisim.config.shared_options import shared_options
 from tuisim.config.user_config import FILE, Section, load_config
 from tuisim.core.geometry import pose_in_words
 from tuisim.core.profile import NS_PER_S
-from tuisim.errors import SIGNALLED, ConfigError, ExportError, LogError, TuisimError, counted, nearest
+from tuisim.errors import SIGNALLED, ConfigError, ExportError, LogError, TuisimError, counted, nearest, shortened
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
 from tuisim.protocol import BUTTONS, Inspect, Inspected, Message, Paused, Resume, SetButtons, UserAction
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
@@ -219,8 +219,7 @@ class BreakpointReporter:
         lines += [f"    {variable.name} = {variable.value}" for variable in inspected.variables]
         lines += [f"    {watch.text} → {watch.value or watch.error}" for watch in inspected.watches]
         lines += [f"    {note}" for note in (inspected.waiting, inspected.note) if note]
-        return [line if len(line) <= MOST_CHARACTERS or at == 0 else line[:MOST_CHARACTERS] + "…"
-                for at, line in enumerate(lines)]  # fmt: skip
+        return [lines[0], *(shortened(line, MOST_CHARACTERS) for line in lines[1:])]
 
 
 def _export(done: Sequence[StoredRun], arguments: Arguments) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tuisim.errors import counted
+from tuisim.errors import counted, shortened
 
 ROWS_NAMED = 3
 """Rows that a warning names; more are only counted."""
@@ -57,6 +57,6 @@ class Notes:
             where = f" ({'row' if len(rows) == 1 == count else 'rows'} {', '.join(map(str, rows))}" if rows else ""
             where += f"{', …' if count > len(rows) else ''})" if rows else ""
             texts.append(f"{counted(count, *text)}{where}")
-        said = [text if len(text) <= MOST_CHARACTERS else f"{text[:MOST_CHARACTERS]}…" for text in self._general]
+        said = [shortened(text, MOST_CHARACTERS) for text in self._general]
         more = len(said) - MOST_SAID
         return (*said[:MOST_SAID], *([counted(more, "more warning")] if more > 0 else []), *texts)

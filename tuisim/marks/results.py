@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from tuisim.batch.task import Result
-from tuisim.errors import printable
+from tuisim.errors import printable, shortened
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.goals.spec import AllOf
 from tuisim.marks.outcome import GoalOutcome, Outcome
@@ -43,7 +43,7 @@ def outcome_of(result: Result, seed: int, folder: Path) -> Outcome:
         result.end,
         _one_line(portable(failure, folder)),
         result.error_line,
-        _shortened("\n".join(map(printable, source_lines(portable(result.error, folder))))),
+        _head_and_tail("\n".join(map(printable, source_lines(portable(result.error, folder))))),
         result.time_s,
         tuple(goals),
         result.run_id,
@@ -75,12 +75,11 @@ def _failure(result: Result) -> str:
     return result.summary or (lines[-1] if lines else result.end.replace("_", " ")) or "did not finish"
 
 
-def _shortened(text: str) -> str:
+def _head_and_tail(text: str) -> str:
     if len(text) <= _ERROR_HEAD + _ERROR_TAIL:
         return text
     return f"{text[:_ERROR_HEAD]}…\n…{text[-_ERROR_TAIL:]}"
 
 
 def _one_line(text: str) -> str:
-    text = printable(text.strip())
-    return text if len(text) <= MOST_CHARACTERS else text[:MOST_CHARACTERS] + "…"
+    return shortened(printable(text.strip()), MOST_CHARACTERS)

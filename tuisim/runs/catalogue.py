@@ -23,6 +23,8 @@ from tuisim.protocol import RUN_STATES, RunState
 
 CATALOGUE_FILE = "runs.db"
 LOCK_FILE = "runs.lock"
+_SIDE_FILES = ("-wal", "-shm")
+"""Ends of the names of the files that SQLite keeps beside a database."""
 _SCHEMA_VERSION = 1
 _BUSY_S = 10.0
 
@@ -183,12 +185,12 @@ class Catalogue:
                     connection.execute("PRAGMA journal_mode = WAL")
                     self._fill(connection)
                 # A journal of the old file would be applied to the new one.
-                for suffix in ("-wal", "-shm"):
+                for suffix in _SIDE_FILES:
                     self._path.with_name(CATALOGUE_FILE + suffix).unlink(missing_ok=True)
                 os.replace(fresh, self._path)
             finally:
                 # Where SQLite could not write to the end, it leaves its own files.
-                for suffix in ("", "-wal", "-shm"):
+                for suffix in ("", *_SIDE_FILES):
                     fresh.with_name(fresh.name + suffix).unlink(missing_ok=True)
 
     def _fill(self, connection: sqlite3.Connection) -> None:

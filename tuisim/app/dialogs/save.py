@@ -16,7 +16,7 @@ from tuisim.app import background
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.dialogs.question import Form, form_list
 from tuisim.app.terminal.browser import offer
-from tuisim.errors import ConfigError, TuisimError
+from tuisim.errors import ConfigError, TuisimError, shortened
 from tuisim.logs.export import LISTED, check_target, export_samples, export_telemetry
 from tuisim.runs.store import RunStore
 
@@ -34,7 +34,7 @@ def typed_path(text: str) -> Path:
         return path
     except (OSError, RuntimeError, ValueError) as error:
         why = error.strerror if isinstance(error, OSError) else str(error)
-        shown = text if len(text) <= 20 else f"{text[:20]}…"
+        shown = shortened(text, 20)
         raise ConfigError(f"{shown!r} cannot be the name of a file: {why}") from error
     return path
 
