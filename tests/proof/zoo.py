@@ -7,6 +7,7 @@ import os
 import shutil
 import time
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from random import Random
 
@@ -135,11 +136,11 @@ def _bits(run: RunHandle) -> tuple[bytes, ...]:
 def _waited_ns(pid: int) -> int:
     """Return how long the threads of a process were ready to run while others ran: that of the one it was longest."""
     found = [0]
-    for file in Path(f"/proc/{pid}/task").glob("*/schedstat"):
-        try:
-            found.append(int(file.read_text().split()[1]))
-        except (OSError, IndexError):
-            continue
+    # It may be over at any moment.
+    with suppress(OSError):
+        for file in Path(f"/proc/{pid}/task").glob("*/schedstat"):
+            with suppress(OSError, IndexError):
+                found.append(int(file.read_text().split()[1]))
     return max(found)
 
 

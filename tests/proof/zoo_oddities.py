@@ -8,7 +8,7 @@ from tests.proof.zoo_programs import Piece
 from tuisim.protocol import End
 
 TIME: Mapping[str, Piece] = {
-    "patched": Piece("import time\ntime.sleep = lambda s: None\ntime.time = lambda: 0.0\ntime.monotonic = time.time"),
+    "patched": Piece("import time\ntime.sleep = lambda s: None\ntime.monotonic = time.perf_counter = lambda: 0.0"),
     "odd-sleeps": Piece(
         "import time\nfor s in (0, 0.0, 1e-12, True, -0.0): time.sleep(s)\n"
         "for s in (-1, float('nan'), 'x', None, 1e300):\n"

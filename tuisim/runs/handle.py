@@ -59,7 +59,7 @@ from tuisim.runs.store import NewRun, RunStore
 from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
 
-STUCK_AFTER_S = 0.4
+STUCK_AFTER_S = 0.3
 """A child that has not ended this long after a stop is killed; see `RunHandle._fair_time_s`."""
 ASK_AGAIN_S = 0.05
 ENDED_CHILD_S = 0.2
@@ -417,18 +417,17 @@ class RunHandle:
         """Repeat a stop that has had no effect, and kill what is stuck."""
         if self._announced is not None:
             return
-        now = self._fair_time_s()
         if self._stop_at is None and not self.folder.is_dir():
             # Deleted while it runs: nobody can see its results.
             self.stop()
         if self._stop_at is not None:
-            if now - self._stop_at > STUCK_AFTER_S:
+            if self._fair_time_s() - self._stop_at > STUCK_AFTER_S:
                 self._read_stack_and_kill()
             elif self.started and time.monotonic() - self._asked_at > ASK_AGAIN_S:
                 self._asked_at = time.monotonic()
                 self._signal(COMMAND_SIGNAL)
         elif self._options.stall_limit_s and not self.paused:
-            tick = self._ticks()
+            tick, now = self._ticks(), self._fair_time_s()
             if tick != self._progress[0] or self.waiting_for_reply or self.waiting_for_input is not None:
                 self._progress = (tick, now)
             elif now - self._progress[1] > STALL_FACTOR * self._options.stall_limit_s:
@@ -444,7 +443,7 @@ class RunHandle:
             # faulthandler writes the stack even from inside a C call, within this one signal.
             self._stack_asked = self._stop_at is None
             self._signal(STACK_SIGNAL)
-            await_stack(self.folder)
+            await_stack(self.folder, self._process.pid)
         end_group(self._process.pid)
 
     def _signal(self, number: int) -> None:

@@ -42,8 +42,8 @@ MOST_TEMPLATES = 4
 FILE_LOCKS = 10
 """Number of a limit that every process inherits on Linux, and that is unused since 2.4.25."""
 
-STACK_WRITTEN_WITHIN_S, LOOK_AGAIN_S = 0.1, 0.003
-"""Time for a stuck child to write its stack on a busy machine, and the interval of checks."""
+STACK_WRITTEN_WITHIN_S, STACK_AWAITED_S, LOOK_AGAIN_S = 0.05, 0.1, 0.003
+"""Time for a stuck child to write its stack, that with its wait for a processor, and the interval of checks."""
 
 MOST_SHOWN = 500
 """Stacks contain at most this many characters of a file name."""
@@ -279,10 +279,13 @@ def write_command(fd: int, data: bytes) -> bool:
     return True
 
 
-def await_stack(folder: Path) -> None:
+def await_stack(folder: Path, pid: int) -> None:
     """Block for a short time until a stuck child has written its stack."""
-    give_up, size, path = time.monotonic() + STACK_WRITTEN_WITHIN_S, 0, folder / "stack.txt"
-    while time.monotonic() < give_up:
+    start_s, waited_before_s = time.monotonic(), waited_s(pid)
+    size, path = 0, folder / "stack.txt"
+    while (passed_s := time.monotonic() - start_s) < STACK_AWAITED_S and passed_s - (
+        waited_s(pid) - waited_before_s
+    ) < STACK_WRITTEN_WITHIN_S:
         time.sleep(LOOK_AGAIN_S)
         before, size = size, path.stat().st_size if path.exists() else 0
         if size and size == before:
