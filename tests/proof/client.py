@@ -124,7 +124,7 @@ class Client:
         done = check_said(["runs", command, run_id])
         if done.code:
             is_wrong = row["end"] != Unended.RUNNING or "is still running" not in done.err
-            if is_wrong and was_there and is_complete(run_id):
+            if "cannot be removed" in done.err or (is_wrong and was_there and is_complete(run_id)):
                 raise FaultError(f"tuisim runs {command} {run_id}, listed as {row['end']}: {done.err}")
         elif command == "compact":
             check_recording(run_id)
