@@ -21,9 +21,11 @@ from typing import TextIO, cast
 import pytest
 from textual.app import App
 from textual.drivers._writer_thread import MAX_QUEUED_WRITES, WriterThread
+from textual.screen import ModalScreen
 
 from tests.app.app_help import ready, settings
 from tests.running import PATIENCE_S
+from tuisim.app.action import Palette
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.entries import SavedPoses
 from tuisim.app.terminal.terminal_app import ResilientOutput, TerminalApp, TerminalDriver
@@ -278,10 +280,23 @@ async def test_where_ctrl_z_suspends(
             suspended.clear()
 
 
-async def test_a_screen_that_is_being_opened_when_the_app_ends_does_no_harm() -> None:
+@pytest.mark.parametrize("opened", [lambda: SavedPoses(Pose(0, 0, 0)), Palette], ids=["dialog", "palette"])
+async def test_a_screen_that_is_being_opened_when_the_app_ends_does_no_harm(
+    opened: Callable[[], ModalScreen[object]],
+) -> None:
     app = LabApp(settings("print('A: 1')\n"))
     async with app.run_test(size=(80, 24)) as pilot:
         await ready(pilot)
-        app.push_screen(SavedPoses(Pose(0, 0, 0)))
+        app.push_screen(opened())
+        app.exit(return_code=129)
+    assert app.return_code == 129
+
+
+async def test_a_panel_that_gets_room_when_the_app_ends_does_no_harm() -> None:
+    app = LabApp(settings("print('A: 1')\n"))
+    async with app.run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        assert "debug" not in app.panel_area.panels
+        app.panel_area.call_later(app.panel_area.ensure, "debug")
         app.exit(return_code=129)
     assert app.return_code == 129

@@ -35,7 +35,9 @@ from textual.filter import LineFilter
 from textual.geometry import Size
 from textual.screen import Screen
 from textual.theme import Theme
+from textual.widget import MountError
 from textual.widgets import OptionList
+from textual.worker import WorkerFailed
 
 from tuisim.app import background
 from tuisim.app.action import ActionProvider, Palette
@@ -356,8 +358,9 @@ class TerminalApp(App[None]):
         await super()._shutdown()
 
     def _handle_exception(self, error: Exception) -> None:
-        # A screen that was being opened during the shutdown is removed while partly mounted.
-        if not (is_leaving(self) and isinstance(error, NoMatches)):
+        # During the shutdown nothing can be mounted, and a screen that was being opened is removed partly mounted.
+        cause = error.error if isinstance(error, WorkerFailed) else error
+        if not (is_leaving(self) and isinstance(cause, (MountError, NoMatches))):
             super()._handle_exception(error)
 
 
