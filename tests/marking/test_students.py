@@ -12,7 +12,7 @@ from tuisim.errors import ConfigError
 from tuisim.marks.journal import Journal
 from tuisim.marks.outcome import GoalOutcome, Outcome
 from tuisim.marks.students import Student, find_students
-from tuisim.marks.workspace import Workspace, digest_of, program_in
+from tuisim.marks.workspace import digest_of, program_in, temporary_workspace
 
 
 def _folder(tmp_path: Path, *files: str) -> Path:
@@ -85,7 +85,7 @@ def test_what_is_no_file_or_has_an_odd_name_affects_its_own_row_only(tmp_path: P
     found = {one.name: one for one in find_students([str(folder)]).students}
     assert {name for name, one in found.items() if one.source} == {"ada.py", "bad?.py"}
     assert {name for name, one in found.items() if one.problem} == {"loop.py", "pipe.py", "zero.py"}
-    with Workspace() as workspace:
+    with temporary_workspace() as workspace:
         assert Path(program_in(found["bad?.py"], workspace.copy(found["bad?.py"], 0)).path).is_file()
 
 
@@ -101,7 +101,7 @@ def test_a_program_sees_a_copy_of_its_own_files_only(tmp_path: Path) -> None:
     os.mkfifo(folder / "ada" / "pipe")
     (folder / "ada" / "link").symlink_to("/etc/passwd")
     ada, ben = find_students([str(folder)]).students
-    with Workspace() as workspace:
+    with temporary_workspace() as workspace:
         program = program_in(ada, workspace.copy(ada, 0))
         place = Path(program.working_directory)
         assert sorted(path.name for path in place.iterdir()) == ["data", "link", "main.py"]

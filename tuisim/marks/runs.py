@@ -15,7 +15,7 @@ from tuisim.marks.journal import Journal
 from tuisim.marks.outcome import Outcome
 from tuisim.marks.results import outcome_of
 from tuisim.marks.students import Student
-from tuisim.marks.workspace import Workspace, digest_of, program_in
+from tuisim.marks.workspace import Workspace, digest_of, program_in, temporary_workspace
 from tuisim.runs.handle import RunOptions
 
 STALL_LIMIT_S = 10.0
@@ -107,7 +107,7 @@ def _run(turns: Sequence[_Turn], plan: Plan, journal: Journal) -> Iterator[tuple
             unknown.append(turn)
     if not unknown:
         return
-    with Workspace() as workspace:
+    with temporary_workspace() as workspace:
         for result in run_many(_tasks(unknown, plan, workspace), plan.jobs):
             turn = unknown[result.index]
             outcome = outcome_of(result, turn.seed, workspace.path / str(result.index))

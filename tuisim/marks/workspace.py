@@ -7,10 +7,10 @@ import hashlib
 import os
 import shutil
 from collections.abc import Iterator
-from contextlib import suppress
-from dataclasses import replace
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 from tuisim.errors import LogError
 from tuisim.marks.students import Student
@@ -22,21 +22,12 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 """Errors about the copy, not about the file."""
 
 
+@dataclass(frozen=True, slots=True)
 class Workspace:
-    """A temporary folder with a copy of a student's files for each run, as a context manager.
+    """A folder with a copy of a student's files for each run."""
 
-    Raises:
-        LogError: by `__enter__`, if the folder cannot be created.
-    """
-
-    def __enter__(self) -> Self:
-        self._home = temporary_home("tuisim-mark-")
-        # A program sees resolved paths.
-        self.path = self._home.__enter__().resolve()
-        return self
-
-    def __exit__(self, *of_error: Any) -> None:
-        self._home.__exit__(*of_error)
+    path: Path
+    """Its resolved path: that is what a program sees."""
 
     def copy(self, student: Student, index: int) -> Path:
         """Return a new folder with a copy of a student's files.
@@ -60,6 +51,17 @@ class Workspace:
     def remove(self, index: int) -> None:
         """Delete the folder of a run."""
         shutil.rmtree(self.path / str(index), ignore_errors=True)
+
+
+@contextmanager
+def temporary_workspace() -> Iterator[Workspace]:
+    """Create an empty workspace, and delete it afterwards.
+
+    Raises:
+        LogError: it cannot be created.
+    """
+    with temporary_home("tuisim-mark-") as folder:
+        yield Workspace(folder.resolve())
 
 
 def _copy_folder(folder: Path, place: Path) -> None:
