@@ -18,7 +18,7 @@ from tuisim.core.sensors import SENSORS, mounted
 from tuisim.core.sensors.color import columns as color_columns
 from tuisim.core.sensors.color import disc_pixels_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, NoiseSpec, RunSpec
-from tuisim.core.tick_record import TICK_FIELDS
+from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
 from tuisim.protocol import SetNoise, UserAction
 from tuisim.runs.records import TELEMETRY_FILE
 from tuisim.runs.run_folder import StoredRun, noise_at, open_mat
@@ -225,7 +225,8 @@ def _measured(
     measures = [(kind.measure, sensor) for kind, sensor in sensors]
     pen = PenMarks(field, spec) if spec.world.pen_marks else None
     seen = field if pen is None else pen.field
-    for at, (values, noise) in enumerate(zip(records.tolist(), noises, strict=True)):
+    # One by one: all at once, as objects, the records of a long run take much memory.
+    for at, (values, noise) in enumerate(zip(TICK_RECORD.iter_unpack(records.data), noises, strict=True)):
         if pen is not None:
             pen.take_in([values])
         instant = instant_of(TickRecord(*values), spec, noise)

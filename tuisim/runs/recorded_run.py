@@ -13,7 +13,7 @@ from tuisim.core.field import Field
 from tuisim.core.motion import stall_ticks
 from tuisim.core.pen_marks import MarkedField, PenMarks
 from tuisim.core.spec import NoiseSpec, RunSpec
-from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
+from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING, TICK_RECORD
 from tuisim.protocol import SetButtons, UserAction
 from tuisim.runs.handle import program_again
 from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow, Stream
@@ -123,7 +123,8 @@ class _TimedMarks:
     def at(self, tick: int) -> Field:
         marks = self._drawn.field.marks
         if tick >= len(self._counts):
-            for record in self._run.telemetry.array()[len(self._counts) :].tolist():
+            # One by one: all at once, as objects, the records of a long run take much memory.
+            for record in TICK_RECORD.iter_unpack(self._run.telemetry.array()[len(self._counts) :].data):
                 self._drawn.take_in([record])
                 self._counts.append(len(marks))
         count = self._counts[min(tick, len(self._counts) - 1)] if self._counts else 0

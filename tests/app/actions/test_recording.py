@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -92,6 +93,18 @@ def test_sensors_see_what_the_pen_had_drawn_by_then(ticks: tuple[int, ...]) -> N
         seen = recording.field_at(tick, mat)
         assert isinstance(seen, MarkedField)
         assert (seen.marks, seen.blocks) == (drawn.field.marks, drawn.field.blocks)
+
+
+def test_the_pen_of_a_long_run_takes_little_memory() -> None:
+    run = stored("import time\ntime.sleep(100)\n", pen_down=True, pen_marks=True)
+    mat, recording = open_mat(run), Recording(run)
+    assert recording.newest >= 10_000
+    tracemalloc.start()
+    try:
+        recording.field_at(10_000, mat)
+        assert tracemalloc.get_traced_memory()[1] < 1 << 20
+    finally:
+        tracemalloc.stop()
 
 
 def test_a_timeline_marks_what_the_user_and_breakpoints_did() -> None:
