@@ -40,9 +40,12 @@ settings.load_profile("quick")
 # Hundreds of commands and children import the same modules: where bytecode is kept, each is compiled once.
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-# To look for garbage among the thousands of collected tests costs as much as the tests; so few objects die while they
-# are collected that it can wait.
-gc.disable()
+
+
+def pytest_sessionstart() -> None:
+    """Do not look for garbage among the thousands of tests that are collected: it costs as much as the tests."""
+    # Not when this is imported: programs that import it, too, would grow without a bound.
+    gc.disable()
 
 
 def pytest_collection_finish() -> None:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import faulthandler
 import os
+import resource
 import signal
+import sys
 import tempfile
+import time
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import chdir, contextmanager
@@ -23,6 +26,10 @@ class FaultError(Exception):
 
 class TooLongError(Exception):
     """A case did not end."""
+
+
+class TooLargeError(Exception):
+    """A case took too much memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,27 +58,73 @@ def home(folder: Path) -> Iterator[None]:
             os.environ["TUISIM_HOME"] = was
 
 
+MOST_GROWTH_MB = 4096
+"""What the memory of this process may grow by during a case: the system would end it later, and not say where."""
+LOOK_S = 0.5
+"""CPU seconds between two looks at a case."""
+GRACE_S = 10.0
+"""CPU seconds for a case to end once it was told to; then it is told again: what tells it may have been caught."""
+
+
+class _Watch:
+    """Ends a case that hangs or grows, by an exception wherever it is.
+
+    Args:
+        limit_s: CPU seconds of this process after which it hangs.
+    """
+
+    def __init__(self, limit_s: float) -> None:
+        self._limit_s, self._look_s = limit_s, min(LOOK_S, limit_s)
+        self._end_s, self._most_mb = time.process_time() + limit_s, _resident_mb() + MOST_GROWTH_MB
+        self.found = ""
+        """Why the case had to end, and where each thread was then."""
+
+    def start(self) -> None:
+        """Look at the case from now on; only in the main thread."""
+        self._before = signal.signal(signal.SIGPROF, self._look)
+        signal.setitimer(signal.ITIMER_PROF, self._look_s, self._look_s)
+
+    def stop(self) -> None:
+        """Look no more."""
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, self._before)
+
+    def _look(self, number: int, frame: FrameType | None) -> None:
+        is_large, now_s = _resident_mb() > self._most_mb, time.process_time()
+        if not is_large and now_s < self._end_s:
+            return
+        self._end_s, self._most_mb = now_s + GRACE_S, self._most_mb * 2
+        error: Exception = TooLongError(f"has not ended after {self._limit_s:g} s of CPU")
+        if is_large:
+            error = TooLargeError(f"has grown by more than {MOST_GROWTH_MB} MB")
+        if not self.found:
+            stacks = ("".join(traceback.format_stack(one)) for one in sys._current_frames().values())
+            self.found = "\n".join((str(error), *stacks))
+        raise error
+
+
+def _resident_mb() -> float:
+    """Return the memory that this process has in use."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize() / (1 << 20)
+
+
 def fault_of(kind: Kind, name: str) -> str:
     """Run a case in a folder and a home of its own; return what was wrong, empty if nothing was."""
-
-    def too_long(number: int, frame: FrameType | None) -> None:
-        raise TooLongError(f"has not ended after {kind.limit_s:g} s of CPU")
-
     temporary = tempfile.TemporaryDirectory(prefix="tuisim-proof-", ignore_cleanup_errors=True)
+    fault = ""
     with temporary as folder, chdir(folder), home(Path(folder, "home")):
-        before = signal.signal(signal.SIGPROF, too_long)
-        signal.setitimer(signal.ITIMER_PROF, kind.limit_s)
+        watch = _Watch(kind.limit_s)
+        watch.start()
         try:
             kind.check(name, Path(folder))
-        except FaultError as fault:
-            return str(fault)
+        except FaultError as error:
+            fault = str(error)
         # Whatever a case did not expect is a fault, too.
         except Exception:
-            return traceback.format_exc()
+            fault = traceback.format_exc()
         finally:
-            signal.setitimer(signal.ITIMER_PROF, 0)
-            signal.signal(signal.SIGPROF, before)
-    return ""
+            watch.stop()
+    return "\n".join(filter(None, (fault, watch.found)))
 
 
 def watch_over() -> None:

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from random import Random
 
 import pytest
 
+from tests.conftest import ROOT
 from tests.proof import __main__, attempts, kind
 from tests.proof.found import FOUND
 from tests.proof.injection import killed_at
-from tests.proof.kind import FaultError, Kind
+from tests.proof.kind import FaultError, Kind, TooLongError
 from tests.proof.kinds import KINDS
+from tests.running import PATIENCE_S
 
 CASES, FEWER = 30, {"clients": 3}
 """Of each kind, and of those whose cases take seconds; `python -m tests.proof` runs many more."""
@@ -40,7 +45,7 @@ def test_a_command_is_killed_before_its_call(tmp_path: Path) -> None:
 
 
 def _names(random: Random) -> Iterator[str]:
-    yield from ("good", "bad", "odd", "endless")
+    yield from ("good", "bad", "odd", "endless", "caught", "large")
 
 
 def _check(name: str, folder: Path) -> None:
@@ -52,6 +57,12 @@ def _check(name: str, folder: Path) -> None:
         raise ValueError("not expected")
     while name == "endless":
         pass
+    with suppress(TooLongError):
+        while name == "caught":
+            pass
+    held = []
+    while name == "large":
+        held.append(b"x" * (1 << 20))
 
 
 STAND_IN = Kind("for tests", _names, _check, limit_s=0.05)
@@ -62,14 +73,22 @@ def test_faults_are_counted_and_printed_with_their_names(
 ) -> None:
     monkeypatch.setitem(KINDS, "stand-in", STAND_IN)
     monkeypatch.setattr(attempts, "watch_over", lambda: None)
+    monkeypatch.setattr(kind, "MOST_GROWTH_MB", 4)
     found = attempts.attempt("stand-in", 1, 60.0)
-    assert (found.cases, found.faults) == (4, ("bad", "odd", "endless"))
+    assert (found.cases, found.faults) == (6, ("bad", "odd", "endless", "caught", "large"))
     printed = capsys.readouterr().out
-    assert [
-        words
-        for words in ("stand-in --case bad\nit broke", "ValueError: not expected", "has not ended after 0.05 s of CPU")
-        if words not in printed
-    ] == []
+    wanted = (
+        "stand-in --case bad\nit broke", "ValueError: not expected", "TooLongError: has not ended after 0.05 s of CPU",
+        "stand-in --case caught\nhas not ended after 0.05 s of CPU\n", 'while name == "caught":',
+        "TooLargeError: has grown by more than 4 MB",
+    )  # fmt: skip
+    assert [words for words in wanted if words not in printed] == []
+
+
+def test_a_process_of_the_proof_searches_for_garbage() -> None:
+    words = "import gc, tests.proof.clients; print(gc.isenabled())"
+    done = subprocess.run([sys.executable, "-c", words], cwd=ROOT, capture_output=True, text=True, timeout=PATIENCE_S)
+    assert done.stdout == "True\n", done.stderr
 
 
 @pytest.mark.parametrize(("case", "code"), [("good", 0), ("bad", 1)])
