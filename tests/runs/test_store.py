@@ -275,6 +275,20 @@ def test_removed_run_is_gone_and_its_number_is_not_used_again(store: RunStore, s
     assert store.new_run(PROGRAM, spec).number == 4
 
 
+def test_what_a_killed_removal_has_left_goes_with_the_next_one(
+    store: RunStore, spec: RunSpec, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    runs = [store.new_run(PROGRAM, spec) for _ in range(3)]
+    for run in runs:
+        store.finish(run.id, FINISHED)
+    with monkeypatch.context() as killed:
+        killed.setattr("shutil.rmtree", lambda *_, **__: None)
+        store.remove(runs[0].id)
+    assert len(list((store.home / "runs").iterdir())) == 3
+    store.remove(runs[1].id)
+    assert [path.name for path in (store.home / "runs").iterdir()] == [runs[2].id]
+
+
 @pytest.mark.parametrize("change", ["finish", "tag", "remove"])
 def test_run_that_is_not_there_cannot_be_changed(store: RunStore, change: str) -> None:
     changes: dict[str, Callable[[], None]] = {

@@ -44,6 +44,8 @@ from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
 
 RUNS_FOLDER = "runs"
+_REMOVED = ".removed"
+"""End of the name of a folder that is about to be deleted."""
 LAST = "last"
 _COUNT_AT_ONCE_BYTES = 1 << 20
 """Longer outputs are counted later, so that the end of a run is not delayed."""
@@ -450,12 +452,15 @@ def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
 def _delete(folder: Path) -> None:
     """Delete a run folder; of a symbolic link only the link."""
     # Renamed first: a partly deleted run must not look like a run.
-    removed = folder.with_name(f".{folder.name}.{secrets.token_hex(4)}.removed")
+    removed = folder.with_name(f".{folder.name}.{secrets.token_hex(4)}{_REMOVED}")
     os.replace(folder, removed)
     if removed.is_symlink():
         removed.unlink()
-    else:
-        shutil.rmtree(removed)
+        return
+    # Also those that another process could not delete to the end; one that is at it deletes the rest.
+    for left in folder.parent.glob(f".*{_REMOVED}"):
+        with suppress(FileNotFoundError):
+            shutil.rmtree(left, ignore_errors=left != removed)
 
 
 def _has_end(folder: Path) -> bool:
