@@ -22,12 +22,14 @@ import pytest
 from textual.app import App
 from textual.drivers._writer_thread import MAX_QUEUED_WRITES, WriterThread
 from textual.screen import ModalScreen
+from textual.widgets import Static
 
 from tests.app.app_help import ready, settings
 from tests.running import PATIENCE_S
 from tuisim.app.action import Palette
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.entries import SavedPoses
+from tuisim.app.panel_area import PanelArea
 from tuisim.app.terminal.terminal_app import ResilientOutput, TerminalApp, TerminalDriver
 from tuisim.core.geometry import Pose
 
@@ -225,6 +227,17 @@ async def test_a_stop_from_outside_while_the_app_suspends_leaves_the_terminal_to
     assert done == ["leaves the terminal", "stops", "takes it"]
 
 
+async def test_an_app_whose_terminal_is_lost_while_it_is_suspended_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(signal, "signal", lambda *_: None)
+    app = LabApp(settings())
+    driver = TerminalDriver(cast(App[object], app))
+    monkeypatch.setattr(driver, "suspend_application_mode", lambda: None)
+    monkeypatch.setattr(os, "kill", lambda *_: None)
+    monkeypatch.setattr(os, "isatty", lambda _: False)
+    driver.stop_as_job()
+    assert app.return_code == 129
+
+
 async def test_the_terminal_is_taken_again_by_the_event_loop_and_not_where_the_signal_interrupts_the_app(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -292,11 +305,16 @@ async def test_a_screen_that_is_being_opened_when_the_app_ends_does_no_harm(
     assert app.return_code == 129
 
 
-async def test_a_panel_that_gets_room_when_the_app_ends_does_no_harm() -> None:
+@pytest.mark.parametrize(
+    "change",
+    [lambda area: area.ensure("debug"), lambda area: area.move_child(Static(), after=-1)],
+    ids=["a panel is added", "what was not added is moved"],
+)
+async def test_a_change_of_the_panels_when_the_app_ends_does_no_harm(change: Callable[[PanelArea], None]) -> None:
     app = LabApp(settings("print('A: 1')\n"))
     async with app.run_test(size=(80, 24)) as pilot:
         await ready(pilot)
         assert "debug" not in app.panel_area.panels
-        app.panel_area.call_later(app.panel_area.ensure, "debug")
+        app.panel_area.call_later(change, app.panel_area)
         app.exit(return_code=129)
     assert app.return_code == 129

@@ -35,7 +35,7 @@ from textual.filter import LineFilter
 from textual.geometry import Size
 from textual.screen import Screen
 from textual.theme import Theme
-from textual.widget import MountError
+from textual.widget import WidgetError
 from textual.widgets import OptionList
 from textual.worker import WorkerFailed
 
@@ -82,6 +82,8 @@ def _blank(match: re.Match[str]) -> str:
     return " " * cell_len(match[0])
 
 
+_LOST = 128 + signal.SIGHUP
+"""The exit code of an app whose terminal is gone, as if the shell had told it."""
 MINIMUM = Size(40, 12)
 """Minimum size of the terminal: panels and dialogs are unreadable below it."""
 
@@ -358,9 +360,9 @@ class TerminalApp(App[None]):
         await super()._shutdown()
 
     def _handle_exception(self, error: Exception) -> None:
-        # During the shutdown nothing can be mounted, and a screen that was being opened is removed partly mounted.
+        # During the shutdown nothing can be mounted, and what was being mounted is removed before it is complete.
         cause = error.error if isinstance(error, WorkerFailed) else error
-        if not (is_leaving(self) and isinstance(cause, (MountError, NoMatches))):
+        if not (is_leaving(self) and isinstance(cause, (WidgetError, NoMatches))):
             super()._handle_exception(error)
 
 
@@ -463,7 +465,7 @@ class TerminalDriver(LinuxDriver):
             super().run_input_thread()
         except (EOFError, OSError):
             # Not every shell tells its jobs.
-            self._app.call_later(self._app.exit, return_code=128 + signal.SIGHUP)
+            self._app.call_later(self._app.exit, return_code=_LOST)
 
     def start_application_mode(self) -> None:
         """Take the terminal over, and ask what it can do."""
@@ -499,6 +501,9 @@ class TerminalDriver(LinuxDriver):
         if os.isatty(self.fileno):
             self._must_signal_resume = True
             self.resume_application_mode()
+        else:
+            # The terminal was lost meanwhile, and nobody reads from it who would notice.
+            self._app.exit(return_code=_LOST)
         return stopped
 
     def _sigcont_application(self, *_: object) -> None:
