@@ -251,6 +251,21 @@ def _started(screen: str, random: Random, folder: Path) -> tuple[Terminal, Path]
     return Terminal(SCREENS[screen](random), place, environment, forwards=random.random() < 0.7), place
 
 
+def _lose(terminal: Terminal, suspended: bool) -> None:
+    """Hang up, after ctrl+z if wanted, and wait for the end; what is stopped goes on, as a shell that ends lets it."""
+
+    def ends() -> bool:
+        if terminal.is_stopped:
+            terminal.go_on()
+        return terminal.is_over
+
+    if suspended:
+        terminal.write(b"\x1a")
+        terminal.take(QUIET_S)
+    terminal.lose()
+    terminal.until(ends, "the end after the terminal was lost")
+
+
 def _check_end(terminal: Terminal, loses: bool) -> None:
     code = 129 if loses else 0
     if terminal.code not in ({129, -signal.SIGHUP} if loses else {0}):
@@ -266,7 +281,7 @@ def _check(name: str, folder: Path) -> None:
     random = Random(name)
     screen = name.partition(":")[0]
     terminal, place = _started(screen, random, folder)
-    loses, suspends = random.choice(((False, False), (False, True), (True, False)))
+    loses, suspends = random.choice(((False, False), (False, True), (True, False), (True, True)))
     monkey = Monkey(terminal, random, suspends)
     try:
         terminal.until(lambda: b"\x1b[?1049h" in terminal.written or terminal.is_over, "the app")
@@ -276,8 +291,7 @@ def _check(name: str, folder: Path) -> None:
             if not terminal.is_over:
                 monkey.act()
         if loses and not terminal.is_over:
-            terminal.lose()
-            terminal.until(lambda: terminal.is_over, "the end after the terminal was lost")
+            _lose(terminal, suspends and random.random() < 0.5)
             _check_end(terminal, True)
         else:
             leave(terminal)
