@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
@@ -29,7 +30,7 @@ class Result:
 
 
 def attempt(kind: str, seed: int, most_s: float) -> Result:
-    """Run cases of a kind until the time is over, or there are no more; print each fault at once."""
+    """Run cases of a kind until the time is over, or there are no more; print each fault at once, and the count."""
     watch_over()
     start_s = time.monotonic()
     faults: list[str] = []
@@ -44,7 +45,10 @@ def attempt(kind: str, seed: int, most_s: float) -> Result:
     if not count and most_s > 0:
         faults.append("none")
         print(f"FAULT  {kind}: it has no case", flush=True)
-    return Result(kind, count, time.monotonic() - start_s, tuple(faults))
+    elapsed_s = time.monotonic() - start_s
+    # The table comes when all are done.
+    print(f"{kind}: {count} cases in {elapsed_s:.0f} s, {len(faults)} faults", file=sys.stderr, flush=True)
+    return Result(kind, count, elapsed_s, tuple(faults))
 
 
 def _attempt_apart(kind: str, seed: int, most_s: float) -> Result:
