@@ -17,9 +17,10 @@ import pytest
 from tests.runs.run_recorder import PROGRAM, Recorder
 from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError
-from tuisim.protocol import End, Ended
+from tuisim.protocol import End, Ended, Unended
 from tuisim.runs import catalogue
 from tuisim.runs.catalogue import CATALOGUE_FILE, Catalogue, RunInfo
+from tuisim.runs.run_folder import RUN_FILE
 from tuisim.runs.store import RunStore
 
 FINISHED = Ended(End.FINISHED, 100, 1_000_000_000)
@@ -29,7 +30,7 @@ import sys
 from pathlib import Path
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.protocol import End, Ended
+from tuisim.protocol import End, Ended, Unended
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
 store = RunStore(Path(sys.argv[1]))
@@ -85,6 +86,24 @@ def test_catalogue_is_made_again_from_the_folders(
     assert store.runs() == before
     assert [info.number for info in before] == [1, 3, 4]
     assert store.new_run(PROGRAM, spec).number == 5
+
+
+@pytest.mark.parametrize("ends", [True, False], ids=["ended", "running"])
+def test_a_run_file_that_could_not_be_read_when_the_catalogue_was_made_is_read_again(
+    record: Callable[..., Recorder], spec: RunSpec, store: RunStore, ends: bool
+) -> None:
+    recorder = record(spec)
+    recorder.print("a: 1")
+    if ends:
+        recorder.end(summary="over")
+    before, path = store.runs(), recorder.run.folder / RUN_FILE
+    content = path.read_bytes()
+    path.write_bytes(b"{")
+    (store.home / CATALOGUE_FILE).unlink()
+    assert [info.end for info in store.runs()] == [Unended.DAMAGED]
+    path.write_bytes(content)
+    assert store.runs() == before
+    assert RunStore(store.home).runs() == before
 
 
 def test_runs_are_listed_and_removed_also_where_no_catalogue_can_be_written(

@@ -47,6 +47,8 @@ RUNS_FOLDER = "runs"
 _REMOVED = ".removed"
 """End of the name of a folder that is about to be deleted."""
 LAST = "last"
+_MAY_CHANGE = (None, Unended.INTERRUPTED, Unended.DAMAGED)
+"""Ends in the catalogue that are not final: a damaged run file may only have been out of reach for a moment."""
 _COUNT_AT_ONCE_BYTES = 1 << 20
 """Longer outputs are counted later, so that the end of a run is not delayed."""
 
@@ -338,11 +340,12 @@ class RunStore:
         Returns:
             The run, the columns that are final and can be stored, and the number of bytes read.
         """
-        if info.end not in (None, Unended.INTERRUPTED) and info.samples is not None:
+        is_open = info.end in _MAY_CHANGE
+        if not is_open and info.samples is not None:
             return info, {}, 0
         folder = self.folder(info.id)
         known = info
-        if info.end in (None, Unended.INTERRUPTED):
+        if is_open:
             # The run file is written first: it may have an end that the catalogue does not.
             stored = self._info_in(folder)
             state = state_without_end(folder)
@@ -350,10 +353,11 @@ class RunStore:
                 known = replace(info, end=Unended.DAMAGED, summary=stored.summary)
             elif stored is not None and stored.end:
                 known = replace(stored, number=info.number)
-            elif info.end and state is Unended.INTERRUPTED:
+            elif info.end is state is Unended.INTERRUPTED:
                 return info, {}, 0
             else:
-                known = replace(info, end=state)
+                found = (stored if info.end is Unended.DAMAGED else None) or info
+                known = replace(found, number=info.number, end=state)
         counted = 0
         try:
             output = OutputView(folder)
@@ -367,7 +371,9 @@ class RunStore:
         unlocked = is_held(folder) is False
         if known.end in (Unended.RUNNING, Unended.DAMAGED) or (known.end is Unended.INTERRUPTED and not unlocked):
             return known, {}, counted
-        names = ("end", "ticks", "time_s", "samples", "summary")
+        names = ["end", "ticks", "time_s", "samples", "summary"]
+        if info.end is Unended.DAMAGED:
+            names += ("created", "program", "background", "profile", "seed", "tags")
         return known, {name: getattr(known, name) for name in names}, counted
 
 
