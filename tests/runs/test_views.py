@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import tracemalloc
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
@@ -94,6 +95,23 @@ def test_view_finds_the_file_when_it_comes(tmp_path: Path) -> None:
     writer = TelemetryWriter(tmp_path)
     put(writer, 3)
     assert view.last() == TickRecord(2, 7, 2.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 1, 2)
+    writer.close()
+
+
+def test_a_view_that_grows_makes_no_third_copy(tmp_path: Path) -> None:
+    writer = TelemetryWriter(tmp_path)
+    put(writer, 20_000)
+    view = TelemetryView(tmp_path)
+    assert view.count == 20_000
+    put(writer, 1)
+    tracemalloc.start()
+    try:
+        assert view.count == 20_001
+        # The memory of a large view is the system's, and is not counted.
+        assert tracemalloc.get_traced_memory()[1] < 100_000
+    finally:
+        tracemalloc.stop()
+    assert view.array()["tick"].tolist() == list(range(20_001))
     writer.close()
 
 

@@ -177,7 +177,7 @@ class _View(ABC):
             # A new buffer instead of a resized one: arrays may still refer to the old one.
             larger = _zeros(end if not self._there else 2 * end)
             larger[:HEADER_BYTES] = head
-            larger[HEADER_BYTES:begin] = self._copy[HEADER_BYTES:begin]
+            larger[HEADER_BYTES:begin] = memoryview(self._copy)[HEADER_BYTES:begin]
             self._copy = larger
         got = _read_into(fd, memoryview(self._copy)[begin:end], begin)
         self._there = max(self._there, kept + got // self._record_bytes)
