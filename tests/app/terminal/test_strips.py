@@ -1,9 +1,14 @@
-"""Strips of half-block cells are strips like any other."""
+"""Strips of half-block cells are strips like any other, and drawn ones go with their widget."""
 
 from __future__ import annotations
 
-from rich.style import Style
+from weakref import ref
 
+from rich.style import Style
+from textual._styles_cache import StylesCache
+from textual.color import Color
+
+import tuisim.app.terminal.terminal_app  # noqa: F401  # what it changes in Textual is tested
 from tuisim.app.terminal.cell_view import CellStrip
 
 
@@ -24,3 +29,11 @@ def test_a_cell_strip_works_where_segments_are_asked_for() -> None:
     assert strip.apply_style(Style(bold=True)).text == "▀ "
     assert bool(strip)
     assert not CellStrip([])
+
+
+def test_the_drawn_rows_of_a_widget_go_with_it() -> None:
+    drawn, black = StylesCache(), Color(0, 0, 0)
+    assert drawn.get_inner_outer(black, Color(9, 9, 9)) == drawn.get_inner_outer(black, Color(9, 9, 9))
+    kept = ref(drawn)
+    del drawn
+    assert kept() is None

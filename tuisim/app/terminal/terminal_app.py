@@ -24,6 +24,7 @@ from rich.segment import Segment
 from textual import events, on
 from textual import screen as textual_screen
 from textual._compositor import CompositorUpdate
+from textual._styles_cache import StylesCache
 from textual.app import App
 from textual.color import Color
 from textual.command import Provider
@@ -442,6 +443,8 @@ class InputDecoder(utf_8.IncrementalDecoder):
 textual_screen.Compositor = ThoroughCompositor  # type: ignore[attr-defined]
 OptionList._on_click = option_list.click  # type: ignore[method-assign, assignment]
 OptionList._move_page = option_list.move_page  # type: ignore[method-assign, assignment]
+# Otherwise the cache of this method keeps what it is a method of: the drawn rows of a thousand widgets that are gone.
+StylesCache.get_inner_outer = classmethod(StylesCache.get_inner_outer)  # type: ignore[method-assign, arg-type, assignment]
 linux_driver.XTermParser = AnswerParser  # type: ignore[attr-defined]
 linux_driver.getincrementaldecoder = lambda _: InputDecoder  # type: ignore[attr-defined, assignment]
 
