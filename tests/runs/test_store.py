@@ -12,6 +12,7 @@ from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -21,6 +22,7 @@ from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.errors import LogError
 from tuisim.protocol import End, Ended, SetNoise, SetPen, Unended, UserAction
 from tuisim.runs import side_files
+from tuisim.runs import store as run_store
 from tuisim.runs.catalogue import CATALOGUE_FILE, RunInfo
 from tuisim.runs.records import OUTPUT_FILE
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, noise_at
@@ -287,6 +289,24 @@ def test_what_a_killed_removal_has_left_goes_with_the_next_one(
     assert len(list((store.home / "runs").iterdir())) == 3
     store.remove(runs[1].id)
     assert [path.name for path in (store.home / "runs").iterdir()] == [runs[2].id]
+
+
+def test_a_run_cannot_be_removed_while_it_is_copied_into_the_store(
+    logged: StoredRun, store: RunStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    there, write, seen = RunStore(tmp_path / "other"), run_store.write_run_file, []
+
+    def remove_and_write(folder: Path, data: dict[str, Any]) -> None:
+        seen.append([row.id for row in there.runs()])
+        with pytest.raises(LogError, match="still running"):
+            there.remove(folder.name)
+        write(folder, data)
+
+    monkeypatch.setattr(run_store, "write_run_file", remove_and_write)
+    adopted = there.adopt(logged.folder)
+    assert seen == [[adopted.id]]
+    assert [row.end for row in there.runs()] == [End.FINISHED]
+    there.remove(adopted.id)
 
 
 @pytest.mark.parametrize("change", ["finish", "tag", "remove"])

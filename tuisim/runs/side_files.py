@@ -9,7 +9,8 @@ import fcntl
 import json
 import os
 import shutil
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -46,6 +47,20 @@ def hold(folder: Path) -> int:
     descriptor = private(str(folder / LOCK_FILE), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
     fcntl.flock(descriptor, fcntl.LOCK_EX)
     return descriptor
+
+
+@contextmanager
+def held(folder: Path) -> Iterator[None]:
+    """Hold the lock of a run folder for a block.
+
+    Raises:
+        OSError: the lock cannot be acquired.
+    """
+    descriptor = hold(folder)
+    try:
+        yield
+    finally:
+        os.close(descriptor)
 
 
 def is_held(folder: Path) -> bool | None:

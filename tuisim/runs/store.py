@@ -39,7 +39,7 @@ from tuisim.runs.run_folder import (
     write_run_file,
 )
 from tuisim.runs.samples import counts_of
-from tuisim.runs.side_files import is_held
+from tuisim.runs.side_files import LOCK_FILE, held, is_held
 from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
 
@@ -138,10 +138,11 @@ class RunStore:
         run_id, place = self._new_folder(datetime.now(UTC))
         info = _info_from(run_id, data)
         try:
-            # A run is what has this file; it comes last, as another process may look at the folder meanwhile.
-            shutil.copytree(folder, place, dirs_exist_ok=True, ignore=shutil.ignore_patterns(RUN_FILE))
-            number = self._catalogue.add(info)
-            write_run_file(place, {**data, "id": run_id, "number": number})
+            # Another process may look at the folder meanwhile: it is in use, and a run as soon as it has this file.
+            with held(place):
+                shutil.copytree(folder, place, dirs_exist_ok=True, ignore=shutil.ignore_patterns(RUN_FILE, LOCK_FILE))
+                number = self._catalogue.add(info)
+                write_run_file(place, {**data, "id": run_id, "number": number})
         except OSError as error:
             shutil.rmtree(place, ignore_errors=True)
             raise LogError(f"cannot be stored: {error.strerror or error}", HOME_HINT, file=str(place)) from error
