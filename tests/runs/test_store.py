@@ -22,10 +22,9 @@ from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.errors import LogError
 from tuisim.protocol import End, Ended, SetNoise, SetPen, Unended, UserAction
 from tuisim.runs import side_files
-from tuisim.runs import store as run_store
 from tuisim.runs.catalogue import CATALOGUE_FILE, RunInfo
 from tuisim.runs.records import OUTPUT_FILE
-from tuisim.runs.run_folder import RUN_FILE, StoredRun, noise_at
+from tuisim.runs.run_folder import RUN_FILE, StoredRun, noise_at, write_run_file
 from tuisim.runs.side_files import ACTIONS_FILE, hold, is_held
 from tuisim.runs.store import RunStore, load_run
 
@@ -294,15 +293,17 @@ def test_what_a_killed_removal_has_left_goes_with_the_next_one(
 def test_a_run_cannot_be_removed_while_it_is_copied_into_the_store(
     logged: StoredRun, store: RunStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    there, write, seen = RunStore(tmp_path / "other"), run_store.write_run_file, []
+    # The lock file of the process that has run it.
+    os.close(hold(logged.folder))
+    there, seen = RunStore(tmp_path / "other"), []
 
     def remove_and_write(folder: Path, data: dict[str, Any]) -> None:
         seen.append([row.id for row in there.runs()])
         with pytest.raises(LogError, match="still running"):
             there.remove(folder.name)
-        write(folder, data)
+        write_run_file(folder, data)
 
-    monkeypatch.setattr(run_store, "write_run_file", remove_and_write)
+    monkeypatch.setattr("tuisim.runs.store.write_run_file", remove_and_write)
     adopted = there.adopt(logged.folder)
     assert seen == [[adopted.id]]
     assert [row.end for row in there.runs()] == [End.FINISHED]
