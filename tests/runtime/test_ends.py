@@ -222,6 +222,14 @@ def test_every_kind_of_chance_comes_from_the_seed(run: Run) -> None:
     assert run(CHANCE, seed=1).lines != run(CHANCE, seed=2).lines
 
 
+@pytest.mark.parametrize(("last", "end", "exit_code"), [("sys.exit(3)", "finished", 3), ("1 / 0", "raised", 1)])
+def test_other_threads_go_on_after_an_error_or_exit_of_the_main_thread(
+    run: Run, last: str, end: str, exit_code: int
+) -> None:
+    done = run(f"import sys, threading\nthreading.Timer(0.3, print, ('late',)).start()\n{last}")
+    assert (done.lines, done.ended.end, done.ended.exit_code) == (["late"], end, exit_code)
+
+
 @pytest.mark.slow
 def test_pandas_and_a_thread_pool_work_in_programs(run: Run) -> None:
     done = run(

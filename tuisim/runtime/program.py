@@ -139,18 +139,24 @@ class ProgramRunner:
             return Outcome(stop.end, 0, stop.summary, error_line=stop.line)
 
     def _run(self) -> Outcome:
-        try:
-            self._execute()
-            self._scheduler.join_all()
-            outcome = Outcome(End.FINISHED)
-        except BaseException as error:  # any uncaught exception is an outcome of the program
-            outcome = self._outcome_of(error)
+        outcome = self._outcome(self._execute)
+        if self._session.stop_reason is None and outcome.end in (End.FINISHED, End.RAISED):
+            # As in Python, also after an error or an exit of the main thread.
+            later = self._outcome(self._scheduler.join_all)
+            outcome = outcome if later.end is End.FINISHED else later
         outcome = self._hold_at_end(outcome)
         self._shut_down()
         self._finish_streams()
         # A stop in another thread, an exit function or a `__del__` need not have arrived here.
         stop = self._session.stop_reason
         return outcome if stop is None or outcome.end is not End.FINISHED else Outcome(stop.end, 0, stop.summary)
+
+    def _outcome(self, part: Callable[[], None]) -> Outcome:
+        try:
+            part()
+        except BaseException as error:  # any uncaught exception is an outcome of the program
+            return self._outcome_of(error)
+        return Outcome(End.FINISHED)
 
     def _hold_at_end(self, outcome: Outcome) -> Outcome:
         """Let the debugger pause a program that ended before the requested instant."""
