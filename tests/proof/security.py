@@ -6,6 +6,7 @@ import csv
 import json
 import os
 import pickle
+import stat
 import sys
 import tempfile
 import zlib
@@ -162,8 +163,11 @@ def _log(random: Random) -> None:
         command, *options = words.split()
         _say("log", command, name, *options)
     _say("log", "report", name, "--out", "report.html")
-    _say("log", "calc", name, "--expression", f"x = {hostile(random).replace(chr(0), '')}")
-    _say("log", "calc", name, "--expression", f"x = {_RUNS}")
+    for text in (_RUNS, hostile(random).replace("\0", "")):
+        _say("log", "calc", name, "--expression", random.choice(_EXPRESSIONS).format(text))
+
+
+_EXPRESSIONS = ("{}", "{}", "abs({})", "1 + {}", "1 < {}", "not {}", "where(1, {}, 0)", "2 if {} else 1", "`{}`")
 
 
 def _mark(random: Random) -> None:
@@ -304,6 +308,16 @@ def _names(random: Random) -> Iterator[str]:
         yield f"{random.choice(list(PLACES))}:{random.getrandbits(32)}"
 
 
+def _check_private(home: Path) -> None:
+    """Raise a fault if others may read or write something in the home."""
+    for path in (home, *home.rglob("*")):
+        # A run that is packed later loses files at any moment.
+        with suppress(FileNotFoundError):
+            mode = path.lstat().st_mode
+            if not stat.S_ISLNK(mode) and mode & 0o077:
+                raise FaultError(f"{path.relative_to(home.parent)} has the permissions {mode & 0o777:o}")
+
+
 def _check(case: str, folder: Path) -> None:
     place, _, which = case.partition(":")
     if place == "web":
@@ -315,14 +329,18 @@ def _check(case: str, folder: Path) -> None:
         sys.addaudithook(_Watch.hook)
         _Watch.is_installed = True
     _Watch.folder, _Watch.faults = str(folder.resolve()), []
+    # What others may do is up to tuisim.
+    mask = os.umask(0)
     try:
         PLACES[place](Random(case))
     finally:
+        os.umask(mask)
         _Watch.folder = ""
     if _Watch.faults:
         raise FaultError("\n".join(_Watch.faults[:5]))
     if left := {path.name for path in folder.iterdir()} - {"in", "home"}:
         raise FaultError(f"written outside: {left}")
+    _check_private(folder / "home")
     for path in folder.rglob("*"):
         if path.name == "owned":
             raise FaultError("a text was run")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from contextlib import AsyncExitStack, suppress
 
 from aiohttp import ClientError, ClientSession, WSMsgType, WSServerHandshakeError
@@ -96,6 +96,28 @@ async def _hosts(target: Target) -> None:
         await target.refused("GET", f"/{TOKEN}/", Host=host)
 
 
+async def _headers(target: Target) -> None:
+    """What a browser is allowed, whatever is asked for; and who has no token is not told it."""
+    for path in (f"/{TOKEN}/", f"/{TOKEN}", f"/{TOKEN}/page/none", f"/{TOKEN}/download/none", "/x/", "/"):
+        async with target.client.get(target.origin + path, allow_redirects=False) as found:
+            if wrong := [f"{name}: {found.headers.get(name)}" for name, words in _ALLOWED.items()
+                         if not all(word in found.headers.get(name, "") for word in words)]:  # fmt: skip
+                raise FaultError(f"{path}: {wrong}")
+            if TOKEN not in path and TOKEN in f"{found.headers} {await found.text()}":
+                raise FaultError(f"{path}: it tells the token")
+
+
+_ALLOWED: Mapping[str, Sequence[str]] = {
+    "Content-Security-Policy": ("default-src 'self'", "frame-ancestors 'none'", "base-uri 'none'", "object-src 'none'"),
+    "Cross-Origin-Opener-Policy": ("same-origin",),
+    "Cross-Origin-Resource-Policy": ("same-origin",),
+    "Referrer-Policy": ("no-referrer",),
+    "X-Content-Type-Options": ("nosniff",),
+    "Cache-Control": ("no-store",),
+}
+"""Headers of every answer, with what each must hold."""
+
+
 async def _connections(target: Target) -> None:
     """Connections that never ask."""
     opened = [await asyncio.open_connection("127.0.0.1", target.port) for _ in range(200)]
@@ -150,6 +172,7 @@ ATTACKS: Mapping[str, Callable[[Target], Awaitable[None]]] = {
     "tokens": _tokens,
     "origins": _origins,
     "hosts": _hosts,
+    "headers": _headers,
     "connections": _connections,
     "heads": _heads,
     "frames": _frames,
