@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import ctypes
 import os
+import re
 import shutil
+import subprocess
+import sys
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
@@ -44,6 +47,8 @@ FAMILIES: Mapping[str, Mapping[str, Piece]] = {
     "library": odd.LIBRARY,
 }
 WAYS = ("headless", "twice", "stopped", "stopped-soon", "stopped-paused", "killed")
+LIKE_PYTHON = ("threads", "at-exit", "outputs", "recursion", "encodings")
+"""Families that do no harm without the simulation, where Python itself shows what must come of them."""
 STOP_WITHIN_S = 0.5
 TRIES = 3
 """A stop is late if it is so each time: what the machine does meanwhile is not the program's."""
@@ -54,6 +59,13 @@ _SUBREAPER = 36
 def _names(random: Random) -> Iterator[str]:
     own = [(f"{family}.{name}", way) for family, pieces in FAMILIES.items() for name in pieces for way in WAYS]
     drawn = [f"{name}+{random.choice(list(ENDINGS))}+{way}" for name, way in own]
+    drawn += [
+        f"{family}.{name}+{ending}+like-python"
+        for family in LIKE_PYTHON
+        for name, piece in FAMILIES[family].items()
+        for ending, how in ENDINGS.items()
+        if piece.end is None and piece.alike and how.end is not End.TIME_LIMIT
+    ]
     yield from random.sample(drawn, len(drawn))
     while True:
         name, way = random.choice(own)
@@ -233,6 +245,39 @@ def _check_again(piece: Piece, ending: Ending, folder: Path, first: RunHandle) -
         raise FaultError("the second run records other bits")
 
 
+_ERROR = re.compile(r"(?:\w+\.)*\w+(?:Error|Exception)\b.*")
+
+
+def _errors(text: str) -> list[str]:
+    """Return the lines that name an error: what else a traceback shows is not the same."""
+    return [line for line in text.split("\n") if _ERROR.fullmatch(line)]
+
+
+def _check_like_python(piece: Piece, ending: Ending, folder: Path) -> None:
+    """Check that output, errors and exit code are those of Python itself."""
+    run = _start(piece, ending, folder, _options(piece))
+    try:
+        ended = _over(run)
+    finally:
+        run.close()
+    rows = {stream: [row.text for row in run.output.all_rows() if row.stream == stream] for stream in Stream}
+    shutil.rmtree(folder)
+    folder.mkdir()
+    (folder / "program.py").write_text(_text(piece, ending), newline="")
+    environment = {"PYTHONUTF8": "1", "PYTHONHASHSEED": "0", "PYTHONIOENCODING": "utf-8:backslashreplace"}
+    # Without a buffer, which a program that ends at once would lose.
+    done = subprocess.run(
+        [sys.executable, "-u", "program.py"], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+        capture_output=True, timeout=PATIENCE_S, start_new_session=True,
+    )  # fmt: skip
+    out, err = done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
+    wanted = out.removesuffix("\n").split("\n"), sorted(_errors(err)), done.returncode
+    found = rows[Stream.STDOUT], sorted(_errors("\n".join(rows[Stream.STDERR]))), ended.exit_code & 0xFF
+    for what, one, other in zip(("stdout", "errors", "exit code"), found, wanted, strict=True):
+        if one != other:
+            raise FaultError(f"{what}: {str(one)[-300:]}, of Python itself: {str(other)[-300:]}; {ended}")
+
+
 def _descendants() -> dict[int, int]:
     """Return all processes below this one that are not over, with the session of each."""
     parents: dict[int, tuple[int, int]] = {}
@@ -273,7 +318,9 @@ def _check(case: str, folder: Path) -> None:
     before = _descendants()
     place = folder / "place"
     place.mkdir()
-    if way.startswith("stopped"):
+    if way == "like-python":
+        _check_like_python(piece, ending, place)
+    elif way.startswith("stopped"):
         _check_stopped(piece, ending, place, way)
     else:
         _check_run(piece, ending, place, way)

@@ -21,6 +21,8 @@ class Piece:
     """Whether what is printed afterwards may not be seen."""
     breaks: bool = False
     """Whether it breaks what tuisim needs in the same process: the run ends in any way, but it does."""
+    alike: bool = True
+    """Whether Python itself prints the same each time, and so does tuisim."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +37,10 @@ class Ending:
 ENDINGS: Mapping[str, Ending] = {
     "falls-off": Ending("", End.FINISHED),
     "exit-3": Ending("import sys\nsys.exit(3)", End.FINISHED, 3),
+    "exit-none": Ending("import sys\nsys.exit()", End.FINISHED),
     "exit-text": Ending("raise SystemExit('bye')", End.FINISHED, 1),
     "raises": Ending("1 / 0", End.RAISED, 1),
+    "unended": Ending("print('C: 3', end='')", End.FINISHED),
     "at-once": Ending("import os\nos._exit(4)", End.FINISHED, 4),
     "sleeps": Ending("import time\nwhile True: time.sleep(0.5)", End.TIME_LIMIT),
     "polls": Ending("import time\nwhile time.time() > 0: pass", End.TIME_LIMIT),
@@ -56,7 +60,8 @@ THREADS: Mapping[str, Piece] = {
     "daemon-prints": Piece(
         "import threading, time\ndef f():\n    for i in range(50):\n        print('tick', i)\n"
         "        time.sleep(0.05)\n"
-        "threading.Thread(target=f, daemon=True).start()"
+        "threading.Thread(target=f, daemon=True).start()",
+        alike=False,
     ),
     "many": Piece(
         "import threading, time\nt = [threading.Thread(target=time.sleep, args=(0.01 * n,)) for n in range(40)]\n"
