@@ -253,15 +253,59 @@ CHOICES: tuple[Steps, ...] = (
 )  # fmt: skip
 
 
+_BLOCKED = """\
+import json, time
+from ev3dev2.motor import LargeMotor
+motors = [LargeMotor('outB'), LargeMotor('outC')]
+for command, settings, seconds in json.loads({commands!r}):
+    for m in motors:
+        getattr(m, command)(**settings)
+    time.sleep(seconds)
+    print(json.dumps([[m.state, m.position, m.speed] for m in motors]))
+"""
+_ACROSS_S = 60
+"""More than a robot takes to cross the mat."""
+
+
+def _check_blocked(random: Random) -> None:
+    """Drive to and fro between two walls: a motor is stalled where it should turn and cannot, and nowhere else."""
+    commands: list[tuple[str, dict[str, Any], float]] = []
+    wanted: list[tuple[str, ...]] = []
+    there, gone = ("running", "overloaded", "stalled"), ("running",)
+    for number in range(8):
+        speed = random.randint(250, 900) * (-1) ** number
+        command, settings = random.choice(
+            [
+                ("run_forever", {"speed_sp": speed}),
+                ("run_direct", {"duty_cycle_sp": speed // 10}),
+                ("run_timed", {"speed_sp": speed, "time_sp": 1_000_000}),
+                ("run_to_rel_pos", {"speed_sp": speed, "position_sp": 100_000 * (-1) ** number}),
+            ]
+        )
+        ramps = {name: random.choice([0, 0, 500]) for name in ("ramp_up_sp", "ramp_down_sp")}
+        action = random.choice(WORDS["stop_action"])
+        # The way back is free; the same command again begins anew, and meets the wall.
+        commands += [(command, {**settings, **ramps}, random.uniform(0.6, 1.0)), (command, {}, _ACROSS_S)]
+        commands += [("stop", {"stop_action": action}, 1.0)]
+        wanted += [gone, there, ("holding",) if action == "hold" else ()]
+    lines = printed(_BLOCKED.format(commands=json.dumps(commands)), solid=True)
+    for number, (words, line) in enumerate(zip(wanted, lines, strict=True)):
+        for state, position, speed in json.loads(line):
+            # Of a ramp nothing is known here.
+            if {*state} - {"ramping"} != {*words} or (words is not gone and speed):
+                told = [f"{name}({given}), {seconds:.1f} s" for name, given, seconds in commands[: number + 1][-4:]]
+                raise FaultError("\n".join([*told, f"state {state}, not {words}; {position=}, {speed=}"]))
+
+
 def _names(random: Random) -> Iterator[str]:
     while True:
-        yield f"{random.choice([*MOTORS, 'devices'])}:{random.getrandbits(32)}"
+        yield f"{random.choice([*MOTORS, 'devices', 'blocked'])}:{random.getrandbits(32)}"
 
 
-def printed(text: str) -> list[str]:
-    """Run a program under the profile of the brick; return the lines that it printed."""
+def printed(text: str, solid: bool = False) -> list[str]:
+    """Run a program under the profile of the brick, with walls that stop the robot or not; return what it printed."""
     robot = RobotSpec(extra_motors=(MotorSpec("outA", "medium"), MotorSpec("outD", "large")))
-    spec = replace(build_run_spec(Settings(background="Empty_Map", profile="ev3", solid=False)), robot=robot)
+    spec = replace(build_run_spec(Settings(background="Empty_Map", profile="ev3", solid=solid)), robot=robot)
     process.warm_up()
     run = start_run(Program("program.py", text), spec, RunOptions(time_limit_s=1e6))
     try:
@@ -276,6 +320,9 @@ def _check(case: str, folder: Path) -> None:
     kind, random = case.partition(":")[0], Random(case)
     if kind == "devices":
         check_devices(random, printed)
+        return
+    if kind == "blocked":
+        _check_blocked(random)
         return
     make, max_speed, hold_p = MOTORS[kind]
     model, steps = TachoMotor(max_speed, hold_p), [Step("pass", lambda *_: "")]
