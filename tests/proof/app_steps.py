@@ -15,7 +15,7 @@ from tests.app.app_help import lab, program, ready
 from tests.app.monkey import is_over, leave
 from tests.proof.kind import FaultError
 from tests.proof.run_model import RunModel, Seen
-from tests.proof.run_steps import PROGRAMS, spec_of
+from tests.proof.run_steps import PROGRAMS, done_in, spec_of
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.config.build import build_run_spec
 from tuisim.logs.reader import read_log
@@ -117,13 +117,13 @@ async def _in_app(model: RunModel, steps: Sequence[int], seed: str) -> None:
     settings = AppSettings(
         spec=spec, program=program(Path("prog.py").read_text()), autorun=True, speed=random.choice((1.0, 4.0, 0.0))
     )
-    own = set(model.seen)
+    own, names = set(model.seen), done_in(seed, [*KEYS, *OUTSIDE])
     async with LabApp(settings).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         todo = AppSteps(model, pilot)
         for step in steps:
             one = Random(f"{seed} {step}")
-            name = one.choice([*KEYS, *OUTSIDE])
+            name = one.choice(names)
             model.done.append(f"{step} {name}")
             await todo.do(name, one)
             if app._exception:

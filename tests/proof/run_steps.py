@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from random import Random
@@ -297,3 +297,9 @@ OPERATIONS: Mapping[str, Callable[[RunModel, Random], None]] = {
     "remove": _remove, "compact": _compact, "rerun": _rerun, "stop": _stop,
 }  # fmt: skip
 """What users do, by name."""
+
+
+def done_in(case: str, every: Iterable[str], always: Sequence[str] = ()) -> list[str]:
+    """Return what is done in a case: all there is, or a few things only, which then meet each other more often."""
+    names, random = list(every), Random(f"{case} names")
+    return names if random.random() < 0.3 else [*always, *random.sample(names, random.randint(3, 7))]
