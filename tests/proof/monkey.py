@@ -8,6 +8,9 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from random import Random
+from typing import Any
+
+from textual.keys import format_key
 
 from tests.app.app_help import ENDLESS, LOGS
 from tests.app.monkey import SIZES
@@ -16,6 +19,9 @@ from tests.proof.kind import FaultError, Kind
 from tests.proof.operations import prepared
 from tests.proof.terminals import Terminal
 from tests.running import PATIENCE_S
+from tuisim.app.action import Action
+from tuisim.app.actions.keys import ACTIONS as LAB_ACTIONS
+from tuisim.app.analyser.actions.keys import ACTIONS as LOG_ACTIONS
 from tuisim.lessons.catalogue import shipped_paths
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -56,6 +62,8 @@ ANSWERS = [
     b"\x1b[?2026;2$y", b"\x1b[I", b"\x1b[O", b"\x1b[?1u", b"\x1b]11;rgb:0000/0000/0000\x1b\\", b"\x1b[12;40R",
 ]  # fmt: skip
 """What terminals send without a key."""
+THEN = [b"\x1b[3~", b"\x7f", b"\r", b" ", b"\x1b[A", b"\x1b[B", b"e", b"\t", b"\x1b[3~\x1b[3~"]
+"""Keys that do something with what a key before has opened: in a list they remove, choose, mark, or edit."""
 SIGNAL_KEYS = b"\x03\x11\x13\x1a\x1c"
 """Keys that the system takes for itself while the app is stopped."""
 ASKS = """\
@@ -89,23 +97,34 @@ def _lesson(random: Random) -> Sequence[str]:
 SCREENS: Mapping[str, Callable[[Random], Sequence[str]]] = {"app": _app, "analyser": _analyser, "lesson": _lesson}
 
 
+def _keys_of(actions: Mapping[str, Action[Any, Any]]) -> list[bytes]:
+    """Return the keys of a table that are a character, without those that leave."""
+    shown = (format_key(key) for action in actions.values() for key in action.key.split(",") if action.id != "leave")
+    return [key.encode() for key in shown if len(key) == 1 and key in PRINTED]
+
+
+OWN_KEYS = {"app": _keys_of(LAB_ACTIONS), "analyser": _keys_of(LOG_ACTIONS), "lesson": _keys_of(LAB_ACTIONS)}
+"""The keys of each of `SCREENS`."""
+
+
 class Monkey:
     """Presses what its random numbers say.
 
     Args:
         terminal: Where.
         random: The random numbers.
+        own_keys: The keys of what is there.
         suspends: Whether it suspends and stops the app.
     """
 
-    def __init__(self, terminal: Terminal, random: Random, suspends: bool) -> None:
-        self._terminal, self._random, self._suspends = terminal, random, suspends
+    def __init__(self, terminal: Terminal, random: Random, own_keys: Sequence[bytes], suspends: bool) -> None:
+        self._terminal, self._random, self._own_keys, self._suspends = terminal, random, own_keys, suspends
         self.done: list[str] = []
 
     def act(self) -> None:
         """Do one thing."""
-        weights = (80, 12, 4, 2, 2, 10 * self._suspends)
-        acts = (self._type, self._point, self._resize, self._paste, self._answer, self._suspend)
+        weights = (50, 40, 12, 4, 2, 2, 10 * self._suspends)
+        acts = (self._type, self._use, self._point, self._resize, self._paste, self._answer, self._suspend)
         what = self._random.choices(acts, weights)[0]()
         self.done.append(what)
         self._terminal.take(self._random.choice((0, 0, 0.005, 0.02, 0.05)))
@@ -128,6 +147,13 @@ class Monkey:
         if self._suspends:
             some = some.translate(None, SIGNAL_KEYS)
         return self._write(some)
+
+    def _use(self) -> str:
+        """Press one of its keys, and what does something with what that may have opened."""
+        key, then = self._random.choice(self._own_keys), self._random.choice(THEN)
+        self._write(key)
+        self._terminal.take(self._random.choice((0, 0.02, 0.1)))
+        return f"{key!r} then {self._write(then)}"
 
     def _point(self) -> str:
         random = self._random
@@ -284,12 +310,12 @@ def _check(name: str, folder: Path) -> None:
     screen = name.partition(":")[0]
     terminal, place = _started(screen, random, folder)
     loses, suspends = random.choice(((False, False), (False, True), (True, False), (True, True)))
-    monkey = Monkey(terminal, random, suspends)
+    monkey = Monkey(terminal, random, OWN_KEYS[screen], suspends)
     try:
         terminal.until(lambda: b"\x1b[?1049h" in terminal.written or terminal.is_over, "the app")
         if random.random() < 0.8:
             terminal.take(QUIET_S)
-        for _ in range(random.randint(30, 100)):
+        for _ in range(random.randint(30, 150)):
             if not terminal.is_over:
                 monkey.act()
         if loses and not terminal.is_over:
@@ -310,7 +336,7 @@ def _check(name: str, folder: Path) -> None:
 
 def _names(random: Random) -> Iterator[str]:
     while True:
-        screen = random.choice(("app", "app", "app", "analyser", "lesson"))
+        screen = random.choice(("app", "app", "analyser", "lesson"))
         yield f"{screen}:{random.getrandbits(32)}"
 
 
