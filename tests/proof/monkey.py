@@ -292,10 +292,11 @@ def _lose(terminal: Terminal, suspended: bool) -> None:
     terminal.until(ends, "the end after the terminal was lost")
 
 
-def _check_end(terminal: Terminal, loses: bool) -> None:
-    # A key from before may have ended it.
-    was_left = terminal.written.rfind(b"\x1b[?1049l") > terminal.written.rfind(b"\x1b[?1049h")
-    codes = {129, -signal.SIGHUP, *([0] if was_left else [])} if loses else {0}
+def _check_end(terminal: Terminal, loses: bool, is_left_by_escape: bool) -> None:
+    codes = {129, -signal.SIGHUP} if loses else {0}
+    # A key from before may be ending it: this mode is what it switches off first.
+    if is_left_by_escape or terminal.written.rfind(b"\x1b[?2004l") > terminal.written.rfind(b"\x1b[?2004h"):
+        codes |= {0}
     if terminal.code not in codes:
         raise FaultError(f"exit code {terminal.code}, not {codes}; the last was {terminal.written[-3000:].decode()!r}")
     if not loses:
@@ -320,11 +321,11 @@ def _check(name: str, folder: Path) -> None:
                 monkey.act()
         if loses and not terminal.is_over:
             _lose(terminal, suspends and random.random() < 0.5)
-            _check_end(terminal, True)
+            _check_end(terminal, True, screen == "analyser")
         else:
             leave(terminal)
             terminal.take(QUIET_S)
-            _check_end(terminal, False)
+            _check_end(terminal, False, screen == "analyser")
         _check_processes(place / "home")
         # Before the app listens for it, a hang-up ends it at once.
         _check_files(folder, place, terminal.code == -signal.SIGHUP)
