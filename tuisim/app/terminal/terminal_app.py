@@ -35,8 +35,9 @@ from textual.drivers.linux_driver import LinuxDriver
 from textual.filter import LineFilter
 from textual.geometry import Size
 from textual.screen import Screen
+from textual.selection import Selection
 from textual.theme import Theme
-from textual.widget import WidgetError
+from textual.widget import Widget, WidgetError
 from textual.widgets import OptionList
 from textual.worker import WorkerFailed
 
@@ -439,9 +440,16 @@ class InputDecoder(utf_8.IncrementalDecoder):
         return super().decode(data, final)
 
 
+def text_selection(widget: Widget) -> Selection | None:
+    """Return what is selected of a widget; nothing in a screen without styles: it is not drawn yet, or is gone."""
+    screen = widget.screen
+    return screen.selections.get(widget) if "screen--selection" in screen._component_styles else None
+
+
 # A screen makes its compositor itself, the palette its list, and the driver its parser and its decoder.
 textual_screen.Compositor = ThoroughCompositor  # type: ignore[attr-defined]
 OptionList._on_click = option_list.click  # type: ignore[method-assign, assignment]
+Widget.text_selection = property(text_selection)  # type: ignore[assignment]
 OptionList._move_page = option_list.move_page  # type: ignore[method-assign, assignment]
 # Otherwise the cache of this method keeps what it is a method of: the drawn rows of a thousand widgets that are gone.
 StylesCache.get_inner_outer = classmethod(StylesCache.get_inner_outer)  # type: ignore[method-assign, arg-type, assignment]
