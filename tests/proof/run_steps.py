@@ -40,6 +40,14 @@ from tuisim.runs.recorded_run import Recording
 from tuisim.runs.store import RunStore, compact_run
 from tuisim.source import Program
 
+ENDLESS = """\
+tank_drive.on(20, -20)
+x = 0
+while True:
+    x += 1
+    if colorLeft.color == 1:
+        print('black:', x)
+"""
 PROGRAMS = (
     """\
 import time
@@ -78,14 +86,7 @@ while x < 3000:
 print(input('again? '))
 1 / 0
 """,
-    """\
-tank_drive.on(20, -20)
-x = 0
-while True:
-    x += 1
-    if colorLeft.color == 1:
-        print('black:', x)
-""",
+    ENDLESS,
 )
 """Each does the same each time."""
 SUFFIXES = (".csv", ".jsonl", ".parquet", ".arrow")
