@@ -98,9 +98,9 @@ SCREENS: Mapping[str, Callable[[Random], Sequence[str]]] = {"app": _app, "analys
 
 
 def _keys_of(actions: Mapping[str, Action[Any, Any]]) -> list[bytes]:
-    """Return the keys of a table that are a character, without those that leave."""
-    shown = (format_key(key) for action in actions.values() for key in action.key.split(",") if action.id != "leave")
-    return [key.encode() for key in shown if len(key) == 1 and key in PRINTED]
+    """Return those of `PRINTED` that are keys of a table."""
+    shown = (format_key(key) for action in actions.values() for key in action.key.split(","))
+    return [key.encode() for key in shown if key in PRINTED]
 
 
 OWN_KEYS = {"app": _keys_of(LAB_ACTIONS), "analyser": _keys_of(LOG_ACTIONS), "lesson": _keys_of(LAB_ACTIONS)}
@@ -292,7 +292,7 @@ def _lose(terminal: Terminal, suspended: bool) -> None:
     terminal.until(ends, "the end after the terminal was lost")
 
 
-def _check_end(terminal: Terminal, loses: bool, is_left_by_escape: bool) -> None:
+def _check_end(terminal: Terminal, loses: bool, is_left_by_escape: bool = False) -> None:
     codes = {129, -signal.SIGHUP} if loses else {0}
     # A key from before may be ending it: this mode is what it switches off first.
     if is_left_by_escape or terminal.written.rfind(b"\x1b[?2004l") > terminal.written.rfind(b"\x1b[?2004h"):
@@ -325,7 +325,7 @@ def _check(name: str, folder: Path) -> None:
         else:
             leave(terminal)
             terminal.take(QUIET_S)
-            _check_end(terminal, False, screen == "analyser")
+            _check_end(terminal, False)
         _check_processes(place / "home")
         # Before the app listens for it, a hang-up ends it at once.
         _check_files(folder, place, terminal.code == -signal.SIGHUP)

@@ -11,7 +11,7 @@ from types import FrameType
 from typing import Self, TextIO
 
 from tuisim.commands.echo import echo_error, progress_hidden, tell
-from tuisim.errors import EXIT_BROKEN_PIPE
+from tuisim.errors import EXIT_BROKEN_PIPE, SIGNALLED
 from tuisim.protocol import Ended, Message
 from tuisim.runs.handle import RunHandle
 from tuisim.runs.records import OutputRow, Stream, line_of
@@ -51,7 +51,7 @@ class Interrupts:
             if self._handle is not None and self._handle.ended is None:
                 self._handle.kill()
             raise KeyboardInterrupt
-        self.exit_code = 128 + number
+        self.exit_code = SIGNALLED + number
         if self._handle is not None:
             self._handle.stop()
             if self._handle.ended is not None:

@@ -18,7 +18,7 @@ from aiohttp.http import HttpProcessingError
 from aiohttp.typedefs import Handler, Middleware
 from textual_serve.download_manager import DownloadManager
 
-from tuisim.errors import ConfigError, counted
+from tuisim.errors import SIGNALLED, ConfigError, counted
 from tuisim.web.gate import Gate
 from tuisim.web.session import END_WITHIN_S, Session
 from tuisim.web.visit import Visit
@@ -205,7 +205,7 @@ async def _serve(server: Server, host: str, port: int, announce: Callable[[int],
         announce(actual_port)
         number = await ended_by
     # ctrl+c is how a server is meant to end.
-    return 0 if number is signal.SIGINT else 128 + number
+    return 0 if number is signal.SIGINT else SIGNALLED + number
 
 
 @asynccontextmanager

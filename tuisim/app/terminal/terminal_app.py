@@ -62,7 +62,7 @@ from tuisim.app.terminal.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_T
 from tuisim.charts.traces import TRACE_COLORS
 from tuisim.config.options import AUTO, NO_PIXELS, CellSet, FileValue, Protocol
 from tuisim.config.user_config import SETTINGS, THEME, load_config
-from tuisim.errors import ConfigError
+from tuisim.errors import SIGNALLED, ConfigError
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
 
@@ -84,7 +84,7 @@ def _blank(match: re.Match[str]) -> str:
     return " " * cell_len(match[0])
 
 
-_LOST = 128 + signal.SIGHUP
+_LOST = SIGNALLED + signal.SIGHUP
 """The exit code of an app whose terminal is gone, as if the shell had told it."""
 MINIMUM = Size(40, 12)
 """Minimum size of the terminal: panels and dialogs are unreadable below it."""
@@ -199,7 +199,7 @@ class TerminalApp(App[None]):
             return True
         if not isinstance(event, events.MouseEvent):
             return False
-        # A screen that is not drawn yet has no styles yet, either: to select text in it fails.
+        # Nobody can aim at what is not drawn yet.
         if self.too_small is not None or self._is_opening:
             return True
         if not isinstance(event, events.MouseDown):
@@ -296,7 +296,7 @@ class TerminalApp(App[None]):
         loop = asyncio.get_running_loop()
         for number in (signal.SIGTERM, signal.SIGHUP):
             # The exit code that a shell shows for a program ended by the signal.
-            loop.add_signal_handler(number, partial(self.exit, return_code=128 + number))
+            loop.add_signal_handler(number, partial(self.exit, return_code=SIGNALLED + number))
         if isinstance(self._driver, TerminalDriver):
             loop.add_signal_handler(signal.SIGTSTP, self.action_suspend_process)
 
@@ -449,12 +449,12 @@ def text_selection(widget: Widget) -> Selection | None:
 # A screen makes its compositor itself, the palette its list, and the driver its parser and its decoder.
 textual_screen.Compositor = ThoroughCompositor  # type: ignore[attr-defined]
 OptionList._on_click = option_list.click  # type: ignore[method-assign, assignment]
-Widget.text_selection = property(text_selection)  # type: ignore[assignment]
 OptionList._move_page = option_list.move_page  # type: ignore[method-assign, assignment]
-# Otherwise the cache of this method keeps what it is a method of: the drawn rows of a thousand widgets that are gone.
-StylesCache.get_inner_outer = classmethod(StylesCache.get_inner_outer)  # type: ignore[method-assign, arg-type, assignment]
 linux_driver.XTermParser = AnswerParser  # type: ignore[attr-defined]
 linux_driver.getincrementaldecoder = lambda _: InputDecoder  # type: ignore[attr-defined, assignment]
+Widget.text_selection = property(text_selection)  # type: ignore[assignment]
+# Otherwise the cache of this method keeps what it is a method of: the drawn rows of a thousand widgets that are gone.
+StylesCache.get_inner_outer = classmethod(StylesCache.get_inner_outer)  # type: ignore[method-assign, arg-type, assignment]
 
 
 class TerminalDriver(LinuxDriver):
