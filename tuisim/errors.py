@@ -14,6 +14,7 @@ goes to stderr, to a notice in the app, and to the notebook.
 from __future__ import annotations
 
 import math
+import re
 import reprlib
 from collections.abc import Iterable, Sequence
 
@@ -214,3 +215,19 @@ def require_one_of(
     allowed = tuple(allowed)
     if value not in allowed or isinstance(value, bool):
         raise error(f"no such {what} {reprlib.repr(value)}", f"one of {', '.join(map(str, allowed))}", key=key)
+
+
+def require_regex(pattern: str, key: str) -> None:
+    """Check that a text is a regular expression.
+
+    Args:
+        pattern: Text to check.
+        key: Name of the value in the error.
+
+    Raises:
+        ConfigError: it is not.
+    """
+    try:
+        re.compile(pattern)
+    except (re.error, RecursionError, OverflowError) as error:
+        raise ConfigError(f"{pattern!r} is no regular expression: {error}", key=key) from None

@@ -6,7 +6,6 @@ To add a kind of condition: its class and a line in `CONDITIONS` here, and its f
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
@@ -15,7 +14,7 @@ from typing import Annotated, ClassVar, TypeAlias
 from msgspec import Meta
 
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.errors import ConfigError
+from tuisim.errors import ConfigError, require_regex
 
 MAX_GOALS = 200
 MAX_PLACES = 1000
@@ -62,13 +61,6 @@ class Part(StrEnum):
     """The midpoint between its wheels."""
     BODY = "body"
     """Its whole outline."""
-
-
-def _check_regex(pattern: str, key: str) -> None:
-    try:
-        re.compile(pattern)
-    except (re.error, RecursionError, OverflowError) as error:
-        raise ConfigError(f"{pattern!r} is no regular expression: {error}", key=key) from None
 
 
 def _check_count(found: tuple[object, ...], key: str) -> None:
@@ -237,7 +229,7 @@ class Print:
     def __post_init__(self) -> None:
         _check_count(self.lines, "lines")
         for number, pattern in enumerate(self.lines, start=1):
-            _check_regex(pattern, f"lines[{number}]")
+            require_regex(pattern, f"lines[{number}]")
 
 
 @dataclass(frozen=True, slots=True)
@@ -316,8 +308,8 @@ class Dialogue:
     def __post_init__(self) -> None:
         _check_count(self.turns, "turns")
         for number, turn in enumerate(self.turns, start=1):
-            _check_regex(turn.prompt, f"turns[{number}].prompt")
-            _check_regex(turn.reply, f"turns[{number}].reply")
+            require_regex(turn.prompt, f"turns[{number}].prompt")
+            require_regex(turn.reply, f"turns[{number}].reply")
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,6 @@ To add a kind of check: its class and a line in `CHECKS` here, and a case in `is
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,7 +13,7 @@ from typing import Annotated, Any, ClassVar, TypeAlias
 from msgspec import Meta
 
 from tuisim.config.options import PANELS
-from tuisim.errors import ConfigError, nearest
+from tuisim.errors import ConfigError, nearest, require_regex
 from tuisim.goals.spec import Goal
 
 SHOWABLE = (*PANELS, "debug", "brick", "obstacles", "goals")
@@ -26,13 +25,6 @@ Count = Annotated[int, Meta(ge=1, le=100)]
 Seconds = Annotated[float, Meta(ge=0, le=1e6)]
 Number = Annotated[float, Meta(ge=-1e15, le=1e15)]
 Tolerance = Annotated[float, Meta(ge=0, le=1e15)]
-
-
-def _check_regex(pattern: str, key: str) -> None:
-    try:
-        re.compile(pattern)
-    except (re.error, RecursionError, OverflowError) as error:
-        raise ConfigError(f"{pattern!r} is no regular expression: {error}", key=key) from None
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +89,7 @@ class Break:
     """A regular expression for the text of the breakpoint, such as `left` or `^12`."""
 
     def __post_init__(self) -> None:
-        _check_regex(self.matches, "matches")
+        require_regex(self.matches, "matches")
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +115,7 @@ class Note:
     within: Tolerance = 1.0
 
     def __post_init__(self) -> None:
-        _check_regex(self.matches, "matches")
+        require_regex(self.matches, "matches")
 
 
 @dataclass(frozen=True, slots=True)
