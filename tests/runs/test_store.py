@@ -10,12 +10,14 @@ import sqlite3
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
+from fcntl import LOCK_EX, LOCK_NB, flock
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from tests.running import Start
 from tests.runs.run_recorder import PROGRAM, Recorder
 from tuisim.config.folders import home_folder
 from tuisim.core.spec import NoiseSpec, RunSpec
@@ -25,7 +27,7 @@ from tuisim.runs import side_files
 from tuisim.runs.catalogue import CATALOGUE_FILE, RunInfo
 from tuisim.runs.records import OUTPUT_FILE
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, noise_at, write_run_file
-from tuisim.runs.side_files import ACTIONS_FILE, hold, is_held
+from tuisim.runs.side_files import ACTIONS_FILE, LOCK_FILE, hold, is_held
 from tuisim.runs.store import RunStore, load_run
 
 FINISHED = Ended(End.FINISHED, 100, 1_000_000_000)
@@ -141,6 +143,25 @@ def test_run_of_a_living_process_is_running(record: Callable[..., Recorder], spe
         store.remove(recorder.run.id)
     os.close(lock)
     assert store.load_run("last").state == Unended.INTERRUPTED
+
+
+def test_a_lock_is_held_before_others_can_find_it(
+    store: RunStore, spec: RunSpec, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run, found = store.new_run(PROGRAM, spec), []
+
+    def lock(descriptor: int, operation: int) -> None:
+        found.append((run.folder / LOCK_FILE).exists())
+        flock(descriptor, operation)
+
+    monkeypatch.setattr(side_files, "fcntl", SimpleNamespace(flock=lock, LOCK_EX=LOCK_EX, LOCK_NB=LOCK_NB))
+    os.close(hold(run.folder))
+    assert found == [False]
+
+
+def test_a_run_is_running_from_the_start_of_its_process(start: Start) -> None:
+    handle = start("tank_drive.on(9, 9)")
+    assert is_held(handle.folder) is True
 
 
 def test_run_that_is_just_starting_is_running(store: RunStore, spec: RunSpec) -> None:

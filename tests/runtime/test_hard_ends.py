@@ -225,8 +225,8 @@ def test_signals_are_the_programs(start: Start, text: str, end: str) -> None:
 
 
 def test_a_run_whose_folder_cannot_be_used_says_why(tmp_path: Path) -> None:
-    (commands, _), (events, event_fd), (lifeline, _) = pipes = [os.pipe() for _ in range(3)]
-    fds = (commands, event_fd, lifeline)
+    (commands, _), (events, event_fd), (lifeline, _), (lock, _) = pipes = [os.pipe() for _ in range(4)]
+    fds = (commands, event_fd, lifeline, lock)
     try:
         words = [sys.executable, "-m", "tuisim.runtime", str(tmp_path / "gone"), *map(str, fds)]
         done = subprocess.run(

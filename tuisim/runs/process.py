@@ -23,6 +23,7 @@ from tuisim.core.profile import NS_PER_S
 from tuisim.errors import HostError
 from tuisim.protocol import EVENTS, Message
 from tuisim.runs.isolation import spawn_isolated
+from tuisim.runs.side_files import hold
 from tuisim.source import source_lines
 
 if TYPE_CHECKING:
@@ -105,10 +106,12 @@ def start_child(
     _Starts.count += 1
     if _Starts.count > 1 and isolated_with is None:
         warm_up()
+    # The child inherits it: the folder is in use from now on until the child ends.
+    lock_fd = hold(folder)
     command_read, command_fd = os.pipe()
     event_fd, event_write = os.pipe()
     lifeline_read, lifeline_fd = os.pipe()
-    inherited = (command_read, event_write, lifeline_read)
+    inherited = (command_read, event_write, lifeline_read, lock_fd)
     try:
         with open(folder / "child.log", "wb", opener=private) as log:
             cwd = working_directory if os.path.isdir(working_directory) else None

@@ -91,7 +91,7 @@ def state_without_end(folder: Path) -> Unended:
     """Return whether the run in a folder without a stored end is running or was interrupted."""
     alive = is_held(folder)
     if alive is None:
-        # The lock was never acquired: the process is starting, or never got that far.
+        # Never locked: its process is about to be started, or could not be.
         try:
             alive = time.time() - folder.stat().st_mtime < _START_GRACE_S
         except FileNotFoundError:

@@ -40,18 +40,28 @@ They allow repeating the run after the modules have changed or are gone.
 
 
 def hold(folder: Path) -> int:
-    """Acquire the lock of a run folder and return its file descriptor; closing it releases the lock.
+    """Lock a run folder and return the file descriptor of the lock; closing it and all its copies releases the lock.
 
-    Blocks instead of failing: `is_held` acquires the lock for a moment.
+    Raises:
+        OSError: the folder cannot be written to, or not be locked.
     """
-    descriptor = private(str(folder / LOCK_FILE), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
-    fcntl.flock(descriptor, fcntl.LOCK_EX)
+    # The file is locked before it gets its name: `is_held` never finds it without an owner.
+    name = folder / f".{LOCK_FILE}-{os.getpid()}"
+    descriptor = private(str(name), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        os.rename(name, folder / LOCK_FILE)
+    except OSError:
+        os.close(descriptor)
+        with suppress(OSError):
+            os.unlink(name)
+        raise
     return descriptor
 
 
 @contextmanager
 def held(folder: Path) -> Iterator[None]:
-    """Hold the lock of a run folder for a block.
+    """Lock a run folder for a block.
 
     Raises:
         OSError: the lock cannot be acquired.

@@ -118,7 +118,8 @@ class ForkServer:
             folder: The run folder.
             working_directory: Its initial working directory.
             environment: Its environment variables.
-            files: Descriptors: its error output; its commands, events and lifeline, or the socket of a template.
+            files: Descriptors: its error output; its commands, events, lifeline and lock, or the socket of a
+                template.
             serves: Whether it becomes a template.
 
         Raises:

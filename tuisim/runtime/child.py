@@ -18,7 +18,6 @@ from tuisim.core.simulation import FurtherMotors, Turn, simulation_of
 from tuisim.core.tick_record import NoRecording
 from tuisim.runs.brick_state import motors_row
 from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, Stream, TelemetryWriter, is_full
-from tuisim.runs.side_files import hold
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.control import ATTENTION, STOPPING, RunControl
 from tuisim.runtime.interrupts import Interrupts, die_with_host
@@ -54,15 +53,16 @@ def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
     """Run what a folder describes, then end the process.
 
     Args:
-        arguments: The run folder; descriptors of the commands, the events and the lifeline.
+        arguments: The run folder; descriptors of the commands, the events, the lifeline and the lock of the folder.
         prepared: The child, if it has been prepared already.
     """
     folder = Path(arguments[0])
-    command_fd, event_fd, lifeline_fd = map(int, arguments[1:4])
+    command_fd, event_fd, lifeline_fd, lock_fd = map(int, arguments[1:5])
+    # The folder is locked as long as this process lives, and those that it forks.
+    os.set_inheritable(lock_fd, False)
     die_with_host(lifeline_fd)
     channel = Channel(command_fd, event_fd)
     try:
-        hold(folder)
         config = read_config(folder)
         child = Child(config) if prepared is None else prepared
         child.connect(config, channel)
