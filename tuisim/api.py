@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import APP, OPTIONS, Option, settings_of
-from tuisim.config.program_file import ProgramSource, program_of_text, read_program
+from tuisim.config.program_file import ProgramSource, find_program, program_of_text, read_program
 from tuisim.errors import ConfigError, nearest
 from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S, RunOptions, start_run
 from tuisim.runs.records import Stream
@@ -106,14 +106,7 @@ def choices_of(choices: Mapping[str, Any]) -> dict[str, Any]:
 def _source(program: str | Path) -> ProgramSource:
     if isinstance(program, str) and "\n" in program:
         return program_of_text(program, None, "program")
-    path = Path(program)
-    if path.parent == Path() and not path.exists():
-        from tuisim.config.folders import programs_folder
-
-        for name in (path.name, f"{path.name}.py"):
-            if (example := programs_folder() / name).is_file():
-                return read_program(example)
-    return read_program(path)
+    return read_program(find_program(str(program)))
 
 
 def _check_timeout(timeout_s: float) -> None:

@@ -20,7 +20,7 @@ from click.shell_completion import get_completion_class, shell_complete
 
 from tuisim import __version__
 from tuisim.config.command_line import Group, command
-from tuisim.errors import EXIT_BROKEN_PIPE, EXIT_INTERRUPTED, ConfigError, HostError, TuisimError, printable
+from tuisim.errors import EXIT_BROKEN_PIPE, EXIT_INTERRUPTED, ConfigError, HostError, TuisimError, printable, shortened
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ def _check_command(word: str) -> None:
         return
     from tuisim.config.program_file import find_program
 
-    if not find_program(word).exists():
+    if not os.path.exists(find_program(word)):
         raise ConfigError(f"{word}: no such command or program", f"did you mean `tuisim {close[0]}`?")
 
 
@@ -107,7 +107,7 @@ class _Root(Group):
         return [self.default, *args]
 
 
-_ROOT = _Root(
+ROOT = _Root(
     "tuisim",
     {name: entry.does for name, entry in COMMANDS.items()},
     lambda name: COMMANDS[name].load(),
@@ -118,7 +118,7 @@ _ROOT = _Root(
     lists its options.
     """,
 )
-click.version_option(__version__, prog_name="tuisim", message="%(prog)s %(version)s", help="Print the version.")(_ROOT)
+click.version_option(__version__, prog_name="tuisim", message="%(prog)s %(version)s", help="Print the version.")(ROOT)
 
 
 @command(
@@ -135,7 +135,7 @@ def completion(shell: str) -> int:
     """Print the script."""
     scripts = get_completion_class(shell)
     assert scripts is not None
-    print(scripts(_ROOT, {}, "tuisim", _COMPLETE).source())
+    print(scripts(ROOT, {}, "tuisim", _COMPLETE).source())
     return 0
 
 
@@ -151,17 +151,17 @@ def man() -> int:
     """Print the page."""
     from tuisim.commands.system.man_page import man_page
 
-    print(man_page(_ROOT, __version__), end="")
+    print(man_page(ROOT, __version__), end="")
     return 0
 
 
 def _dispatch(words: Sequence[str]) -> int:
     _check_open_files()
     if instruction := os.environ.get(_COMPLETE):
-        return shell_complete(_ROOT, {}, "tuisim", _COMPLETE, instruction)
+        return shell_complete(ROOT, {}, "tuisim", _COMPLETE, instruction)
     try:
-        with _ROOT.make_context("tuisim", list(words)) as context:
-            return int(_ROOT.invoke(context))
+        with ROOT.make_context("tuisim", list(words)) as context:
+            return int(ROOT.invoke(context))
     except click.exceptions.Exit as done:
         return done.exit_code
 
@@ -216,6 +216,6 @@ def run_command(words: Sequence[str]) -> int:
             return TuisimError.exit_code
         if os.environ.get("TUISIM_DEBUG"):
             raise
-        text = printable(f"{type(error).__name__}: {error}")
+        text = printable(shortened(f"{type(error).__name__}: {error}"))
         print(f"tuisim: internal error: {text} (TUISIM_DEBUG=1 shows the traceback)", file=sys.stderr)
         return EXIT_OUR_MISTAKE

@@ -25,6 +25,8 @@ EXIT_INTERRUPTED, EXIT_BROKEN_PIPE = SIGNALLED + 2, SIGNALLED + 13
 MOST_LISTED = 20
 MOST_REASON = 500
 """Characters of a reason in a message."""
+MOST_LINE, LINE_START = 1500, 1000
+"""Characters of a line of a message, and how many of them are before what is left out of a longer one."""
 MOST_NAME = 80
 """Characters of a listed name; a longer one is no name, but comes from a damaged file."""
 
@@ -76,6 +78,11 @@ def printable(text: str) -> str:
     return "".join(one if one.isprintable() else " " if one.isspace() else "\ufffd" for one in text)
 
 
+def _without_middle(line: str) -> str:
+    """Return a line of at most `MOST_LINE` characters: it may quote a word of thousands."""
+    return line if len(line) <= MOST_LINE else f"{line[:LINE_START]} … {line[LINE_START - MOST_LINE :]}"
+
+
 class TuisimError(Exception):
     """Base of all expected errors.
 
@@ -94,7 +101,7 @@ class TuisimError(Exception):
 
     def __str__(self) -> str:
         text = f"{self.message} ({self.hint})" if self.hint else self.message
-        return "\n".join(map(printable, text.split("\n")))
+        return "\n".join(printable(_without_middle(line)) for line in text.split("\n"))
 
 
 class ConfigError(TuisimError):

@@ -17,7 +17,7 @@ from random import Random
 from tests.proof.commands import check_said, said
 from tests.proof.kind import FaultError, Kind, home
 from tests.proof.mutations import damaged, damaged_at_edge
-from tests.proof.odd_values import Syntax, with_odd_value
+from tests.proof.odd_values import Syntax, with_odd_text, with_odd_value
 from tuisim.analysis.source import read_notes
 from tuisim.app import debugger
 from tuisim.app.editor import text_file
@@ -254,7 +254,7 @@ def _names(random: Random) -> Iterator[str]:
             random.shuffle(forms)
             for name in forms:
                 if turn == 0 or not FORMATS[name].is_slow:
-                    for way in ("", ":edge", ":value"):
+                    for way in ("", ":edge", ":value", *[":text"] * FORMATS[name].syntax.has_texts):
                         yield f"{name}:{random.getrandbits(32)}{way}"
 
 
@@ -267,6 +267,8 @@ def _check(name: str, folder: Path) -> None:
     match way:
         case ["value"]:
             path.write_bytes(with_odd_value(data, random, found.syntax))
+        case ["text"]:
+            path.write_bytes(with_odd_text(data, random, found.syntax))
         case ["edge"]:
             path.write_bytes(damaged_at_edge(data, random, found.syntax.is_text))
         case _:
@@ -280,5 +282,5 @@ def _check(name: str, folder: Path) -> None:
 
 
 DAMAGE = Kind(
-    "files of every format with changed bits, pieces, tokens and types of values", _names, _check, limit_s=20.0
+    "files of every format with changed bits, pieces, tokens, types of values and texts", _names, _check, limit_s=20.0
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tests.proof.arguments import ARGUMENTS
 from tests.proof.clients import CLIENTS
 from tests.proof.crashes import CRASHES
 from tests.proof.damage import DAMAGE
@@ -16,6 +17,7 @@ from tests.proof.zoo import ZOO
 KINDS: dict[str, Kind] = {
     "security": SECURITY,
     "damage": DAMAGE,
+    "arguments": ARGUMENTS,
     "clients": CLIENTS,
     "crashes": CRASHES,
     "failures": FAILURES,

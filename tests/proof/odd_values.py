@@ -1,4 +1,4 @@
-"""Well-formed files in which a value has become one of another type, at any depth."""
+"""Well-formed files in which a value has become one of another type, or a text an odd one, at any depth."""
 
 from __future__ import annotations
 
@@ -20,6 +20,8 @@ import pyarrow as pa
 import pyarrow.ipc
 import pyarrow.parquet
 import tomlkit
+
+from tests.proof.odd_texts import ODD_TEXTS
 
 _DEEP = "nested deeply"
 """Stands for a value that is nested more deeply than data structures of Python can be."""
@@ -48,6 +50,11 @@ class Syntax(StrEnum):
     FIELDS = "fields of 4 or 8 bytes"
 
     @property
+    def has_texts(self) -> bool:
+        """Whether `with_odd_text` can change it."""
+        return self in _TEXTS
+
+    @property
     def is_text(self) -> bool:
         """Whether people can read it."""
         return self in (Syntax.JSON, Syntax.ROWS, Syntax.TOML, Syntax.FRONT, Syntax.CSV)
@@ -61,6 +68,11 @@ def with_odd_value(data: bytes, random: Random, syntax: Syntax) -> bytes:
     opened, closed = random.choice(deep)
     depth = random.choice((60, 300, 20_000))
     return data.replace(f'"{_DEEP}"'.encode(), opened * depth + b"1" + closed * depth)
+
+
+def with_odd_text(data: bytes, random: Random, syntax: Syntax) -> bytes:
+    """Return the data with one text that is another one."""
+    return _TEXTS[syntax](data, random, _with_other_text)
 
 
 _TOO_DEEP = b"[" * 20_000 + b"]" * 20_000
@@ -97,14 +109,26 @@ def _changed(data: Any, random: Random) -> Any:
     return root[0]
 
 
-def _json(data: bytes, random: Random) -> bytes:
-    return json.dumps(_changed(json.loads(data), random)).encode()
+def _with_other_text(data: Any, random: Random) -> Any:
+    """Return the data with another text, or the same if it has none."""
+    root = [data]
+    if places := [(inside, key) for _, inside, key in _places(root) if isinstance(inside[key], str)]:
+        inside, key = random.choice(places)
+        inside[key] = random.choice(ODD_TEXTS)
+    return root[0]
 
 
-def _rows(data: bytes, random: Random) -> bytes:
+_Change = Callable[[Any, Random], Any]
+
+
+def _json(data: bytes, random: Random, change: _Change = _changed) -> bytes:
+    return json.dumps(change(json.loads(data), random)).encode()
+
+
+def _rows(data: bytes, random: Random, change: _Change = _changed) -> bytes:
     lines = data.splitlines()
     at = random.randrange(len(lines))
-    lines[at] = _json(lines[at], random)
+    lines[at] = _json(lines[at], random, change)
     return b"\n".join(lines) + b"\n"
 
 
@@ -115,14 +139,15 @@ def _of_toml(value: Any) -> Any:
     return [_of_toml(one) for one in value if one is not None] if isinstance(value, list) else value
 
 
-def _toml(data: bytes, random: Random) -> bytes:
-    found = _of_toml(_changed(tomllib.loads(data.decode()), random))
-    return tomlkit.dumps(found if isinstance(found, dict) else {"x": "" if found is None else found}).encode()
+def _toml(data: bytes, random: Random, change: _Change = _changed) -> bytes:
+    found = _of_toml(change(tomllib.loads(data.decode()), random))
+    text = tomlkit.dumps(found if isinstance(found, dict) else {"x": "" if found is None else found})
+    return text.encode(errors="surrogateescape")
 
 
-def _front(data: bytes, random: Random) -> bytes:
+def _front(data: bytes, random: Random, change: _Change = _changed) -> bytes:
     start, front, rest = data.split(b"+++\n", 2)
-    return b"+++\n".join((start, _toml(front, random), rest))
+    return b"+++\n".join((start, _toml(front, random, change), rest))
 
 
 def _csv(data: bytes, random: Random) -> bytes:
@@ -216,4 +241,10 @@ _CHANGES: Mapping[Syntax, Callable[[bytes, Random], bytes]] = {
     Syntax.ARROW: _arrow,
     Syntax.SQLITE: _sqlite,
     Syntax.FIELDS: _fields,
+}
+_TEXTS: Mapping[Syntax, Callable[[bytes, Random, _Change], bytes]] = {
+    Syntax.JSON: _json,
+    Syntax.ROWS: _rows,
+    Syntax.TOML: _toml,
+    Syntax.FRONT: _front,
 }

@@ -15,6 +15,7 @@ from tuisim.app.setup.mat import Mat, blank_mat, mat_key, prepare_mat, prepare_m
 from tuisim.app.setup.next_run import NextRun, plan_of_run, with_arguments
 from tuisim.app.snapshot import end_label
 from tuisim.config.files import means_file
+from tuisim.config.folders import user_path
 from tuisim.config.options import Settings
 from tuisim.errors import LogError, TuisimError
 from tuisim.runs.handle import program_again
@@ -182,7 +183,7 @@ class Loader:
 
         opened = self._open_world if means_world(path) else self._open_program
         try:
-            opened(str(find_program(str(Path(path).expanduser()))))
+            opened(str(find_program(str(user_path(path)))))
         except TuisimError as error:
             self._app.complain(error)
 
@@ -292,7 +293,7 @@ class Loader:
         paths = [Path(run_controller.program.path)] if run_controller.program and run_controller.program.path else []
         paths += [self.world_file, *self._world_refers] if self.world_file else []
         paths += [self._goals.path] if self._goals.path else []
-        paths += [Path(word).expanduser() for word in words.values() if means_file(word)]
+        paths += [user_path(word) for word in words.values() if means_file(word)]
         self._watch.follow(dict.fromkeys(paths))
 
     def saved(self, path: Path) -> None:
@@ -356,7 +357,7 @@ class Loader:
 
             self._goals.change(load_goals(path))
             return True
-        fields = [field for field, word in plan.words.items() if means_file(word) and Path(word).expanduser() == path]
+        fields = [field for field, word in plan.words.items() if means_file(word) and user_path(word) == path]
         for field in fields:
             self.set_next_run(plans.with_choices(plan, {field: plan.words[field]}))
         if path in self._world_refers and str(path) == plan.spec.world.background:
@@ -423,7 +424,7 @@ def _read_program(path: str) -> tuple[Program, Mapping[str, Any]]:
     """Read a program. Return it with the settings of its magic line."""
     from tuisim.config.program_file import read_program
 
-    file = read_program(Path(path).expanduser())
+    file = read_program(user_path(path))
     return file.program, file.options
 
 
@@ -445,7 +446,7 @@ def _program_path(word: str) -> str:
     from tuisim.config.program_file import programs
 
     examples = {name: path for name, path, _ in programs()}
-    if Path(word).exists():
+    if os.path.exists(word):
         return word
     return str(examples.get(word) or examples.get(f"{word}.py") or word)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +14,7 @@ from tuisim.batch.parameters import SEED, Choice, checked_seeds, parse_seeds, pa
 from tuisim.batch.task import MAX_JOBS, Keep, Value
 from tuisim.config import files
 from tuisim.config.files import Location
+from tuisim.config.folders import user_path
 from tuisim.config.worlds import BATCH_KEY, WORLD_SUFFIX, WorldFile, load_world, world_from_table
 from tuisim.errors import ConfigError
 
@@ -55,7 +57,7 @@ def means_batch(word: str) -> bool:
 
     A world file has no table `[batch]`.
     """
-    path = Path(word).expanduser()
+    path = user_path(word)
     if path.suffix.lower() != WORLD_SUFFIX:
         return False
     try:
@@ -74,7 +76,7 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
     Raises:
         ConfigError: the file, or its world, cannot be read or is wrong.
     """
-    path = path.expanduser()
+    path = user_path(path)
     data = dict(files.table(files.read_file(path, ConfigError), Location(str(path))))
     at = Location(str(path)).at(BATCH_KEY)
     if BATCH_KEY not in data:
@@ -108,8 +110,8 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
 def _beside(folder: Path, word: str) -> str:
     """Return the path of a program beside the file; a name without such a file may be that of an example."""
     path, _, cell = word.partition("#")
-    found = folder / Path(path).expanduser()
-    return f"{found}{'#' * bool(cell)}{cell}" if found.exists() or Path(path).parent != Path() else word
+    found = folder / user_path(path)
+    return f"{found}{'#' * bool(cell)}{cell}" if os.path.exists(found) or Path(path).parent != Path() else word
 
 
 def _expressions(data: object, at: Location) -> dict[str, str]:

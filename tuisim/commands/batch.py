@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import shutil
 import time
 from collections import Counter
@@ -135,7 +136,7 @@ class _Batch:
             plan = self.request.plan
             columns = usual_columns(plan.names, [goal.name for goal in plan.goals])
             self.rows = partly.rows() or rows_of_table(self.request.out, self.identity, columns)
-        elif path.exists():
+        elif os.path.exists(path):
             hint = "--resume goes on with it; remove the file to begin again"
             raise ConfigError("holds the rows of an interrupted batch", hint, file=str(path))
         return partly.open(self.rows)

@@ -24,6 +24,7 @@ from tuisim.commands.run import parse_press, press_actions
 from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.command_line import Arguments, Value, argument, option
 from tuisim.config.files import read_file
+from tuisim.config.folders import user_path
 from tuisim.config.overrides import field_of_key
 from tuisim.config.worlds import WorldFile, means_world
 from tuisim.core.spec import RunSpec
@@ -128,7 +129,7 @@ def _world_with_goals(arguments: Arguments) -> str | None:
     words: list[str] = [*filter(means_world, arguments.programs), *filter(None, [arguments.world])]
     for word in words:
         with suppress(ConfigError):
-            if "goal" in read_file(Path(word).expanduser(), ConfigError):
+            if "goal" in read_file(user_path(word), ConfigError):
                 return word
     return None
 

@@ -13,6 +13,7 @@ import click
 
 from tuisim.commands.echo import echo
 from tuisim.config.command_line import Value, argument, command, option
+from tuisim.config.folders import user_path
 from tuisim.errors import ConfigError, counted
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ def guide(topic: str | None, words: str | None, html: str | None) -> int:
     if sum(one is not None for one in (topic, words, html)) > 1:
         raise ConfigError("TOPIC, --search and --html exclude each other", "give one of them", key="guide")
     if html is not None:
-        return _write(Path(html).expanduser())
+        return _write(user_path(html))
     if words is not None:
         return _search(words)
     width = _width()

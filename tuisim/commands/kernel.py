@@ -9,12 +9,14 @@ import shutil
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
+from glob import escape, glob
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.atomic import replacing
 from tuisim.commands.echo import echo, echo_json, echo_lines, table
 from tuisim.config.command_line import AS_JSON, Group, command, option
+from tuisim.config.folders import user_path
 from tuisim.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -96,7 +98,7 @@ def _place(
     manager = _manager()
     where = sys.prefix if sys_prefix else prefix
     if where is not None:
-        return manager, str(Path(os.path.abspath(os.path.expanduser(where)), "share", "jupyter", "kernels")), name
+        return manager, str(Path(os.path.abspath(user_path(where)), "share", "jupyter", "kernels")), name
     return manager, str(manager.user_kernel_dir) if user else None, name
 
 
@@ -113,7 +115,7 @@ def _manager() -> KernelSpecManager:
 
 def _kernels(folders: Sequence[str]) -> Iterator[InstalledKernel]:
     for folder in dict.fromkeys(folders):
-        for file in sorted(Path(folder).glob(f"*/{_SPEC_FILE}")):
+        for file in map(Path, sorted(glob(f"{escape(folder)}/*/{_SPEC_FILE}"))):
             spec = _read(file)
             if spec is not None:
                 yield InstalledKernel(file.parent.name, spec["display_name"], spec["argv"][0], str(file.parent))
@@ -137,7 +139,7 @@ def _list(kernels: Sequence[InstalledKernel], *, as_json: bool) -> None:
         echo("no tuisim kernel is installed; `tuisim kernel install` adds one")
     else:
         rows = [
-            (k.name, k.display_name, k.python + ("" if Path(k.python).exists() else " (missing)"), k.folder)
+            (k.name, k.display_name, k.python + ("" if os.path.exists(k.python) else " (missing)"), k.folder)
             for k in kernels
         ]
         echo_lines(table(("NAME", "KERNEL", "PYTHON", "FOLDER"), rows))
@@ -148,7 +150,7 @@ def _install(manager: KernelSpecManager, place: Path, name: str) -> None:
 
     folder = place / name
     file = folder / _SPEC_FILE
-    if file.exists() and _read(file) is None:
+    if os.path.exists(file) and _read(file) is None:
         raise ConfigError(f"{name!r} already names another kernel, in {folder}", "choose another name", key="--name")
     # As in ipykernel's own spec: the debugger cannot step into frozen modules.
     spec = get_kernel_dict(extra_arguments=["--ext", EXTENSION], python_arguments=["-Xfrozen_modules=off"])

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import click
 
 from tuisim.commands.echo import Progress, echo, echo_json, echo_lines, table, tell
 from tuisim.config.command_line import AS_JSON, Command, Group, Value, argument, command, option
+from tuisim.config.folders import user_path
 from tuisim.errors import ConfigError, counted
 from tuisim.lessons.catalogue import find_lesson, lesson_paths, load_all
 from tuisim.lessons.files import load_lesson
@@ -186,7 +186,7 @@ def new(path: str) -> int:
     """Write a lesson to start from: a file FILE that ends in .md."""
     from tuisim.lessons.skeleton import write_skeleton
 
-    target = Path(path).expanduser()
+    target = user_path(path)
     write_skeleton(target)
     echo(f"{target} is written; `tuisim learn {target}` opens it, `tuisim learn check {target}` checks it.")
     return 0

@@ -58,10 +58,11 @@ def names_of(field: str) -> Iterable[str]:
 )
 def backgrounds(folder: str | None, use_originals: str | None, as_json: bool) -> int:
     """List the mats with their start poses, or import images."""
+    from tuisim.config.folders import user_path
     from tuisim.config.mats import import_originals, mats, own_folder
 
     if use_originals is not None:
-        taken, left = import_originals(Path(use_originals).expanduser())
+        taken, left = import_originals(user_path(use_originals))
         _show_taken(taken, left, own_folder(), as_json=as_json)
         return 0
     found = mats(folder).values()

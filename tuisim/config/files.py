@@ -20,6 +20,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from tuisim.atomic import replacing
+from tuisim.config.folders import user_path
 from tuisim.errors import ConfigError, did_you_mean, nearest
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ def read_named(
     if not means_file(word):
         allowed = f"{nearest(word, known)}; or a {' or '.join(kinds)} file"
         raise error(f"no such {what} {word!r}", allowed, key=key)
-    path = Path(word).expanduser()
+    path = user_path(word)
     if len(kinds) == 1 and path.suffix.lower() not in kinds:
         raise error(f"is not a {kinds[0]} file", "the suffix selects the format", file=str(path))
     return read_file(path, error), name_of(path), Location(str(path), error)
@@ -490,7 +491,7 @@ def save_toml(
     new = text = "\n".join(lines) + "\n"
     if read(parse_toml(text, at.file, at.error)) != expected:
         raise at.wrong("a file cannot represent this")
-    if path.is_file() and (old := _text(path, at.error)).strip():
+    if os.path.isfile(path) and (old := _text(path, at.error)).strip():
         try:
             (check or read)(parse_toml(old, at.file, at.error))
         except ConfigError as error:

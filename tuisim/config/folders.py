@@ -16,6 +16,11 @@ _PACKAGE = Path(__file__).resolve().parent.parent
 _FOLDERS = ("backgrounds", "programs")
 
 
+def user_path(word: str | Path) -> Path:
+    """Return a path in which `~` or `~NAME` is the folder of a user; that of an unknown user stays as it is."""
+    return Path(os.path.expanduser(word))
+
+
 def home_folder() -> Path:
     """Return the folder of the user's own data: `TUISIM_HOME`, or the platform's user data folder."""
     home = os.environ.get("TUISIM_HOME")

@@ -17,7 +17,7 @@ from typing import Any
 
 from tuisim.atomic import make_private_folder, replacing
 from tuisim.config.files import Location, convert, read_file, table
-from tuisim.config.folders import backgrounds_folder, home_folder
+from tuisim.config.folders import backgrounds_folder, home_folder, user_path
 from tuisim.config.mat_image import check_file, decode, size_of
 from tuisim.config.mat_image import read_file as read_image
 from tuisim.config.obstacles import obstacles_from_sides
@@ -120,7 +120,7 @@ def background(name: str) -> Background:
             return own_background(Path(name))
         raise BackgroundError(f"no such mat {name!r}", names_hint(name, list(known)))
     found = known[name]
-    if not found.image.is_file():
+    if not os.path.isfile(found.image):
         raise BackgroundError(f"the mat {name!r} has no image", file=str(found.image))
     return found
 
@@ -136,10 +136,7 @@ def own_background(path: Path) -> Background:
     Raises:
         BackgroundError: the file does not exist, or cannot be an image.
     """
-    try:
-        image = Path(os.path.abspath(path.expanduser()))
-    except RuntimeError as error:
-        raise BackgroundError(f"no such folder: {error}", file=str(path)) from error
+    image = Path(os.path.abspath(user_path(path)))
     check_file(image)
     return Background(image.stem, f"The image {image.name}", OWN_START, image)
 
@@ -203,7 +200,7 @@ def find_mat(word: str, folder: str | None = None) -> Background:
     """
     known = mats(folder)
     if (found := known.get(word)) is not None:
-        if not found.shipped and not found.image.is_file():
+        if not found.shipped and not os.path.isfile(found.image):
             names = " or ".join(dict.fromkeys((found.original, f"{found.name}.png")))
             hint = f"save it as {names} in {own_folder()}, or name its folder with --mats FOLDER"
             raise BackgroundError(f"the mat {word!r} comes without its image", hint)
@@ -212,10 +209,10 @@ def find_mat(word: str, folder: str | None = None) -> Background:
         raise BackgroundError(f"no such mat {word!r}", names_hint(word, list(known)))
     if os.sep not in word and not os.path.exists(word):
         for place in _places(folder):
-            if (place / word).is_file():
+            if os.path.isfile(place / word):
                 word = str(place / word)
                 break
-    return _of_path(os.path.abspath(os.path.expanduser(word)), known) or own_background(Path(word))
+    return _of_path(os.path.abspath(user_path(word)), known) or own_background(Path(word))
 
 
 def spec_name(mat: Background) -> str:
@@ -278,12 +275,12 @@ def _places(folder: str | None) -> list[Path]:
     """Return the folders of the user's mats, in order of precedence."""
     named = [] if folder is None else [_named(folder)]
     own = own_folder()
-    return [*named, own] if own.exists() else named
+    return [*named, own] if os.path.exists(own) else named
 
 
 def _named(folder: str) -> Path:
-    path = Path(os.path.abspath(os.path.expanduser(folder)))
-    if not path.exists():
+    path = Path(os.path.abspath(user_path(folder)))
+    if not os.path.exists(path):
         raise BackgroundError("there is no such folder", "name a folder of mat images", file=str(path), key="--mats")
     return path
 

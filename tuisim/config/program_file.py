@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from tuisim.config.files import close_beside, read_bytes
-from tuisim.config.folders import programs_folder
+from tuisim.config.folders import programs_folder, user_path
 from tuisim.config.shared_options import parse_words
 from tuisim.errors import ConfigError, did_you_mean, nearest, see_page
 from tuisim.source import PRELUDE_TEXTS, PRELUDES, Program, decode_source, source_lines
@@ -103,11 +103,11 @@ def beside(folder: Path, options: Mapping[str, Any]) -> dict[str, Any]:
     """Return the options of a magic line, with file names resolved from the folder of the program or its notebook."""
     found = dict(options)
     if "mats" in found:
-        found["mats"] = str(folder / os.path.expanduser(found["mats"]))
+        found["mats"] = str(folder / user_path(found["mats"]))
     for field_name in _FILE_FIELDS & found.keys():
         word = found[field_name]
         if os.sep in word or Path(word).suffix:
-            found[field_name] = str(folder / os.path.expanduser(word))
+            found[field_name] = str(folder / user_path(word))
     return found
 
 
@@ -197,20 +197,12 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
 
 
 def find_program(word: str) -> Path:
-    """Return the file that a word names: a path, else an example program. The file may be missing.
-
-    Raises:
-        ConfigError: the path cannot be checked, for example because it is too long.
-    """
+    """Return the file that a word names: a path, else an example program. The file may be missing."""
     path = Path(word)
-    try:
-        path.exists()
-    except OSError as error:
-        raise ConfigError(f"cannot read {word}: {error.strerror or error}") from error
-    if not path.name or path.parent != Path() or path.exists():
+    if not path.name or path.parent != Path() or os.path.exists(path):
         return path
     for name in (path.name, f"{path.name}.py"):
-        if (example := programs_folder() / name).is_file():
+        if os.path.isfile(example := programs_folder() / name):
             return example
     return path
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.config.files import Location, means_file, parse_toml, shown, table
-from tuisim.config.folders import config_folder
+from tuisim.config.folders import config_folder, user_path
 from tuisim.config.options import OF_THE_APP, OPTIONS, FileValue, InFile, Option, Settings
 from tuisim.errors import ConfigError, nearest, see_page
 
@@ -286,7 +286,7 @@ def _resolved(one: Setting, value: Any, path: Path) -> Any:
     """Return a value with the path in it relative to the folder of the file."""
     if one.name not in _NAMES:
         return value
-    word = Path(value).expanduser()
+    word = user_path(value)
     is_path = one.name == "mats" or means_file(value) or (one.name == "background" and bool(word.suffix))
     return str(path.parent / word) if is_path else value
 

@@ -14,7 +14,7 @@ from msgspec import UNSET, Meta, Struct, UnsetType, structs
 from tuisim.config import files, options
 from tuisim.config.build import build_run_spec, settings_from
 from tuisim.config.files import Location, Scalar
-from tuisim.config.folders import programs_folder
+from tuisim.config.folders import programs_folder, user_path
 from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import load_obstacles, obstacle_lines, obstacles_from_list
 from tuisim.config.profiles import load_profile, profile_from_table, profile_lines
@@ -141,7 +141,7 @@ def load_world(path: Path | str, mats: str | None = None) -> WorldFile:
     Raises:
         ConfigError: the file, or a file that it refers to, cannot be read or is wrong.
     """
-    return _load_world(Path(path).expanduser(), mats, ())
+    return _load_world(user_path(path), mats, ())
 
 
 def _load_world(path: Path, mats: str | None, above: tuple[Path, ...]) -> WorldFile:
@@ -204,7 +204,7 @@ def _base(word: str, at: Location, resolve: Resolver, mats: str | None, above: t
     path = Path(resolve(word))
     if any(os.path.normpath(path) == os.path.normpath(other) for other in above):
         raise at.wrong(f"{path} is based on itself")
-    if not path.exists():
+    if not os.path.exists(path):
         # Names the file and the key: the user may not know that this file names another.
         raise at.wrong(f"there is no such file: {path}")
     return _load_world(path, mats, above)
@@ -238,15 +238,15 @@ def _argument(word: object, at: Location) -> str:
 
 def _program(word: str, folder: Path, resolve: Resolver) -> str:
     """Resolve the path of a program; an example's name stays a name if there is no such file beside the world."""
-    known = os.sep not in word and not (folder / word).exists()
-    if known and any((programs_folder() / name).is_file() for name in (word, f"{word}.py")):
+    known = os.sep not in word and not os.path.exists(folder / word)
+    if known and any(os.path.isfile(programs_folder() / name) for name in (word, f"{word}.py")):
         return word
     return resolve(word)
 
 
 def _resolved(folder: Path, referred: list[Path], word: str) -> str:
     """Resolve a path in the file, and append it to `referred`."""
-    found = Path(os.path.normpath(folder / os.path.expanduser(word)))
+    found = Path(os.path.normpath(folder / user_path(word)))
     referred.append(found)
     return str(found)
 
@@ -340,7 +340,7 @@ def save_world(spec: RunSpec, path: Path | str, program: str | None = None, argu
         world = _given(files.convert(data, _World, at))
         if "mats" in world:
             # A folder with an image of the same name would replace the mat.
-            found = find_mat(settings_from(spec)["background"], str(path.parent / os.path.expanduser(world["mats"])))
+            found = find_mat(settings_from(spec)["background"], str(path.parent / user_path(world["mats"])))
             if spec_name(found) != spec.world.background:
                 kept.remove("mats")
 
@@ -359,7 +359,7 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None, argumen
     settings = settings_from(spec)
     top: dict[str, Scalar] = {}
     if program is not None:
-        top["program"] = _relative(program, folder) if Path(program).exists() else program
+        top["program"] = _relative(program, folder) if os.path.exists(program) else program
     if arguments:
         top["arguments"] = list(arguments)
     mat = settings["background"]
@@ -398,5 +398,5 @@ def _infrared_lines(beacon: BeaconSpec | None, remote: Iterable[RemotePress]) ->
 
 def _relative(path: str, folder: Path) -> str:
     """Return a path relative to a folder, in a form that cannot be mistaken for a name."""
-    found = os.path.relpath(os.path.expanduser(path), folder)
+    found = os.path.relpath(user_path(path), folder)
     return found if os.sep in found or Path(found).suffix else f".{os.sep}{found}"

@@ -11,7 +11,7 @@ from typing import Any
 
 from tuisim.config import files
 from tuisim.config.files import Location
-from tuisim.config.folders import programs_folder
+from tuisim.config.folders import programs_folder, user_path
 from tuisim.config.worlds import WorldFile, means_world, world_from_table
 from tuisim.errors import ConfigError, nearest, see_page
 from tuisim.goals.key_lines import line_of_key
@@ -67,7 +67,7 @@ def load_goals(path: Path | str) -> GoalsFile:
     Raises:
         ConfigError: it, or a file that it names, cannot be read or is wrong; the error names file, line and key.
     """
-    path = _found(Path(path).expanduser())
+    path = _found(user_path(path))
     if not means_world(path.name):
         raise ConfigError("is not a .toml file", "a goals file is TOML", file=str(path))
     data = files.read_file(path, ConfigError)
@@ -85,7 +85,7 @@ def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, Goa
     Raises:
         ConfigError: it, or a file that it names, cannot be read or is wrong; the error names file, line and key.
     """
-    path = _found(Path(path).expanduser())
+    path = _found(user_path(path))
     if not means_world(path.name):
         raise ConfigError("is not a .toml file", "a world file is TOML", file=str(path))
     data = files.read_file(path, ConfigError)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from msgspec import Meta
 
 from tuisim.config import mat_image
+from tuisim.config.folders import user_path
 from tuisim.core.spec import BACKGROUND_FITS, FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import ConfigError
 from tuisim.goals.spec import MAX_PLACES, Draw, Share, X, Y
@@ -63,7 +64,7 @@ def draw_from_table(table: PictureTable, folder: Path) -> Draw:
     import numpy as np
 
     if table.image:
-        path = folder / Path(table.image).expanduser()
+        path = folder / user_path(table.image)
         points = _dark_points(path, table.fit)
     else:
         points = _points_of_lines(table.lines_mm, cell_mm(table.within_mm))

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from tuisim.config.files import FILE_SUFFIXES
+from tuisim.config.folders import user_path
 from tuisim.errors import ConfigError, nearest
 from tuisim.lessons.files import SUFFIX, load_lesson, name_of
 from tuisim.lessons.spec import Lesson
@@ -34,9 +35,9 @@ def lesson_paths(folder: Path | str | None = None) -> dict[str, Path]:
     found = shipped_paths()
     if not word:
         return found
-    own = Path(word).expanduser()
+    own = user_path(word)
     key = VARIABLE if folder is None else "--folder"
-    if not own.is_dir():
+    if not os.path.isdir(own):
         raise ConfigError(f"there is no folder {own}", "name a folder of lessons", key=key)
     lessons = _in_folder(own)
     if not lessons:
@@ -60,7 +61,7 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
         ConfigError: there is no such lesson.
     """
     if os.sep in word or word.lower().endswith((SUFFIX, *FILE_SUFFIXES)):
-        return Path(word).expanduser()
+        return user_path(word)
     found = lesson_paths(folder)
     if word not in found:
         raise ConfigError(f"no such lesson {word!r}", f"{nearest(word, [*found, *others])} See `tuisim learn list`")

@@ -16,6 +16,7 @@ from typing import Any
 
 from tuisim.config import files
 from tuisim.config.files import Location
+from tuisim.config.folders import user_path
 from tuisim.config.worlds import WorldFile, world_from_table
 from tuisim.errors import ConfigError
 from tuisim.goals.files import goals_from_list, line_in_errors
@@ -76,7 +77,7 @@ def load_lesson(path: Path | str) -> Lesson:
     Raises:
         ConfigError: it cannot be read or is wrong; the error names file, line and key.
     """
-    path = Path(path).expanduser()
+    path = user_path(path)
     if path.suffix.lower() != SUFFIX:
         raise ConfigError(f"is not a {SUFFIX} file", "a lesson is Markdown", file=str(path))
     return parse_lesson(_read(path), path)

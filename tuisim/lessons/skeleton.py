@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from tuisim.atomic import replacing
@@ -84,7 +85,7 @@ def write_skeleton(path: Path) -> None:
     """
     if path.suffix.lower() != SUFFIX:
         raise ConfigError(f"is not a {SUFFIX} file", "a lesson is Markdown", file=str(path))
-    if path.exists():
+    if os.path.exists(path):
         raise ConfigError("exists already", "choose another name", file=str(path))
     parse_lesson(SKELETON, path)
     try:

@@ -73,11 +73,11 @@ def check_place(place: Path) -> None:
         ExportError: no such folder, a folder that cannot be written, or an existing target that may not be replaced.
     """
     try:
-        if place.is_dir():
+        if os.path.isdir(place):
             raise ExportError(f"cannot write {place}: it is a folder")
-        if place.exists() and not (place.is_file() and os.access(place, os.W_OK)):
+        if os.path.exists(place) and not (os.path.isfile(place) and os.access(place, os.W_OK)):
             raise ExportError(f"cannot write {place}: it exists and cannot be replaced")
-        if not place.parent.is_dir():
+        if not os.path.isdir(place.parent):
             raise ExportError(f"cannot write {place}: there is no folder {place.parent}")
         # Permissions alone are not enough: a file system may be full or read-only.
         with tempfile.TemporaryFile(dir=place.parent):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -76,7 +77,7 @@ def read_log(path: str | Path) -> pd.DataFrame:
     source = Path(path)
     if source.suffix.lower() not in EXPORTERS:
         raise LogError(f"unknown format {source.suffix!r}", f"a log ends in {ALLOWED}", file=str(source))
-    if not source.is_file():
+    if not os.path.isfile(source):
         raise LogError("no such file", file=str(source))
     notes, binary = Notes(), not EXPORTERS[source.suffix.lower()].companion
     try:
@@ -193,9 +194,9 @@ def _parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.Table |
         return
     path = Path(source)
     try:
-        if path.is_dir():
+        if os.path.isdir(path):
             raise LogError("is a folder, not a log", file=str(path))
-        regular = path.is_file()
+        regular = os.path.isfile(path)
         with path.open("rb", buffering=0 if not regular else -1) as handle:
             head = handle.read(MAGIC_BYTES) if regular else b""
             if head.startswith(arrow.PARQUET_MAGIC):

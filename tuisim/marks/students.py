@@ -61,13 +61,13 @@ def find_students(words: Sequence[str], program: str = "", excluded: Collection[
     ignored: list[str] = []
     for word in words:
         path = Path(word)
-        if path.is_dir() and not (path / MAIN).is_file():
+        if os.path.isdir(path) and not os.path.isfile(path / MAIN):
             for entry in _entries(path, excluded):
                 if entry.is_dir() or entry.suffix.lower() == SUFFIX:
                     students.append((path, _student(entry, program)))
                 else:
                     ignored.append(printable(entry.name))
-        elif path.exists():
+        elif os.path.exists(path):
             students.append((_real(path).parent, _student(path, program)))
         else:
             raise ConfigError("there is no such file or folder", "name a folder of students' programs", file=word)
@@ -106,7 +106,7 @@ def _named(students: Iterable[tuple[Path, Student]]) -> Iterator[Student]:
 def _student(path: Path, program: str) -> Student:
     # A path such as `.` ends in no name.
     name = _shown(path.name if path.name not in ("", "..") else _real(path).name)
-    if not path.is_dir():
+    if not os.path.isdir(path):
         # Its copy has this name.
         return _read(Student(name, path, name), path)
     try:
@@ -136,9 +136,11 @@ def _main_of(folder: Path, program: str) -> str:
         ConfigError: there is none, or it is not clear which one it is.
         OSError: the folder cannot be read.
     """
-    if program and (folder / program).is_file():
+    if program and os.path.isfile(folder / program):
         return program
-    names = sorted(name for name in os.listdir(folder) if name.lower().endswith(SUFFIX) and (folder / name).is_file())
+    names = sorted(
+        name for name in os.listdir(folder) if name.lower().endswith(SUFFIX) and os.path.isfile(folder / name)
+    )
     if MAIN in names:
         return MAIN
     if len(names) == 1:

@@ -39,7 +39,7 @@ class Workspace:
         """
         place = self.path / str(index)
         try:
-            if student.path.is_dir():
+            if os.path.isdir(student.path):
                 _copy_folder(student.path, place)
             else:
                 place.mkdir()
@@ -99,11 +99,11 @@ def digest_of(student: Student) -> str:
 
 
 def _files(path: Path) -> Iterator[Path]:
-    if not path.is_dir():
+    if not os.path.isdir(path):
         yield path
         return
     for folder, folders, names in os.walk(path):
         left_out = _LEFT_OUT(folder, folders)
         folders[:] = sorted(name for name in folders if name not in left_out)
         # A named pipe or a device would block.
-        yield from (file for name in sorted(names) if (file := Path(folder, name)).is_file())
+        yield from (file for name in sorted(names) if os.path.isfile(file := Path(folder, name)))

@@ -209,7 +209,7 @@ class RunStore:
             LogError: the run does not exist, is still running, or cannot be deleted.
         """
         folder = self.folder(run_id)
-        if not folder.is_dir():
+        if not os.path.isdir(folder):
             raise LogError(f"no run {run_id!r}", file=str(self._runs))
         if not _has_end(folder) and state_without_end(folder) is Unended.RUNNING:
             raise LogError(f"run {run_id} is still running", "stop it first")
@@ -286,7 +286,7 @@ class RunStore:
         """
         if isinstance(run, Path) or os.sep in run:
             return read_run(Path(run))
-        if run.strip(".") and self.folder(run).is_dir():
+        if run.strip(".") and os.path.isdir(self.folder(run)):
             return read_run(self.folder(run))
         info = self.find(run)
         return replace(read_run(self.folder(info.id)), number=info.number)
@@ -309,7 +309,7 @@ class RunStore:
 
     def _edit(self, run_id: str, **changes: Any) -> None:
         folder = self.folder(run_id)
-        if not folder.is_dir():
+        if not os.path.isdir(folder):
             raise LogError(f"no run {run_id!r}", file=str(self._runs))
         with locked(self.home):
             write_run_file(folder, {**read_run_file(folder), **changes})
@@ -321,7 +321,7 @@ class RunStore:
         """Return the catalogue row of a folder; None if it holds no run (yet)."""
         # The folder's name is the id: a copied run is another run.
         run_id = folder.name
-        if not (folder / RUN_FILE).exists():
+        if not os.path.exists(folder / RUN_FILE):
             return None
         try:
             return _info_from(run_id, read_run_file(folder))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
@@ -16,6 +17,7 @@ from tuisim.app import background
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.dialogs.question import Form, form_list
 from tuisim.app.terminal.browser import offer
+from tuisim.config.folders import user_path
 from tuisim.errors import ConfigError, TuisimError, shortened
 from tuisim.logs.export import LISTED, check_target, export_samples, export_telemetry
 from tuisim.runs.store import RunStore
@@ -27,15 +29,15 @@ def typed_path(text: str) -> Path:
     Raises:
         ConfigError: the name is impossible, for example too long.
     """
+    path, why = user_path(text), ""
     try:
-        path = Path(text).expanduser()
         path.lstat()
     except (FileNotFoundError, NotADirectoryError, PermissionError):
-        return path
-    except (OSError, RuntimeError, ValueError) as error:
-        why = error.strerror if isinstance(error, OSError) else str(error)
-        shown = shortened(text, 20)
-        raise ConfigError(f"{shown!r} cannot be the name of a file: {why}") from error
+        why = "there is no such user" if text.startswith("~") and path == Path(text) else ""
+    except (OSError, ValueError) as error:
+        why = (error.strerror if isinstance(error, OSError) else "") or str(error)
+    if why:
+        raise ConfigError(f"{shortened(text, 20)!r} cannot be the name of a file: {why}")
     return path
 
 
@@ -96,7 +98,7 @@ class FileDialog(Dialog[Path]):
             return
         try:
             target = self.checked(typed_path(typed))
-            if target.exists() and self._agreed != typed:
+            if os.path.exists(target) and self._agreed != typed:
                 self._agreed = typed
                 self.say(f"{target.name} already exists. Press Enter again to replace it.", wrong=True)
                 return
@@ -112,7 +114,7 @@ class FileDialog(Dialog[Path]):
 
 
 def _check_no_folder(path: Path) -> None:
-    if path.is_dir():
+    if os.path.isdir(path):
         raise TuisimError(f"{path} is a folder, not a file")
 
 

@@ -60,7 +60,7 @@ def write_text(path: Path, text: str, form: Form) -> None:
     """
     data = (codecs.BOM_UTF8 if form.has_mark else b"") + _encoded(text, form, path)
     try:
-        mode = stat.S_IMODE(path.stat().st_mode) if path.exists() else None
+        mode = stat.S_IMODE(path.stat().st_mode) if os.path.exists(path) else None
         with replacing(path) as file:
             if mode is not None:
                 os.fchmod(file.fileno(), mode)
@@ -88,7 +88,7 @@ def _is_named(encoding: str, text: str) -> bool:
 def is_protected(path: Path) -> bool:
     """Return whether a program must not be overwritten: it is an example, or read-only."""
     examples = programs_folder().resolve()
-    return path.resolve().parent == examples or (path.exists() and not os.access(path, os.W_OK))
+    return path.resolve().parent == examples or (os.path.exists(path) and not os.access(path, os.W_OK))
 
 
 FOLDER = "drafts"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -21,7 +22,7 @@ def is_file(word: str) -> bool:
     path = Path(word)
     # `is_file` raises if the name is too long for the file system.
     with suppress(OSError):
-        if path.is_file() or path.is_fifo():
+        if os.path.isfile(path) or path.is_fifo():
             return True
     return word == STDIN or bool(path.suffix)
 
