@@ -22,7 +22,6 @@ from tuisim.core.spec import RunSpec
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.rerun import rerun, same
 from tuisim.runs.run_folder import StoredRun, field_files
-from tuisim.runs.side_files import hold
 from tuisim.runs.store import RunStore, compact_run
 from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
@@ -85,9 +84,8 @@ def _child_cpu_s(text: str, spec: RunSpec, module: str) -> float:
     with TemporaryDirectory() as home:
         new = RunStore(Path(home)).new_run(program, spec, field_files(spec).to_plain(), options.to_plain())
         pipes = [os.pipe() for _ in range(3)]
-        lock = hold(new.folder)
         # The ends as the child has them: commands and lifeline to read, events to write.
-        ends = (pipes[0][0], pipes[1][1], pipes[2][0], lock)
+        ends = (pipes[0][0], pipes[1][1], pipes[2][0], new.lock_fd)
         before = children_cpu_s()
         child = subprocess.Popen(
             [sys.executable, "-s", "-m", module, str(new.folder), *map(str, ends)],
@@ -95,7 +93,7 @@ def _child_cpu_s(text: str, spec: RunSpec, module: str) -> float:
             env={**os.environ, "PYTHONHASHSEED": "0"},
         )
         child.wait()
-        for end in (lock, *(end for pipe in pipes for end in pipe)):
+        for end in (new.lock_fd, *(end for pipe in pipes for end in pipe)):
             os.close(end)
     assert child.returncode == 0, child.returncode
     return children_cpu_s() - before

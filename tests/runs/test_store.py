@@ -145,17 +145,15 @@ def test_run_of_a_living_process_is_running(record: Callable[..., Recorder], spe
     assert store.load_run("last").state == Unended.INTERRUPTED
 
 
-def test_a_lock_is_held_before_others_can_find_it(
-    store: RunStore, spec: RunSpec, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    run, found = store.new_run(PROGRAM, spec), []
+def test_a_lock_is_held_before_others_can_find_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = []
 
     def lock(descriptor: int, operation: int) -> None:
-        found.append((run.folder / LOCK_FILE).exists())
+        found.append((tmp_path / LOCK_FILE).exists())
         flock(descriptor, operation)
 
     monkeypatch.setattr(side_files, "fcntl", SimpleNamespace(flock=lock, LOCK_EX=LOCK_EX, LOCK_NB=LOCK_NB))
-    os.close(hold(run.folder))
+    os.close(hold(tmp_path))
     assert found == [False]
 
 
@@ -164,18 +162,19 @@ def test_a_run_is_running_from_the_start_of_its_process(start: Start) -> None:
     assert is_held(handle.folder) is True
 
 
-def test_run_that_is_just_starting_is_running(store: RunStore, spec: RunSpec) -> None:
+def test_a_run_is_running_before_its_process_starts(store: RunStore, spec: RunSpec) -> None:
     run = store.new_run(PROGRAM, spec)
-    assert is_held(run.folder) is None
+    assert is_held(run.folder) is True
     assert (store.runs()[0].end, store.runs()[0].ticks) == (Unended.RUNNING, 0)
+    with pytest.raises(LogError, match="still running"):
+        store.remove(run.id)
 
 
 def test_runs_are_listed_where_no_lock_can_be_asked_for(
     store: RunStore, spec: RunSpec, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run = store.new_run(PROGRAM, spec)
-    os.close(hold(run.folder))
-    os.utime(run.folder, (0, 0))
+    os.close(run.lock_fd)
 
     def fail(descriptor: int, operation: int) -> None:
         raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
@@ -186,7 +185,7 @@ def test_runs_are_listed_where_no_lock_can_be_asked_for(
 
 def test_run_that_never_started_is_interrupted(store: RunStore, spec: RunSpec) -> None:
     run = store.new_run(PROGRAM, spec)
-    os.utime(run.folder, (0, 0))
+    os.close(run.lock_fd)
     assert store.runs()[0].end == Unended.INTERRUPTED
 
 

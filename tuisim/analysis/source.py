@@ -160,6 +160,9 @@ def write_notes(place: Path, notes: Sequence[Note]) -> None:
     try:
         make_private_folder(place.parent)
         with replacing(place, owner_only=True) as handle:
-            handle.writelines(json.dumps(asdict(note), ensure_ascii=False).encode() + b"\n" for note in notes)
+            for note in notes:
+                # Halves of characters become escapes of JSON.
+                text = json.dumps(asdict(note), ensure_ascii=False).encode(errors="backslashreplace")
+                handle.write(text + b"\n")
     except OSError as error:
         raise LogError(f"cannot write: {error.strerror or error}", file=str(place)) from error

@@ -5,7 +5,6 @@ To add a robot: add an entry to `ROBOTS`.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -21,6 +20,7 @@ from tuisim.core.spec import (
     MOUNTS,
     OUTPUT_PORTS,
     ROBOT_WEIGHTS,
+    SENSOR_NAME,
     ColorSensorSpec,
     InfraredSpec,
     MotorSpec,
@@ -81,7 +81,6 @@ PEN_KEYS = ("x_mm", "y_mm", "color", "width_mm", "down")
 _TOP_KEYS = (
     "base", "name", *LENGTH_KEYS, "weight", *PORT_KEYS, "motors", *(mount.key for mount in MOUNTS), "pen",
 )  # fmt: skip
-_SENSOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
 
 COMMENTS = {
     "wheel_spacing_mm": "between the centres of the wheels",
@@ -203,7 +202,7 @@ def _named(data: object, mount: Mount, base: RobotSpec, at: Location) -> tuple[S
         place = at.at(name)
         if sensor is False:
             found.pop(name, None)
-        elif not _SENSOR_NAME.fullmatch(name):
+        elif not SENSOR_NAME.fullmatch(name):
             wrong = at.at(files.shown(name)[1:-1]).wrong
             raise wrong("is not a valid sensor name", "letters, digits and _, a letter first, at most 31")
         elif name in found:

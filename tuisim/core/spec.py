@@ -6,6 +6,7 @@ midpoint between its wheels. Defaults are those of the original course's Default
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any, ClassVar, Protocol
@@ -246,6 +247,8 @@ class Mount:
         return self.written or self.field
 
 
+SENSOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
+"""The names that sensors can have."""
 MOUNTS = (
     Mount("color_sensors", ColorSensorSpec, many=True, usual=True),
     Mount("ultrasonic", UltrasonicSpec, many=False, usual=True),
@@ -480,4 +483,7 @@ def from_plain(data: Mapping[str, Any]) -> RunSpec:
 
 
 def _sensor(spec: type, data: Mapping[str, Any]) -> Any:
-    return spec(**{key: tuple(value) if isinstance(value, list) else value for key, value in data.items()})
+    sensor = spec(**{key: tuple(value) if isinstance(value, list) else value for key, value in data.items()})
+    if not SENSOR_NAME.fullmatch(sensor.name):
+        raise RobotError(f"{sensor.name!r} is not a valid sensor name")
+    return sensor

@@ -242,7 +242,7 @@ def _write_jsonl(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> N
     for values in zip(*(column.tolist() for column in columns), strict=True):
         row = {name: _plain(value) for name, value in zip(names, values, strict=True)}
         # Dates and the like are written as text.
-        handle.write(json.dumps(row, ensure_ascii=False, default=str).encode() + b"\n")
+        handle.write(json.dumps(row, ensure_ascii=False, default=str).encode(errors="backslashreplace") + b"\n")
 
 
 def _plain(value: Any) -> Any:

@@ -191,6 +191,7 @@ class RunHandle:
         try:
             self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(
                 run.folder,
+                run.lock_fd,
                 program.working_directory,
                 _template_key(program, spec, field),
                 of_many,

@@ -12,7 +12,7 @@ import sys
 import time
 from collections import OrderedDict
 from collections.abc import Hashable, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, ClassVar
 
@@ -23,7 +23,6 @@ from tuisim.core.profile import NS_PER_S
 from tuisim.errors import HostError
 from tuisim.protocol import EVENTS, Message
 from tuisim.runs.isolation import spawn_isolated
-from tuisim.runs.side_files import hold
 from tuisim.source import source_lines
 
 if TYPE_CHECKING:
@@ -82,6 +81,7 @@ def cool_down() -> None:
 
 def start_child(
     folder: Path,
+    lock_fd: int,
     working_directory: str,
     template_key: Hashable = None,
     makes_template: bool = False,
@@ -93,6 +93,7 @@ def start_child(
 
     Args:
         folder: The run folder.
+        lock_fd: Its lock, which the process inherits; it is closed here.
         working_directory: Initial working directory, if it still exists.
         template_key: What a template must be prepared for to fork the child; None forks it from the warm process.
         makes_template: Whether such a template is made if there is none; otherwise the warm process forks the child.
@@ -106,13 +107,12 @@ def start_child(
     _Starts.count += 1
     if _Starts.count > 1 and isolated_with is None:
         warm_up()
-    # The child inherits it: the folder is in use from now on until the child ends.
-    lock_fd = hold(folder)
-    command_read, command_fd = os.pipe()
-    event_fd, event_write = os.pipe()
-    lifeline_read, lifeline_fd = os.pipe()
-    inherited = (command_read, event_write, lifeline_read, lock_fd)
-    try:
+    with ExitStack() as theirs, ExitStack() as ours:
+        theirs.callback(os.close, lock_fd)
+        command_read, command_fd = _pipe(theirs, ours)
+        event_fd, event_write = _pipe(ours, theirs)
+        lifeline_read, lifeline_fd = _pipe(theirs, ours)
+        inherited = (command_read, event_write, lifeline_read, lock_fd)
         with open(folder / "child.log", "wb", opener=private) as log:
             cwd = working_directory if os.path.isdir(working_directory) else None
             process: ChildProcess
@@ -124,12 +124,18 @@ def start_child(
                 command = [*_command(), str(folder), *map(str, inherited)]
                 writable = [folder, Path(cwd)] if cwd else [folder]
                 process = spawn_isolated(command, _environment(), log, inherited, writable, isolated_with)
-    finally:
-        for fd in inherited:
-            os.close(fd)
+        ours.pop_all()
     os.set_blocking(event_fd, False)
     os.set_blocking(command_fd, False)
     return process, command_fd, event_fd, lifeline_fd
+
+
+def _pipe(reader: ExitStack, writer: ExitStack) -> tuple[int, int]:
+    """Return the ends of a pipe, which are closed with these stacks."""
+    read_fd, write_fd = os.pipe()
+    reader.callback(os.close, read_fd)
+    writer.callback(os.close, write_fd)
+    return read_fd, write_fd
 
 
 def prepare_template(key: Hashable, folder: Path) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
@@ -28,9 +27,6 @@ _PROGRAM_KEYS = (
     "name", "path", "text", "sha256", "prelude", "arguments", "python_path", "working_directory", "module_folder",
 )  # fmt: skip
 """What `run.json` holds of the program, in this order."""
-
-_START_GRACE_S = 10.0
-"""Time after the creation of its folder during which a run may have no process."""
 
 _ACTION_COUNTS = 1 << 16
 """The telemetry counts user actions in 16 bits."""
@@ -89,14 +85,7 @@ class StoredRun:
 
 def state_without_end(folder: Path) -> Unended:
     """Return whether the run in a folder without a stored end is running or was interrupted."""
-    alive = is_held(folder)
-    if alive is None:
-        # Never locked: its process is about to be started, or could not be.
-        try:
-            alive = time.time() - folder.stat().st_mtime < _START_GRACE_S
-        except FileNotFoundError:
-            alive = False
-    return Unended.RUNNING if alive else Unended.INTERRUPTED
+    return Unended.RUNNING if is_held(folder) else Unended.INTERRUPTED
 
 
 def noise_at(spec: RunSpec, actions: Sequence[UserAction], record: TickRecord) -> NoiseSpec:

@@ -39,7 +39,7 @@ from tuisim.runs.run_folder import (
     write_run_file,
 )
 from tuisim.runs.samples import counts_of
-from tuisim.runs.side_files import LOCK_FILE, held, is_held
+from tuisim.runs.side_files import LOCK_FILE, held, hold, is_held
 from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
 
@@ -74,6 +74,8 @@ class NewRun:
     id: str
     number: int
     folder: Path
+    lock_fd: int = -1
+    """The lock of the folder, see `side_files.hold`, which the process of the run inherits; -1 if it is over."""
 
 
 class RunStore:
@@ -120,13 +122,17 @@ class RunStore:
         created = now.isoformat(timespec="milliseconds")
         run_id, folder = self._new_folder(now)
         info = RunInfo(0, run_id, created, program.name, spec.world.background, spec.profile.name, spec.seed)
+        # Before it is listed: what nobody holds counts as interrupted, and can be removed.
+        lock_fd = _held_new(folder)
         try:
             number = self._catalogue.add(info)
             write_run_file(folder, new_run_data(run_id, number, created, program, spec, field, options, live))
-        except LogError:
+        # Interrupted, too: nobody else closes the lock.
+        except BaseException:
+            os.close(lock_fd)
             shutil.rmtree(folder, ignore_errors=True)
             raise
-        return NewRun(run_id, number, folder)
+        return NewRun(run_id, number, folder, lock_fd)
 
     def adopt(self, folder: Path) -> NewRun:
         """Move the folder of a finished run from elsewhere into the store, and list it; return where it is now.
@@ -368,7 +374,7 @@ class RunStore:
                 known = _with_last_record(known, folder)
         except LogError as error:
             return replace(known, summary=known.summary or str(error)), {}, counted
-        # Without a lock the process may be starting.
+        # Where the lock cannot be asked for, it may be running.
         unlocked = is_held(folder) is False
         if known.end in (Unended.RUNNING, Unended.DAMAGED) or (known.end is Unended.INTERRUPTED and not unlocked):
             return known, {}, counted
@@ -454,6 +460,14 @@ def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
     if ticks > MOST_INTEGER:
         raise ValueError(f"tick is {ticks}")
     return replace(info, end=RUN_STATES[end["end"]], ticks=ticks, time_s=time_s, summary=str(end["summary"]))
+
+
+def _held_new(folder: Path) -> int:
+    try:
+        return hold(folder)
+    except OSError as error:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise LogError(f"runs cannot be stored here: {error.strerror or error}", HOME_HINT, file=str(folder)) from error
 
 
 def _delete(folder: Path) -> None:

@@ -19,6 +19,7 @@ from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError
 from tuisim.protocol import Ended
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, new_run_data, read_run, read_run_file, write_run_file
+from tuisim.runs.side_files import hold
 from tuisim.runs.store import NewRun
 from tuisim.source import Program
 
@@ -116,9 +117,9 @@ class TemporaryRun:
         file = self.folder / RUN_FILE
         try:
             file.write_text(json.dumps(data), "utf-8")
+            return NewRun(run_id, 0, self.folder, hold(self.folder))
         except OSError as error:
             raise LogError(f"cannot be written: {error.strerror or error}", file=str(file)) from error
-        return NewRun(run_id, 0, self.folder)
 
     def finish(self, _run_id: str, _end: Ended) -> None:
         """Do nothing: the handle of the run keeps its end."""
