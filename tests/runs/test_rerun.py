@@ -21,7 +21,7 @@ from tuisim.runs.diff import diff_runs
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.records import Stream
 from tuisim.runs.rerun import rerun, same
-from tuisim.runs.side_files import STOP_FILE
+from tuisim.runs.side_files import MODULES_FILE, STOP_FILE
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
 
@@ -249,3 +249,12 @@ def test_a_differing_line_is_numbered_as_people_see_it(home: Path) -> None:
     found = diff_runs(*runs).output
     assert found is not None
     assert (found.row, found.first, found.second) == (2, "one", "two")
+
+
+def test_a_run_that_cannot_be_prepared_is_not_listed(home: Path, tmp_path: Path) -> None:
+    program = Program("program.py", "print('A: 1')", modules_from=tmp_path)
+    # Not the file that it should be.
+    (tmp_path / MODULES_FILE).mkdir()
+    with pytest.raises(LogError, match="cannot be copied"):
+        start_run(program, build_run_spec(Settings()), RunOptions())
+    assert RunStore().runs() == []

@@ -167,7 +167,12 @@ class RunHandle:
         run = store.new_run(program, spec, field.to_plain(), options.to_plain(), options.live)
         self.run_id, self.number, self.folder = run.id, run.number, run.folder
         if program.modules_from is not None:
-            copy_modules(program.modules_from, run.folder)
+            try:
+                copy_modules(program.modules_from, run.folder)
+            except LogError:
+                os.close(run.lock_fd)
+                store.forget(run.id)
+                raise
         self.ended: Ended | None = None
         self.started = False
         """Whether the child has reached the program's first line."""
