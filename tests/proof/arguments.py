@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
+from contextlib import chdir
 from functools import cache
 from pathlib import Path
 from random import Random
@@ -12,7 +13,7 @@ import click
 
 from tests.proof.commands import check_said
 from tests.proof.kind import FaultError, Kind
-from tests.proof.odd_texts import ODD_TEXTS
+from tests.proof.odd_texts import SECRET, odd_text
 from tests.proof.operations import prepared
 from tuisim.cli import ROOT
 
@@ -33,10 +34,6 @@ SOUND: Mapping[str, str] = {
     "kernel remove": "--prefix home", "config": "", "doctor": "", "completion": "bash",
 }  # fmt: skip
 """Words after each command that ends by itself, in the folder of a case; what it then does is allowed."""
-_SECRET = "secret"
-"""A folder that nobody may look into, but for the superuser."""
-WORDS = (*(one for one in ODD_TEXTS if "\0" not in one), f"{_SECRET}/x", f"{_SECRET}/x.csv", _SECRET)
-"""What a command line can have."""
 SLOW = ("run", "batch", "mark", "runs movie", "runs rerun", "doctor")
 """Commands of seconds."""
 _FILES = {
@@ -64,7 +61,8 @@ def words_of(command: str, random: Random) -> list[str]:
     """Return the words of a command of which one or two are odd, missing, or more than there should be."""
     words = SOUND[command].split()
     for _ in range(random.choice((1, 1, 2))):
-        odd, options = random.choice(WORDS), options_of(command)
+        # The system takes no null characters there.
+        odd, options = odd_text(random).replace("\0", ""), options_of(command)
         at = random.randrange(len(words) + 1)
         if options and random.random() < 0.6:
             option = random.choice(options)
@@ -83,15 +81,16 @@ def _check(name: str, folder: Path) -> None:
     place = prepared(folder, "place")
     for file, text in _FILES.items():
         (place / file).write_text(text)
-    # Some words mean the user's folder, or one above.
-    os.environ["HOME"] = str(folder)
-    secret = place / _SECRET
+    secret = place / SECRET
     secret.mkdir(0)
-    os.chdir(place)
+    # Some words mean the user's folder, or one above.
+    user = os.environ.get("HOME", "")
+    os.environ["HOME"] = str(folder)
     try:
-        check_said(words_of(command, Random(name)), range(128))
+        with chdir(place):
+            check_said(words_of(command, Random(name)), range(128))
     finally:
-        os.chdir(folder)
+        os.environ["HOME"] = user
         # Else nobody could remove it.
         if secret.exists():
             secret.chmod(0o700)

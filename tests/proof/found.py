@@ -26,7 +26,7 @@ FOUND: Sequence[tuple[str, str]] = (
     ("damage", "parquet:3152310975:value"),
     ("damage", "parquet:644934153"),
     ("damage", "progress:4157507265:value"),
-    ("damage", "run:1856869474:text"),
+    ("damage", "run:183:text"),
     ("damage", "run:2508605289"),
     ("damage", "run:2527031845:value"),
     ("damage", "run:2445617949:edge"),

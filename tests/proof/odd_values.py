@@ -21,7 +21,7 @@ import pyarrow.ipc
 import pyarrow.parquet
 import tomlkit
 
-from tests.proof.odd_texts import ODD_TEXTS
+from tests.proof.odd_texts import odd_text
 
 _DEEP = "nested deeply"
 """Stands for a value that is nested more deeply than data structures of Python can be."""
@@ -114,7 +114,7 @@ def _with_other_text(data: Any, random: Random) -> Any:
     root = [data]
     if places := [(inside, key) for _, inside, key in _places(root) if isinstance(inside[key], str)]:
         inside, key = random.choice(places)
-        inside[key] = random.choice(ODD_TEXTS)
+        inside[key] = odd_text(random)
     return root[0]
 
 
