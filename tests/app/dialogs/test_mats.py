@@ -22,7 +22,8 @@ async def test_the_mat_at_hand_is_shown(size: tuple[int, int]) -> None:
         app = await ready(pilot)
         await pilot.press("b")
         view = app.screen.query_one(PixelView)
-        await until(pilot, lambda: view._cells.size > 0)
+        # The view gets its height after the dialog; before, a picture may have another shape.
+        await until(pilot, lambda: view._cells.shape[0] == view.size.height == view.styles.height.value)
         bands = view._cells.copy()
         assert view.region.bottom < size[1]
         mats = app.screen.query_one(OptionList)

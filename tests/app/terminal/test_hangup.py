@@ -19,7 +19,7 @@ from threading import Thread
 from typing import TextIO, cast
 
 import pytest
-from textual.app import App
+from textual.app import App, ScreenStackError
 from textual.drivers._writer_thread import MAX_QUEUED_WRITES, WriterThread
 from textual.screen import ModalScreen
 from textual.widgets import Static
@@ -305,12 +305,16 @@ async def test_a_screen_that_is_being_opened_when_the_app_ends_does_no_harm(
     assert app.return_code == 129
 
 
+def _find_no_screen(area: PanelArea) -> None:
+    raise ScreenStackError("No screens on stack")
+
+
 @pytest.mark.parametrize(
     "change",
-    [lambda area: area.ensure("debug"), lambda area: area.move_child(Static(), after=-1)],
-    ids=["a panel is added", "what was not added is moved"],
+    [lambda area: area.ensure("debug"), lambda area: area.move_child(Static(), after=-1), _find_no_screen],
+    ids=["a panel is added", "what was not added is moved", "there is no screen any more"],
 )
-async def test_a_change_of_the_panels_when_the_app_ends_does_no_harm(change: Callable[[PanelArea], None]) -> None:
+async def test_a_change_when_the_app_ends_does_no_harm(change: Callable[[PanelArea], None]) -> None:
     app = LabApp(settings("print('A: 1')\n"))
     async with app.run_test(size=(80, 24)) as pilot:
         await ready(pilot)

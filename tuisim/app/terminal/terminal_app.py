@@ -25,7 +25,7 @@ from textual import events, on
 from textual import screen as textual_screen
 from textual._compositor import CompositorUpdate
 from textual._styles_cache import StylesCache
-from textual.app import App
+from textual.app import App, ScreenStackError
 from textual.color import Color
 from textual.command import Provider
 from textual.css.query import NoMatches
@@ -362,9 +362,10 @@ class TerminalApp(App[None]):
         await super()._shutdown()
 
     def _handle_exception(self, error: Exception) -> None:
-        # During the shutdown nothing can be mounted, and what was being mounted is removed before it is complete.
+        # During the shutdown nothing can be mounted, what was being mounted is removed before it is complete, and at
+        # its end there is no screen.
         cause = error.error if isinstance(error, WorkerFailed) else error
-        if not (is_leaving(self) and isinstance(cause, (WidgetError, NoMatches))):
+        if not (is_leaving(self) and isinstance(cause, (WidgetError, NoMatches, ScreenStackError))):
             super()._handle_exception(error)
 
 
