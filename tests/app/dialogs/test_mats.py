@@ -23,7 +23,7 @@ async def test_the_mat_at_hand_is_shown(size: tuple[int, int]) -> None:
         await pilot.press("b")
         view = app.screen.query_one(PixelView)
         # The view gets its height after the dialog; before, a picture may have another shape.
-        await until(pilot, lambda: view._cells.shape[0] == view.size.height == view.styles.height.value)
+        await until(pilot, lambda: view._cells.shape[0] == view.size.height == getattr(view.styles.height, "value", 0))
         bands = view._cells.copy()
         assert view.region.bottom < size[1]
         mats = app.screen.query_one(OptionList)
