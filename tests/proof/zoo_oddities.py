@@ -43,7 +43,7 @@ IMPORTS: Mapping[str, Piece] = {
         "    setattr(builtins, n, None)",
         breaks=True,
     ),
-    "print": Piece("import builtins\nwas = builtins.print\nbuiltins.print = lambda *a: was('<', *a, '>')", loses=True),
+    "print": Piece("import builtins\nold = print\nbuiltins.print = lambda *a, **k: old('<', *a, '>', **k)", loses=True),
     "import": Piece(
         "import builtins\ndef no(*a, **k): raise ImportError('no')\nwas = builtins.__import__\n"
         "builtins.__import__ = no\n"
