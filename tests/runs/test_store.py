@@ -158,7 +158,7 @@ def test_a_lock_is_held_before_others_can_find_it(tmp_path: Path, monkeypatch: p
 
 
 def test_a_run_is_running_from_the_start_of_its_process(start: Start) -> None:
-    handle = start("tank_drive.on(9, 9)")
+    handle = start("while True:\n    pass")
     assert is_held(handle.folder) is True
 
 
