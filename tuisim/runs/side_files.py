@@ -9,8 +9,7 @@ import fcntl
 import json
 import os
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -57,20 +56,6 @@ def hold(folder: Path) -> int:
             os.unlink(name)
         raise
     return descriptor
-
-
-@contextmanager
-def held(folder: Path) -> Iterator[None]:
-    """Lock a run folder for a block.
-
-    Raises:
-        OSError: the lock cannot be acquired.
-    """
-    descriptor = hold(folder)
-    try:
-        yield
-    finally:
-        os.close(descriptor)
 
 
 def is_held(folder: Path) -> bool | None:

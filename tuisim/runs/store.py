@@ -39,7 +39,7 @@ from tuisim.runs.run_folder import (
     write_run_file,
 )
 from tuisim.runs.samples import counts_of
-from tuisim.runs.side_files import LOCK_FILE, held, hold, is_held
+from tuisim.runs.side_files import LOCK_FILE, hold, is_held
 from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
 
@@ -120,10 +120,8 @@ class RunStore:
         """
         now = datetime.now(UTC)
         created = now.isoformat(timespec="milliseconds")
-        run_id, folder = self._new_folder(now)
+        run_id, folder, lock_fd = self._new_folder(now)
         info = RunInfo(0, run_id, created, program.name, spec.world.background, spec.profile.name, spec.seed)
-        # Before it is listed: what nobody holds counts as interrupted, and can be removed.
-        lock_fd = _held_new(folder)
         try:
             number = self._catalogue.add(info)
             write_run_file(folder, new_run_data(run_id, number, created, program, spec, field, options, live))
@@ -141,14 +139,12 @@ class RunStore:
             LogError: it holds no run, or the home folder cannot be written.
         """
         data = read_run_file(folder)
-        run_id, place = self._new_folder(datetime.now(UTC))
-        info = _info_from(run_id, data)
+        run_id, place, lock_fd = self._new_folder(datetime.now(UTC))
         try:
-            # Another process may look at the folder meanwhile: it is in use, and a run as soon as it has this file.
-            with held(place):
-                shutil.copytree(folder, place, dirs_exist_ok=True, ignore=shutil.ignore_patterns(RUN_FILE, LOCK_FILE))
-                number = self._catalogue.add(info)
-                write_run_file(place, {**data, "id": run_id, "number": number})
+            info = _info_from(run_id, data)
+            shutil.copytree(folder, place, dirs_exist_ok=True, ignore=shutil.ignore_patterns(RUN_FILE, LOCK_FILE))
+            number = self._catalogue.add(info)
+            write_run_file(place, {**data, "id": run_id, "number": number})
         except OSError as error:
             shutil.rmtree(place, ignore_errors=True)
             raise LogError(f"cannot be stored: {error.strerror or error}", HOME_HINT, file=str(place)) from error
@@ -156,6 +152,8 @@ class RunStore:
         except BaseException:
             shutil.rmtree(place, ignore_errors=True)
             raise
+        finally:
+            os.close(lock_fd)
         shutil.rmtree(folder, ignore_errors=True)
         return NewRun(run_id, number, place)
 
@@ -299,19 +297,26 @@ class RunStore:
 
     # Internals
 
-    def _new_folder(self, now: datetime) -> tuple[str, Path]:
+    def _new_folder(self, now: datetime) -> tuple[str, Path, int]:
+        """Create and lock a folder: what nobody holds counts as interrupted, and can be removed by any process.
+
+        Returns:
+            The id of the run, its folder, and the descriptor of the lock.
+        """
         while True:
             run_id = f"{now:%Y%m%dT%H%M%S}-{secrets.token_hex(3)}"
             folder = self.folder(run_id)
             try:
                 make_private_folder(self._runs)
                 folder.mkdir(0o700)
+                lock_fd = hold(folder)
             except FileExistsError:
                 continue
             except OSError as error:
+                shutil.rmtree(folder, ignore_errors=True)
                 what = error.strerror or str(error)
                 raise LogError(f"runs cannot be stored here: {what}", HOME_HINT, file=str(self.home)) from error
-            return run_id, folder
+            return run_id, folder, lock_fd
 
     def _edit(self, run_id: str, **changes: Any) -> None:
         folder = self.folder(run_id)
@@ -460,14 +465,6 @@ def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
     if ticks > MOST_INTEGER:
         raise ValueError(f"tick is {ticks}")
     return replace(info, end=RUN_STATES[end["end"]], ticks=ticks, time_s=time_s, summary=str(end["summary"]))
-
-
-def _held_new(folder: Path) -> int:
-    try:
-        return hold(folder)
-    except OSError as error:
-        shutil.rmtree(folder, ignore_errors=True)
-        raise LogError(f"runs cannot be stored here: {error.strerror or error}", HOME_HINT, file=str(folder)) from error
 
 
 def _delete(folder: Path) -> None:
