@@ -7,7 +7,7 @@ import codecs
 import lzma
 import zlib
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from gzip import GzipFile
 from typing import Any, Protocol
 
@@ -21,6 +21,8 @@ BLOCK_BYTES = 4 << 20
 
 MAX_LINE_BYTES = 1 << 20
 """Longer lines are left out."""
+MAX_DOCUMENT_BYTES = 64 << 20
+"""Larger JSON documents, which may be a single line, are not read as a whole."""
 
 _BOMS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
 
@@ -42,12 +44,20 @@ class Block:
             if line and not line.isspace():
                 yield row, line.rstrip("\r")
 
+    def followed_by(self, block: Block | None) -> Block:
+        """Return this block with the lines of the next one."""
+        return self if block is None else replace(self, text=self.text + block.text)
+
 
 class LineCutter:
-    """Cuts bytes into blocks of whole lines."""
+    """Cuts bytes into blocks of whole lines.
 
-    def __init__(self, notes: Notes) -> None:
-        self._notes = notes
+    Args:
+        longest: Bytes of the longest line; longer ones are left out.
+    """
+
+    def __init__(self, notes: Notes, longest: int = MAX_LINE_BYTES) -> None:
+        self._notes, self._longest = notes, longest
         self._rest = b""
         self._row = 1
         self._decoder: codecs.IncrementalDecoder | None = None
@@ -116,8 +126,8 @@ class LineCutter:
         if self._dropping:
             return
         self._rest += rest
-        if len(self._rest) > MAX_LINE_BYTES:
-            limit = f"longer than {MAX_LINE_BYTES >> 20} MiB"
+        if len(self._rest) > self._longest:
+            limit = f"longer than {self._longest >> 20} MiB"
             self._notes.add(f"line {limit} was skipped", f"lines {limit} were skipped", [self._row])
             self._rest, self._dropping = b"", True
 

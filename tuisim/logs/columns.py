@@ -14,6 +14,7 @@ import pyarrow.compute as pc
 
 from tuisim.errors import LogError, listed
 from tuisim.logs.arrow import PER_S, numbers_of
+from tuisim.logs.dates import in_usual_form, order_is_guessed
 from tuisim.logs.units import SECONDS
 from tuisim.runs.arrays import FloatArray
 
@@ -140,7 +141,7 @@ def _floats(column: pa.ChunkedArray) -> FloatArray:
 
 def seconds_of_texts(column: pa.ChunkedArray) -> FloatArray:
     """Return texts in seconds: time spans as they are, dates since the first; NaN for other texts."""
-    texts: Any = column.cast(pa.string())
+    texts = in_usual_form(column.cast(pa.string()))
     spans: Any = pc.extract_regex(texts, _SPAN)
     parts = {}
     for name, seconds in (("days", 86400.0), ("h", 3600.0), ("m", 60.0), ("s", 1.0)):
@@ -287,6 +288,13 @@ def unread_time(table: pa.Table, layout: Layout) -> str:
         return ""
     named = (name for name in table.column_names if time_name(name).base in _TEXT_TIMES)
     return next((name for name in named if is_text(table.schema.field(name).type)), "")
+
+
+def guessed_order(table: pa.Table, layout: Layout) -> bool:
+    """Return whether the times are dates that could begin with the day or with the month, read as the day."""
+    if not layout.time or not is_text(table.schema.field(layout.time).type):
+        return False
+    return order_is_guessed(table.column(layout.time).cast(pa.string()))
 
 
 def time_in_words(layout: Layout) -> str:

@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any, cast
@@ -15,10 +16,21 @@ import pyarrow as pa
 
 from tuisim.errors import LogError
 from tuisim.logs import arrow
-from tuisim.logs.blocks import BLOCK_BYTES, MAGIC_BYTES, MAGICS, Block, LineCutter, Readable, unpacked
-from tuisim.logs.columns import UNIT_NAMES, choose_columns, guess_columns, unread_time
+from tuisim.logs.blocks import (
+    BLOCK_BYTES,
+    MAGIC_BYTES,
+    MAGICS,
+    MAX_DOCUMENT_BYTES,
+    Block,
+    LineCutter,
+    Readable,
+    unpacked,
+)
+from tuisim.logs.columns import UNIT_NAMES, choose_columns, guess_columns, guessed_order, unread_time
+from tuisim.logs.documents import DocumentReader, begins_as_json, is_document
 from tuisim.logs.export import ALLOWED, EXPORTERS, companion_of, log_metadata, typed_frame
 from tuisim.logs.log import Log
+from tuisim.logs.stamped import StampedReader, looks_stamped, reader_of_stamped
 from tuisim.logs.text_tables import CsvReader, JsonReader, PrintedReader, exported_csv, looks_printed
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
@@ -114,7 +126,7 @@ def read_pieces(
     notes = Notes()
     parts: list[pa.Table] = []
     show_at = 0.0
-    for part, table in _parts(source, notes):
+    for part, table in _parts(source, title, notes):
         if table is not None:
             parts.append(table)
         now = monotonic()
@@ -145,6 +157,8 @@ def _log(title: str, parts: Sequence[pa.Table], notes: Notes, named: tuple[str |
         notes.say(f"the times in {layout.time!r} are {unit} since 1970: shown from the first one on")
     if named[0] is None and (unread := unread_time(table, layout)):
         notes.say(f"the times in {unread!r} cannot be read: row numbers are used")
+    if guessed_order(table, layout):
+        notes.say(f"the dates in {layout.time!r} are read as day, month, year")
     metadata = arrow.metadata_in(parts[0].schema) or _metadata_beside(Path(title))
     return Log(title, table, layout, notes.texts(), notes.left_out, metadata)
 
@@ -185,7 +199,16 @@ def _with_kinds(part: pa.Table, kinds: pa.Schema) -> pa.Table:
     return part
 
 
-def _parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.Table | None]]:
+def _parts(source: str | Path, title: str, notes: Notes) -> Iterator[tuple[float, pa.Table | None]]:
+    try:
+        yield from _source_parts(source, notes)
+    except LogError as error:
+        if error.file:
+            raise
+        raise LogError(error.message, error.hint, file=title) from error
+
+
+def _source_parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.Table | None]]:
     if str(source) == STDIN:
         # None if the shell closed it.
         if cast("Any", sys.stdin) is None:
@@ -227,27 +250,48 @@ def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterat
         size: Their number, 0 if unknown.
         suffix: Suffix of the file name in lower case, such as `.csv`.
     """
-    cutter, reader = LineCutter(notes), None
+    cutter, reader, held = LineCutter(notes), None, None
     read = 0
     while True:
         data = handle.read(FIRST_BYTES if not read else BLOCK_BYTES) or b""
-        if not read and data.startswith((arrow.PARQUET_MAGIC, arrow.ARROW_MAGIC, arrow.ARROW_STREAM_MAGIC, *MAGICS)):
-            raise LogError("only text can be read from a pipe or inside a compressed file", "name the file itself")
+        if not read:
+            _refuse_binary(data)
+            if data.lstrip().startswith((b"{", b"[")):
+                cutter = LineCutter(notes, MAX_DOCUMENT_BYTES)
         read += len(data)
         block = cutter.feed(data) if data else cutter.finish()
+        block, held = (block if held is None else held.followed_by(block)), None
+        if reader is None and block is not None and data and len(list(islice(block.lines(), 2))) < 2:
+            # What a single line is depends on whether another one follows.
+            block, held = None, block
+        part = min(1.0, read / size) if size else float("nan")
         if block is not None:
             reader = reader or _reader_for(block, suffix, notes)
-            yield (min(1.0, read / size) if size else float("nan")), reader.read(block)
+            yield part, reader.read(block)
         elif data:
-            yield (min(1.0, read / size) if size else float("nan")), None
+            yield part, None
         if not data:
+            if isinstance(reader, DocumentReader):
+                yield part, reader.finish()
             return
 
 
-def _reader_for(block: Block, suffix: str, notes: Notes) -> CsvReader | JsonReader | PrintedReader:
-    lines = [line for _, (_, line) in zip(range(30), block.lines(), strict=False)]
-    if suffix in (".jsonl", ".ndjson", ".json") or (suffix not in _TABLES and lines and lines[0].startswith("{")):
-        return JsonReader(notes)
+def _refuse_binary(data: bytes) -> None:
+    """Raise a LogError if the first bytes of a text are those of another format."""
+    if arrow.is_old_stream(data):
+        raise LogError(arrow.OLD_STREAM, arrow.OLD_STREAM_HINT)
+    if data.startswith((arrow.PARQUET_MAGIC, arrow.ARROW_MAGIC, arrow.ARROW_STREAM_MAGIC, *MAGICS)):
+        raise LogError("only text can be read from a pipe or inside a compressed file", "name the file itself")
+
+
+def _reader_for(
+    block: Block, suffix: str, notes: Notes
+) -> CsvReader | JsonReader | DocumentReader | PrintedReader | StampedReader:
+    lines = [line for _, line in islice(block.lines(), 30)]
+    if suffix in (".jsonl", ".ndjson", ".json") or (suffix not in _TABLES and begins_as_json(lines)):
+        return DocumentReader(notes) if lines and is_document(lines) else JsonReader(notes)
+    if looks_stamped(lines):
+        return reader_of_stamped(lines, notes)
     if suffix not in _TABLES and looks_printed(lines):
         return PrintedReader(notes)
     return CsvReader(notes)

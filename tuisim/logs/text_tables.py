@@ -7,7 +7,7 @@ import io
 import json
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise, takewhile
 from typing import Any
@@ -18,6 +18,7 @@ import pyarrow.csv as pa_csv
 
 from tuisim.logs.arrow import texts_array, unique_names
 from tuisim.logs.blocks import Block
+from tuisim.logs.dates import is_date, is_moment
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
 from tuisim.runs.samples import parse_sample
@@ -122,7 +123,7 @@ def find_heading(lines: Sequence[tuple[int, str]], notes: Notes) -> Heading:
     texts = [text for _, text in body]
     fields = next((text for text in reversed(comments) if text.startswith("#fields")), "")
     separator = _zeek_separator(comments) if fields else sniff_separator(texts)
-    decimal_comma = separator == ";" and _has_decimal_comma(texts[1:])
+    decimal_comma = separator == ";" and _has_decimal_comma(texts[1:] or texts)
     rows = [cells_of(text, separator) for text in texts]
     above = _heading_above(comments, rows, separator, fields)
     if above:
@@ -131,8 +132,16 @@ def find_heading(lines: Sequence[tuple[int, str]], notes: Notes) -> Heading:
         names, follow = [name.strip() for name in rows[0]], body[0][0] + 1
     else:
         notes.say("no header: the columns are numbered")
-        names, follow = [f"column {at}" for at in range(1, len(rows[0]) + 1)], body[0][0]
+        names, follow = _names_without_heading(rows[0]), body[0][0]
     return Heading(tuple(unique_names(names, notes)), separator, decimal_comma, bool(comments), follow)
+
+
+def _names_without_heading(cells: Sequence[str]) -> list[str]:
+    """Return the names of columns from the cells of their first row: `time`, `date`, else numbers."""
+    return [
+        f"column {at}" if not is_moment(cell) else "date" if is_date(cell) else "time"
+        for at, cell in enumerate(cells, 1)
+    ]
 
 
 def cells_of(line: str, separator: str) -> list[str]:
@@ -164,7 +173,10 @@ def sniff_separator(lines: Sequence[str]) -> str:
     if evenness(best) > (0, 0, 0):
         return best
     widths = {len(line.split()) for line in lines}
-    return BLANKS if len(widths) == 1 and min(widths) > 1 and len(lines) > 1 else ","
+    if len(lines) == 1 and not _are_all_numbers(lines[0].split()[1:]):
+        # It may be a sentence.
+        return ","
+    return BLANKS if len(widths) == 1 and min(widths) > 1 else ","
 
 
 def _zeek_separator(comments: Sequence[str]) -> str:
@@ -194,21 +206,48 @@ def _are_numeric(cells: Sequence[str], decimal_comma: bool = False) -> list[bool
     return [are_numbers(texts_array([cell]), decimal_comma) for cell in cells]
 
 
+def _are_all_numbers(cells: Sequence[str], decimal_comma: bool = False) -> bool:
+    numbers, _ = parsed_numbers(texts_array(cells), decimal_comma)
+    return not numbers.null_count
+
+
 def _is_heading(rows: Sequence[list[str]], decimal_comma: bool) -> bool:
     """Return whether the first row is a header: few of its cells are numbers, or these are increasing."""
+    if is_moment(rows[0][0]) and (len(rows) < 2 or is_moment(rows[1][0])):
+        return False
     first = _are_numeric(rows[0], decimal_comma)
     numbers = [int(cell) for cell in rows[0][1:] if re.fullmatch(r"\s*\d+\s*", cell)]
     if first[0] is False and len(numbers) == len(first) - 1 > 0 and all(a < b for a, b in pairwise(numbers)):
         below = {_are_numeric(row[:1], decimal_comma)[0] for row in rows[1:]}
         if (True in below and False not in below) or all(number in _YEARS for number in numbers):
             return True
-    return not are_numbers(texts_array(rows[0]), decimal_comma)
+    # One line with a number is a row: below a heading, nothing would be left.
+    return not any(first) if len(rows) < 2 else not are_numbers(texts_array(rows[0]), decimal_comma)
 
 
 def _has_decimal_comma(lines: Sequence[str]) -> bool:
     cells = [cell.strip() for line in lines for cell in line.split(";")]
     with_comma = sum(cell.count(",") == 1 and cell.replace(",", "").lstrip("+-").isdigit() for cell in cells)
     return with_comma > 0 and not any(cell.count(".") == 1 and cell.replace(".", "").isdigit() for cell in cells)
+
+
+_LEAST_VALUES = 3
+"""Numbers on the only line of a file that are the values of one column; fewer are a row."""
+
+
+def _one_column(lines: Sequence[tuple[int, str]], notes: Notes) -> bytes:
+    """Return the numbers on the only line of a file, each on a line of its own; nothing if there is more in it."""
+    body = [text for _, text in lines if not text.startswith(COMMENT)]
+    if len(body) != 1:
+        return b""
+    text = body[0].strip().rstrip("".join(SEPARATORS) + " ")
+    separator = sniff_separator([text])
+    cells = [cell.strip() for cell in cells_of(text, separator)]
+    decimal_comma = separator == ";" and _has_decimal_comma([text])
+    if len(cells) < _LEAST_VALUES or not _are_all_numbers(cells, decimal_comma):
+        return b""
+    notes.say(f"the only line has {len(cells)} numbers: they are read as one column")
+    return "".join(f"{cell.replace(',', '.') if decimal_comma else cell}\n" for cell in cells).encode()
 
 
 _SNIFFED_LINES = 30
@@ -220,11 +259,15 @@ _MOST_LINES, _MOST_JOINS = 100, 100
 
 
 class CsvReader:
-    """Reads blocks of one file; names and types of the columns are fixed by the first."""
+    """Reads blocks of one file; names and types of the columns are fixed by the first.
 
-    def __init__(self, notes: Notes) -> None:
+    Args:
+        heading: The format of the table; without one it is detected.
+    """
+
+    def __init__(self, notes: Notes, heading: Heading | None = None) -> None:
         self._notes = notes
-        self._heading = Heading()
+        self._heading = heading or Heading()
         self._joins_left = _MOST_JOINS
         self._kinds: dict[str, pa.DataType] = {}
         """Type by column; missing while all cells of a column were empty."""
@@ -259,6 +302,8 @@ class CsvReader:
         lines += islice((line for line in block.lines() if not line[1].startswith(COMMENT)), _SNIFFED_LINES)
         if not lines:
             return block
+        if one_column := _one_column(lines, self._notes):
+            block, lines = Block(lines[0][0], one_column, block.newline), [(lines[0][0], "0")]
         self._heading = heading = find_heading(lines, self._notes)
         skipped = block.text.split(b"\n", heading.rows_follow - block.first_row)
         return Block(heading.rows_follow, skipped[-1], block.newline)
@@ -438,8 +483,10 @@ class JsonReader:
                 broken.append(row)
         skipped = "line is not a JSON object and was skipped", "lines are not JSON objects and were skipped"
         self._notes.add(*skipped, broken)
-        if not found:
-            return None
+        return self.table_of(found) if found else None
+
+    def table_of(self, found: list[tuple[int, dict[str, Any]]]) -> pa.Table:
+        """Return the table of objects, each with its row in the file."""
         names = dict.fromkeys(name for _, cells in found for name in cells)
         return pa.table({_valid(name) or _NAMELESS: self._column(name, found) for name in names})
 
@@ -489,24 +536,34 @@ _TABLE_ROW = re.compile(r"[,;\t]|^[^A-Za-z]*[0-9][^A-Za-z]*$")
 """Cells with a separator between them, or only numbers."""
 
 
-class PrintedReader:
-    """Reads blocks of one file of printed samples."""
+_SECONDS = pa.float64()
 
-    def __init__(self, notes: Notes) -> None:
-        self._notes = notes
+
+class PrintedReader:
+    """Reads blocks of one file of printed samples.
+
+    Args:
+        parse: Returns name, value and time of a line, None if it is no sample.
+        time_kind: Type of the times.
+    """
+
+    def __init__(
+        self, notes: Notes, parse: Callable[[str], Any] = parse_sample, time_kind: pa.DataType = _SECONDS
+    ) -> None:
+        self._notes, self._parse, self._time_kind = notes, parse, time_kind
 
     def read(self, block: Block) -> pa.Table | None:
         """Return the samples of a block; None if it has none. The time is empty where none was printed."""
         found, others = [], []
         for row, line in block.lines():
-            if (sample := parse_sample(line)) is None:
+            if (sample := self._parse(line)) is None:
                 others.append(row)
             else:
                 found.append((row, *sample))
         self._notes.add("line is not a sample", "lines are not samples", others)
         if not found:
             return None
-        kinds = {"row": pa.float64(), "variable": pa.string(), "value": pa.float64(), "time": pa.float64()}
+        kinds = {"row": pa.float64(), "variable": pa.string(), "value": pa.float64(), "time": self._time_kind}
         cells = zip(*found, strict=True)
         return pa.table({name: pa.array(next(cells), kind) for name, kind in kinds.items()})
 

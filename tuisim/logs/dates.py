@@ -1,0 +1,93 @@
+"""Dates and times of day as people and programs write them: recognised, and brought to one form."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+_MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
+_YEAR_FIRST = r"\d{4}[-/.]\d{1,2}[-/.]\d{1,2}"
+_YEAR_LAST = r"\d{1,2}[-/.]\d{1,2}[-/.]\d{4}"
+_DATE = rf"(?:{_YEAR_FIRST}|{_YEAR_LAST})"
+_GAP = r"(?:T| *[/,_] *| +(?:- +)?)"
+"""What stands between a date and its time of day."""
+_PART = r"(?:[.,]\d+)"
+"""Fraction of a second."""
+_ZONE = r"(?:Z| ?UTC| ?[+-]\d{2}:\d{2}|[+-]\d{4})"
+_C_TIME = rf"[A-Z][a-z]{{2}} (?:{'|'.join(_MONTHS)}) {{1,2}}\d{{1,2}} \d{{2}}:\d{{2}}:\d{{2}} \d{{4}}"
+"""As `time.ctime` writes it."""
+MOMENT = (
+    rf"(?:{_DATE}(?:{_GAP}\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?)?{_ZONE}?)?|\d{{1,2}}:\d{{2}}:\d{{2}}{_PART}?|{_C_TIME})"
+)
+"""Regular expression of a date, a time of day with seconds, or both."""
+_MOMENT_CELL = re.compile(rf"\s*[\[(<]?\s*{MOMENT}\s*[\])>]?\s*")
+_DATE_CELL = re.compile(rf"\s*{_DATE}\s*")
+
+_USUAL = r"^-?(?:\d+ days? )?\d+:\d{2}:\d{2}(?:\.\d+)?$|^\d{4}-\d{2}-\d{2}(?:$|[T ]\d{2}:\d{2}(?:$|[^,]*$))"
+"""Texts that need no change."""
+_REWRITTEN = (
+    (r"^[\[(<] *| *[\])>]$", ""),
+    (r"(:\d{2}),(\d+)", r"\1.\2"),
+    (r"^[A-Z][a-z]{2} ([A-Z][a-z]{2}) +(\d{1,2}) (\d{2}:\d{2}:\d{2}) (\d{4})$", r"\4-\1-\2 \3"),
+    *((rf"^(\d{{4}})-{name}-", rf"\1-{month:02}-") for month, name in enumerate(_MONTHS, 1)),
+    (rf"^({_DATE}){_GAP}(\d{{1,2}}:)", r"\1 \2"),
+    (r"^(\d{4})[/.](\d{1,2})[/.](\d{1,2})", r"\1-\2-\3"),
+)
+"""What is replaced, in this order; the year stays where it is."""
+_YEAR_AT_END = r"^(?P<first>\d{1,2})[-/.](?P<second>\d{1,2})[-/.](?P<year>\d{4})"
+_PADDED = (
+    (r"^(\d{4})-(\d)-", r"\1-0\2-"),
+    (r"^(\d{4}-\d{2})-(\d)($|\D)", r"\1-0\2\3"),
+    (r"^(\d{4}-\d{2}-\d{2}) (\d):", r"\1 0\2:"),
+)
+_LAST_MONTH = 12
+
+
+def is_moment(cell: str) -> bool:
+    """Return whether a cell is a date, a time of day with seconds, or both; also in brackets."""
+    return _MOMENT_CELL.fullmatch(cell) is not None
+
+
+def is_date(cell: str) -> bool:
+    """Return whether a cell is a date without a time of day."""
+    return _DATE_CELL.fullmatch(cell) is not None
+
+
+def in_usual_form(texts: Any) -> Any:
+    """Return texts with their dates as year-month-day and without brackets; what is no date may change, too.
+
+    Dates with the year at the end begin with the day, unless one of them can only begin with the month.
+    """
+    if not pc.any(pc.invert(pc.match_substring_regex(texts, _USUAL))).as_py():
+        return texts
+    texts = _replaced(texts, _REWRITTEN)
+    first, second = _largest_parts(texts)
+    order = r"\3-\1-\2" if first <= _LAST_MONTH < second else r"\3-\2-\1"
+    return _replaced(texts, ((_YEAR_AT_END, order), *_PADDED))
+
+
+def order_is_guessed(texts: Any) -> bool:
+    """Return whether there are several dates, each of which could begin with the day or with the month."""
+    texts = _replaced(texts, _REWRITTEN)
+    first, second = _largest_parts(texts)
+    if not 0 < max(first, second) <= _LAST_MONTH:
+        return False
+    return int(pc.count_distinct(pc.replace_substring_regex(texts, r" .*", "")).as_py()) > 1
+
+
+def _replaced(texts: Any, changes: Sequence[tuple[str, str]]) -> Any:
+    for pattern, new in changes:
+        texts = pc.replace_substring_regex(texts, pattern, new)
+    return texts
+
+
+def _largest_parts(texts: Any) -> tuple[int, int]:
+    """Return the largest first and second number of the dates with the year at the end, 0 without any."""
+    parts: Any = pc.extract_regex(texts, _YEAR_AT_END)
+    numbers = (pc.cast(pc.struct_field(parts, name), pa.int64()) for name in ("first", "second"))
+    first, second = (pc.max(number).as_py() or 0 for number in numbers)
+    return first, second
