@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bz2
+import gzip
 import io
 import lzma
 import zipfile
@@ -39,10 +40,10 @@ def savetxt() -> bytes:
     return sink.getvalue()
 
 
-def arrow_stream() -> bytes:
+def arrow_stream(is_old: bool = False) -> bytes:
     sink = io.BytesIO()
     table = pa.table({"time": [0.0, 1.0], "red": [1.0, 2.0]})
-    with pa.ipc.new_stream(sink, table.schema) as writer:
+    with pa.ipc.new_stream(sink, table.schema, options=pa.ipc.IpcWriteOptions(use_legacy_format=is_old)) as writer:
         writer.write_table(table)
     return sink.getvalue()
 
@@ -108,6 +109,16 @@ CASES: dict[str, Case] = {
     ),
     "an Arrow stream": ("a.arrows", arrow_stream, TWO),
     "an Arrow stream that was cut off": ("a.arrows", lambda: arrow_stream()[:-60], "no rows"),
+    "an Arrow stream of before 0.15": (
+        "a.arrows",
+        lambda: arrow_stream(True),
+        "is an Arrow stream of before version 0.15",
+    ),
+    "a compressed Arrow stream of before 0.15": (
+        "a.csv.gz",
+        lambda: gzip.compress(arrow_stream(True)),
+        "Arrow stream of before",
+    ),
     "dates with a time of day": ("a.arrow", arrow_date64, Read(2, check=lambda log: times(log) == [0, 60])),
     "bzip2": ("a.csv.bz2", bz2.compress(CSV), TWO),
     "two bzip2 files in one": ("a.csv.bz2", bz2.compress(CSV[:15]) + bz2.compress(CSV[15:]), TWO),

@@ -171,7 +171,9 @@ def sniff_separator(lines: Sequence[str]) -> str:
 
     best = max(SEPARATORS, key=evenness)
     if evenness(best) > (0, 0, 0):
-        return best
+        # In `0;5,5`, there are as many commas as semicolons.
+        is_decimal = evenness(best) == evenness(";") and _has_decimal_comma(lines)
+        return ";" if is_decimal else best
     widths = {len(line.split()) for line in lines}
     if len(lines) == 1 and not _are_all_numbers(lines[0].split()[1:]):
         # It may be a sentence.

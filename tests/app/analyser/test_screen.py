@@ -286,6 +286,17 @@ async def test_a_file_is_read_on_when_it_grows(tmp_path: Path) -> None:
         assert screen.model.log.series("v").values.tolist() == [2.0, 3.0, 4.0]
 
 
+async def test_how_a_file_was_read_is_said_once(tmp_path: Path) -> None:
+    file = tmp_path / "log.txt"
+    file.write_text("5, 6, 7.5\n")
+    async with AnalyserApp(LogRequest(file=str(file))).run_test(size=(80, 24)) as pilot:
+        screen, _ = await opened(pilot)
+        await until(pilot, lambda: screen.model.opened.done)
+        await pilot.pause()
+        said = [str(notice.message) for notice in pilot.app._notifications]
+        assert said == [*screen.model.log.notes] and "3 numbers: they are read as one column" in said[0]
+
+
 async def test_what_cannot_be_opened_ends_the_app_with_the_reason(tmp_path: Path) -> None:
     app = AnalyserApp(LogRequest(file=str(tmp_path / "none.csv")))
     async with app.run_test() as pilot:

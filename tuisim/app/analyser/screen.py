@@ -73,6 +73,8 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self._began_s = self._next_poll_s = 0.0
         self._stamp: object = None
         """Length of the log when it was last read."""
+        self._said: tuple[str, ...] = ()
+        """Notes on the log that were said; a log has them before it is read to its end."""
         self.title_line = LinesView()
         self.title_line.id = "title"
         self.chart = LogChart()
@@ -160,8 +162,9 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.update()
         if before is None and opened.request.file and not model.log.layout.sure and self.is_current:
             self.ask_columns()
-        if opened.done and (before is None or before.opened.log.notes != opened.log.notes):
-            for note in opened.log.notes:
+        if opened.done and opened.log.notes != self._said:
+            self._said = opened.log.notes
+            for note in self._said:
                 self.say(note)
 
     def poll(self) -> None:

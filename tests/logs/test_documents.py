@@ -1,0 +1,115 @@
+"""JSON in one piece: rows, columns, and what is neither."""
+
+from __future__ import annotations
+
+import json
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+from numpy.testing import assert_array_equal
+
+from tests.logs.log_cases import Case, Read, check_input, times, values
+from tuisim.logs.reader import open_log
+
+ROWS = [{"time": 0, "red": 1}, {"time": 0.5, "red": 2}]
+COLUMNS = {"time": [0, 0.5], "red": [1, 2]}
+TWO = Read(2, check=lambda log: (times(log), values(log)) == ([0, 0.5], [1, 2]))
+
+
+def text(value: Any, indent: int | None = None) -> bytes:
+    return json.dumps(value, indent=indent).encode()
+
+
+CASES: dict[str, Case] = {
+    "columns": ("a.json", text(COLUMNS), TWO),
+    "columns under another name": ("a.txt", text(COLUMNS), TWO),
+    "columns in a file of rows": ("a.jsonl", text(COLUMNS) + b"\n", TWO),
+    "columns on many lines": ("a.json", text(COLUMNS, 2), TWO),
+    "rows on many lines": ("a.json", text(ROWS, 4), TWO),
+    "rows on many lines under another name": ("a.log", text(ROWS, 4), TWO),
+    "rows behind each other": ("a.json", b"\n".join(text(row, 2) for row in ROWS), TWO),
+    "one row on many lines": ("a.json", text(ROWS[1], 2), Read(1, check=lambda log: values(log) == [2])),
+    "lists with names": ("a.json", text([["time", "red"], [0, 1], [0.5, 2]]), TWO),
+    "lists": (
+        "a.json",
+        b"[0, 1]\n[0.5, 2]\n",
+        Read(2, ("column 2",), check=lambda log: times(log, "column 2") == [0, 0.5]),
+    ),
+    "numbers": ("a.txt", b"[5, 6, 7]", Read(3, ("column 1",), note="a list of single values is read as one column")),
+    "columns with labels, as pandas writes them": (
+        "a.json",
+        text({"time": {"0": 0, "1": 0.5}, "red": {"0": 1, "1": 2}}),
+        TWO,
+    ),
+    "a split frame of pandas": (
+        "a.json",
+        text({"columns": ["time", "red"], "index": [0, 1], "data": [[0, 1], [0.5, 2]]}),
+        TWO,
+    ),
+    "rows in an object": (
+        "a.json",
+        text({"robot": {"wheel_mm": 56}, "data": ROWS}, 1),
+        Read(2, note="only the table 'data'", check=TWO.check),
+    ),
+    "columns in an object": (
+        "a.json",
+        text({"version": 1, "log": COLUMNS}),
+        Read(2, note="only the table 'log'", check=TWO.check),
+    ),
+    "words beside columns": (
+        "a.json",
+        text({"robot": "x", **COLUMNS}),
+        Read(2, note="without 'robot'", check=TWO.check),
+    ),
+    "a row with a list": ("a.json", text({"time": 0, "red": 1, "pixel": [1, 2, 3]}), Read(1)),
+    "empty cells": (
+        "a.json",
+        text({"time": [0, 0.5], "red": [None, 2]}),
+        Read(2, check=lambda log: values(log)[1] == 2),
+    ),
+    "a word among the numbers": (
+        "a.json",
+        text({"time": [0, 1, 2], "red": [1, "x", 3]}),
+        Read(3, left_out=1, note="(row 2)"),
+    ),
+    "rows and other values": (
+        "a.json",
+        text([*ROWS, 5, None], 1),
+        Read(2, left_out=2, note="2 values are not rows", check=TWO.check),
+    ),
+    "unequal columns": (
+        "a.json",
+        text({"a": [0, 1], "b": [2]}),
+        "different lengths: 'a' has 2 values, 'b' has 1 value",
+    ),
+    "two tables": ("a.json", text({"a": ROWS, "b": ROWS}), "has several tables: 'a', 'b'"),
+    "a single number": ("a.json", b"5", "is a single JSON value, 5, not a table"),
+    "a truncated document": ("a.json", text(ROWS, 2)[:-8], r"no rows: not complete JSON \(line 9\)"),
+    "a truncated document with a row on a line": (
+        "a.json",
+        b'{"data": [\n{"time": 0, "red": 1},\n{"tim',
+        Read(1, left_out=2),
+    ),
+    "an empty list": ("a.json", b"[]", "no rows"),
+    "an empty object": ("a.json", b"{}", "no rows"),
+    "empty columns": ("a.json", b'{"a": [], "b": []}', "no rows"),
+    "a line of more than a megabyte": ("a.json", text({"red": [1.25] * 300_000}), Read(300_000)),
+}
+
+
+@pytest.mark.parametrize(("name", "content", "expected"), CASES.values(), ids=CASES)
+def test_input(tmp_path: Path, name: str, content: bytes, expected: Read | str) -> None:
+    check_input(tmp_path / name, content, expected)
+
+
+@pytest.mark.parametrize("orient", ["records", "columns", "split", "list"])
+def test_as_pandas_reads_the_same(tmp_path: Path, orient: Any) -> None:
+    frame = pd.DataFrame({"time": [0.0, 0.25, 0.5], "red": [98.5, 12.0, 0.125], "blue": [1, 2, 3]})
+    written = text(frame.to_dict("list"), 2) if orient == "list" else frame.to_json(orient=orient, indent=2).encode()
+    read = pd.read_json(StringIO(written.decode()), orient="columns" if orient == "list" else orient)
+    (tmp_path / "a.json").write_bytes(written)
+    log = open_log(tmp_path / "a.json")
+    assert_array_equal(log.table.select(["time", "red", "blue"]).to_pandas(), read)

@@ -1,0 +1,84 @@
+"""Tables of one row, and numbers on one line."""
+
+from __future__ import annotations
+
+import os
+import threading
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from tests.logs.log_cases import Case, Read, check_input, times, values
+from tuisim.logs.reader import open_log
+
+BOTH = ("column 1", "column 2")
+
+
+def row(*cells: float) -> Read:
+    return Read(1, BOTH, note="no header", check=lambda log: tuple(values(log, name)[0] for name in BOTH) == cells)
+
+
+def column(*cells: float) -> Read:
+    return Read(
+        len(cells),
+        BOTH[:1],
+        note=f"the only line has {len(cells)} numbers: they are read as one column",
+        check=lambda log: values(log, BOTH[0]) == list(cells),
+    )
+
+
+CASES: dict[str, Case] = {
+    "one row with a heading": ("a.csv", b"time,red\n0.5,5\n", Read(1, check=lambda log: times(log) == [0.5])),
+    "one row of blanks with a heading": ("a.txt", b"time red\n0.5 5\n", Read(1)),
+    "one row without a heading": ("a.csv", b"0,5\n", row(0, 5)),
+    "one row of blanks": ("a.txt", b"0 5", row(0, 5)),
+    "one row of semicolons": ("a.txt", b"0;5,5\n", row(0, 5.5)),
+    "two rows of semicolons and decimal commas": (
+        "a.csv",
+        b"0;5,5\n1;6,5\n",
+        Read(2, BOTH[1:], check=lambda log: values(log, BOTH[1]) == [5.5, 6.5]),
+    ),
+    "one row with a word": ("a.csv", b"a,5\n", Read(1, BOTH[1:], check=lambda log: values(log, BOTH[1]) == [5])),
+    "one number": ("a.txt", b"5\n", Read(1, BOTH[:1])),
+    "one sample": ("a.txt", b"Colour: 5\n", Read(1, ("Colour",))),
+    "only a heading": ("a.txt", b"time red\n", "no rows"),
+    "a sentence": ("a.txt", b"the robot drove 5 m\n", "no rows"),
+    "numbers on one line": ("a.txt", b"5, 6, 7.5, 8\n", column(5, 6, 7.5, 8)),
+    "numbers with a comma at the end": ("a.csv", b"5,6,7.5,", column(5, 6, 7.5)),
+    "numbers between blanks": ("a.txt", b"5 -6  7e1\n", column(5, -6, 70)),
+    "numbers with decimal commas": ("a.csv", b"5;6,5;7\n", column(5, 6.5, 7)),
+    "numbers below a comment": ("a.txt", b"# calibration\n5, 6, 7\n", column(5, 6, 7)),
+    "two lines of numbers": ("a.csv", b"0,5,6\n1,7,8\n", Read(2, ("column 2", "column 3"))),
+}
+
+
+@pytest.mark.parametrize(("name", "content", "expected"), CASES.values(), ids=CASES)
+def test_input(tmp_path: Path, name: str, content: bytes, expected: Read | str) -> None:
+    check_input(tmp_path / name, content, expected)
+
+
+def test_as_pandas_reads_the_same(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text(", ".join(str(at * 0.3) for at in range(500)))
+    assert values(open_log(path), BOTH[0]) == pd.read_csv(path, header=None).T[0].tolist()
+    path.write_text("0.1,17.25")
+    cells = pd.read_csv(path, header=None).iloc[0]
+    assert [values(open_log(path), name) for name in BOTH] == [[cell] for cell in cells]
+
+
+def test_a_second_line_that_comes_later(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+
+    def write() -> None:
+        with pipe.open("wb") as handle:
+            for line in (b"0,5,6\n", b"1,7,8\n"):
+                handle.write(line)
+                handle.flush()
+
+    writer = threading.Thread(target=write)
+    writer.start()
+    log = open_log(pipe)
+    writer.join()
+    assert (log.rows, values(log, "column 3")) == (2, [6, 8])
