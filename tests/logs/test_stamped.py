@@ -68,6 +68,15 @@ CASES: dict[str, Case] = {
         b"04/07/2023 16:02:52 -> 5\n05/07/2023 16:02:52 -> 6\n",
         two(0, 86400, note="the dates in 'time' are read as day, month, year"),
     ),
+    "one day, so that its month is of no interest": (
+        "a.txt",
+        b"4/7/2023 9:59:52: 5\n4/7/2023 10:00:00: 6\n",
+        Read(
+            2,
+            (VALUE,),
+            check=lambda log: times(log, VALUE) == [0, 8] and not any("month" in said for said in log.notes),
+        ),
+    ),
     "as ctime writes it": ("a.txt", b"Fri Apr  7 16:02:52 2023: 5\nSat Apr  8 16:02:52 2023: 6\n", two(0, 86400)),
     "as logging writes it": (
         "a.log",
@@ -90,6 +99,15 @@ CASES: dict[str, Case] = {
         "a.csv",
         b"2023-04-07,16:02:52,5\n2023-04-07,16:02:53,6\n",
         two(57772, 57773, ("column 3",)),
+    ),
+    "a table of two times": (
+        "a.csv",
+        b"16:02:52 , 5 , 16:02:50\n16:02:53 , 6 , 16:02:51\n",
+        Read(
+            2,
+            (VALUE,),
+            check=lambda log: times(log, VALUE) == [57772, 57773] and log.table.column_names[2] == "column 3",
+        ),
     ),
     "a column of dates, day first": ("a.csv", b"time,red\n7/4/2023 9:02,5\n7/4/2023 9:03,6\n", two(0, 60, ("red",))),
     "dates as names of columns": (

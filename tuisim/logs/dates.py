@@ -29,11 +29,13 @@ _DATE_CELL = re.compile(rf"\s*{_DATE}\s*")
 
 _USUAL = r"^-?(?:\d+ days? )?\d+:\d{2}:\d{2}(?:\.\d+)?$|^\d{4}-\d{2}-\d{2}(?:$|[T ]\d{2}:\d{2}(?:$|[^,]*$))"
 """Texts that need no change."""
+_FROM_C_TIME = (
+    (r"^[A-Z][a-z]{2} ([A-Z][a-z]{2}) +(\d{1,2}) (\d{2}:\d{2}:\d{2}) (\d{4})$", r"\4-\1-\2 \3"),
+    *((rf"^(\d{{4}})-{name}-", rf"\1-{month:02}-") for month, name in enumerate(_MONTHS, 1)),
+)
 _REWRITTEN = (
     (r"^[\[(<] *| *[\])>]$", ""),
     (r"(:\d{2}),(\d+)", r"\1.\2"),
-    (r"^[A-Z][a-z]{2} ([A-Z][a-z]{2}) +(\d{1,2}) (\d{2}:\d{2}:\d{2}) (\d{4})$", r"\4-\1-\2 \3"),
-    *((rf"^(\d{{4}})-{name}-", rf"\1-{month:02}-") for month, name in enumerate(_MONTHS, 1)),
     (rf"^({_DATE}){_GAP}(\d{{1,2}}:)", r"\1 \2"),
     (r"^(\d{4})[/.](\d{1,2})[/.](\d{1,2})", r"\1-\2-\3"),
 )
@@ -58,13 +60,16 @@ def is_date(cell: str) -> bool:
 
 
 def in_usual_form(texts: Any) -> Any:
-    """Return texts with their dates as year-month-day and without brackets; what is no date may change, too.
+    """Return texts with their dates as year-month-day, without blanks and brackets; what is no date may change, too.
 
     Dates with the year at the end begin with the day, unless one of them can only begin with the month.
     """
+    texts = pc.utf8_trim_whitespace(texts)
     if not pc.any(pc.invert(pc.match_substring_regex(texts, _USUAL))).as_py():
         return texts
     texts = _replaced(texts, _REWRITTEN)
+    if pc.any(pc.match_substring_regex(texts, _C_TIME)).as_py():
+        texts = _replaced(texts, _FROM_C_TIME)
     first, second = _largest_parts(texts)
     order = r"\3-\1-\2" if first <= _LAST_MONTH < second else r"\3-\2-\1"
     return _replaced(texts, ((_YEAR_AT_END, order), *_PADDED))
@@ -72,11 +77,11 @@ def in_usual_form(texts: Any) -> Any:
 
 def order_is_guessed(texts: Any) -> bool:
     """Return whether there are several dates, each of which could begin with the day or with the month."""
-    texts = _replaced(texts, _REWRITTEN)
+    texts = _replaced(texts, _REWRITTEN[:1])
     first, second = _largest_parts(texts)
     if not 0 < max(first, second) <= _LAST_MONTH:
         return False
-    return int(pc.count_distinct(pc.replace_substring_regex(texts, r" .*", "")).as_py()) > 1
+    return int(pc.count_distinct(_replaced(texts, ((_YEAR_AT_END + ".*", r"\1-\2-\3"),))).as_py()) > 1
 
 
 def _replaced(texts: Any, changes: Sequence[tuple[str, str]]) -> Any:

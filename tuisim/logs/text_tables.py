@@ -137,11 +137,12 @@ def find_heading(lines: Sequence[tuple[int, str]], notes: Notes) -> Heading:
 
 
 def _names_without_heading(cells: Sequence[str]) -> list[str]:
-    """Return the names of columns from the cells of their first row: `time`, `date`, else numbers."""
-    return [
-        f"column {at}" if not is_moment(cell) else "date" if is_date(cell) else "time"
-        for at, cell in enumerate(cells, 1)
-    ]
+    """Return the names of columns from the cells of their first row: `date` and `time` once, else numbers."""
+    names: list[str] = []
+    for at, cell in enumerate(cells, 1):
+        name = "" if not is_moment(cell) else "date" if is_date(cell) else "time"
+        names.append(name if name and name not in names else f"column {at}")
+    return names
 
 
 def cells_of(line: str, separator: str) -> list[str]:
