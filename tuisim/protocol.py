@@ -421,6 +421,30 @@ class ReplyWanted(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class MotorRegisters:
+    """What a driver holds of a motor at the end of a run: what the program has written, and the speed."""
+
+    command: str = ""
+    """The last command; empty if it was `stop` or there was none."""
+    polarity: str = "normal"
+    speed_sp: float = 0.0
+    """In degrees per second."""
+    position_sp: float = 0.0
+    """In degrees."""
+    time_sp_s: float = 0.0
+    speed_dps: float | None = None
+    """In the browser simulator also of a wheel that stands; None if it is not known."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wheels(Message):
+    """The registers of the two wheel motors; it comes shortly before `Ended`, and is not stored."""
+
+    left: MotorRegisters = MotorRegisters()
+    right: MotorRegisters = MotorRegisters()
+
+
+@dataclass(frozen=True, slots=True)
 class Ended(Message):
     """The end of a run: its last event, and part of what is stored of it."""
 
@@ -466,7 +490,7 @@ class LineHistory(Message):
     lines: tuple[ExecutedLine, ...]
 
 
-_EVENTS = (Started, Paused, Resumed, Inspected, LineHistory, Spoke, InputWanted, ReplyWanted, Ended)
+_EVENTS = (Started, Paused, Resumed, Inspected, LineHistory, Spoke, InputWanted, ReplyWanted, Wheels, Ended)
 EVENTS: dict[str, type[Message]] = {event.kind: event for event in _EVENTS}
 
 

@@ -6,7 +6,7 @@ simulator. A profile is only data: the code that reads it never checks its name.
 To add a rule: add a field with a default at the end of `ProfileSpec`, and its source to `SOURCES` in `config.profiles`.
 To add a motor law: add it to `MotorLaw`; write the class of its motor and, if wheels move differently, of its drive in
 `core.drive`; add a case to `motor_of` and `drive_of` in `core.motion`; write its device in `shim.motor`, with a case in
-`motor_device` in `shim.brick`; add its source to `config.profiles`.
+`tacho_of` in `shim.brick`; add its source to `config.profiles`.
 """
 
 from __future__ import annotations

@@ -39,6 +39,7 @@ from tuisim.protocol import (
     Started,
     Stop,
     UserAction,
+    Wheels,
 )
 from tuisim.runs.process import (
     await_stack,
@@ -179,6 +180,8 @@ class RunHandle:
         self.paused = False
         self.waiting_for_input: str | None = None
         self.waiting_for_reply = False
+        self.wheels = Wheels()
+        """The registers of the wheel motors; known once the run has ended, unless it was killed."""
         self.telemetry, self.output = TelemetryView(self.folder), OutputView(self.folder)
         self._rest = b""
         self._unsent: list[Message] = []
@@ -250,6 +253,8 @@ class RunHandle:
                     self.waiting_for_input = prompt
                 case ReplyWanted():
                     self.waiting_for_reply = True
+                case Wheels():
+                    self.wheels = event
                 case Ended():
                     self._announced, self._announced_at = event, time.monotonic()
         self._enforce_stop()

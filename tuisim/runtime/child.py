@@ -194,6 +194,7 @@ class Child:
             wallclock.exit_process(0)
         self._telemetry.close()
         self._output.close()
+        self._channel.send(protocol.Wheels(*(read() for read in self._session.wheel_registers)))
         self._channel.send(
             protocol.Ended(end, self._sim.tick, self._session.now, exit_code, summary, error, error_line)
         )

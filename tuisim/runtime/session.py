@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from tuisim.core.field import Field
 from tuisim.core.profile import MS, NS_PER_S
 from tuisim.core.simulation import Simulation
-from tuisim.protocol import End, Message, Reply, ReplyWanted, Spoke
+from tuisim.protocol import End, Message, MotorRegisters, Reply, ReplyWanted, Spoke
 from tuisim.runs.records import Stream
 from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel
@@ -148,6 +148,7 @@ class Session:
         self._commands, self._commands_at = 0, -1
         self.replies = False
         """Whether the host answers with `messages`."""
+        self.wheel_registers: tuple[Callable[[], MotorRegisters], ...] = ()
         self.stop_reason: StopProgram | None = None
         self._stop_raised_at: int | None = None
         self.stop_raised_in: int | None = None

@@ -21,7 +21,7 @@ from tuisim.core.spec import (
 from tuisim.errors import NotSimulated
 from tuisim.shim.device_files import Brick, SimDevice, refuse
 from tuisim.shim.leds import LED_CLASS, Lights, led_name
-from tuisim.shim.motor import KINDS, BrowserTacho, TachoMotor
+from tuisim.shim.motor import KINDS, BrowserTacho, Tacho, TachoMotor
 from tuisim.shim.power import BATTERY, POWER_CLASS, Battery
 from tuisim.shim.sensors import DEVICES, ColorDevice, LegoSensor
 from tuisim.shim.session import Session
@@ -141,9 +141,12 @@ def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
     """
     brick, robot, sim = Brick(), session.sim.spec.robot, session.sim
     motors = zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)
+    tachos: dict[str, Tacho] = {}
     # Sorted by port, so that a class without an address finds the first port.
     for at, (motor, simulated) in enumerate(sorted(motors, key=lambda found: found[0].port)):
-        brick.add(MOTOR_CLASS, f"motor{at}", motor_device(session, simulated, motor.port, motor.kind))
+        tachos[motor.port] = tacho_of(session, simulated, motor.port, motor.kind)
+        brick.add(MOTOR_CLASS, f"motor{at}", tachos[motor.port].device())
+    session.wheel_registers = tuple(tachos[wheel.port].registers for wheel in robot.motors[:2])
     colors: dict[str, ColorDevice] = {}
     sensors: list[LegoSensor] = []
     for at, spec in enumerate(sorted(robot.sensors, key=lambda found: found.port)):
@@ -160,11 +163,11 @@ def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
     return brick, colors
 
 
-def motor_device(session: Session, motor: Motor, port: str, kind: str) -> SimDevice:
-    """Return the device of a motor, by its motor law."""
+def tacho_of(session: Session, motor: Motor, port: str, kind: str) -> Tacho:
+    """Return the driver of a motor, by its motor law."""
     match motor:
         case BrickMotor():
-            return TachoMotor(session, motor, port, kind).device()
+            return TachoMotor(session, motor, port, kind)
         case BrowserMotor():
-            return BrowserTacho(session, motor, port, kind).device()
+            return BrowserTacho(session, motor, port, kind)
     raise TypeError(f"no driver for {type(motor).__name__}")

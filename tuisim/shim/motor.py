@@ -11,6 +11,7 @@ from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.motors import MEDIUM_MAX_SPEED_DPS, POSITION, STOPPED, TIMED
 from tuisim.core.profile import MS
+from tuisim.protocol import MotorRegisters
 from tuisim.shim.device_files import NumberWriter, Reader, SimDevice, Writer, plain, refuse
 from tuisim.shim.session import Session
 
@@ -39,12 +40,17 @@ KINDS = {
 """By `MotorSpec.kind`."""
 
 
-class _Tacho(ABC):
+class Tacho(ABC):
     """One motor on an output port, such as `outB`; its kind is one of `KINDS`."""
 
     def __init__(self, session: Session, port: str, kind: str) -> None:
         self._session, self._port, self._kind = session, port, KINDS[kind]
         self._stop_action, self._polarity = "coast", "normal"
+        self._last_command = ""
+
+    @abstractmethod
+    def registers(self) -> MotorRegisters:
+        """Return what the program has written to the motor, and its speed."""
 
     @abstractmethod
     def device(self) -> SimDevice:
@@ -64,8 +70,12 @@ class _Tacho(ABC):
             "stop_action": lambda: self._stop_action,
             "polarity": lambda: self._polarity,
         }
-        writers |= {"stop_action": self._set_stop_action, "polarity": self._set_polarity, "command": self._command}
+        writers |= {"stop_action": self._set_stop_action, "polarity": self._set_polarity, "command": self._take_command}
         return SimDevice(self._session, common | readers, writers, None, numbers)
+
+    def _take_command(self, text: str) -> None:
+        self._command(text)
+        self._last_command = "" if text == "stop" else text
 
     @abstractmethod
     def _command(self, text: str) -> None: ...
@@ -81,7 +91,7 @@ class _Tacho(ABC):
         self._polarity = text
 
 
-class TachoMotor(_Tacho):
+class TachoMotor(Tacho):
     """One motor as the kernel driver exposes it."""
 
     def __init__(self, session: Session, motor: BrickMotor, port: str, kind: str = "large") -> None:
@@ -126,6 +136,11 @@ class TachoMotor(_Tacho):
         }
         numbers = {name: self._number_writer(name, *limits[name]) for name in self._numbers}
         return self._device(readers, {}, {**numbers, "position": self._set_position})
+
+    def registers(self) -> MotorRegisters:
+        """Return what the program has written to the motor, and its speed."""
+        speed, position, time_ms = (self._numbers[name] for name in ("speed_sp", "position_sp", "time_sp"))
+        return MotorRegisters(self._last_command, self._polarity, speed, position, time_ms / 1000, self._speed())
 
     def _number_writer(self, name: str, low: int, high: int) -> NumberWriter:
         numbers = self._numbers
@@ -268,7 +283,7 @@ WITHOUT_EFFECT = (
 """Attributes that are stored without effect."""
 
 
-class BrowserTacho(_Tacho):
+class BrowserTacho(Tacho):
     """One motor of the browser simulator: set points take effect at once, commands bypass the driver."""
 
     def __init__(self, session: Session, motor: BrowserMotor, port: str, kind: str = "large") -> None:
@@ -298,6 +313,13 @@ class BrowserTacho(_Tacho):
             "position": lambda value: setattr(motor, "position_deg", float(value)),
         }
         return self._device(readers, {"time_sp": self._set_time}, numbers)
+
+    def registers(self) -> MotorRegisters:
+        """Return what the program has written to the motor, and its speed."""
+        motor = self._motor
+        return MotorRegisters(
+            self._last_command, self._polarity, motor.speed_sp, self._position_sp, self._time_sp_s, motor.speed_dps
+        )
 
     def _command(self, text: str) -> None:
         motor = self._motor

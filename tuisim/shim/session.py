@@ -7,6 +7,7 @@ from typing import Any, Protocol
 
 from tuisim.core.field import Field
 from tuisim.core.simulation import Simulation
+from tuisim.protocol import MotorRegisters
 from tuisim.runs.records import Stream
 
 
@@ -18,6 +19,9 @@ class Session(Protocol):
     """Simulated ns since the start."""
     free: int
     """Above 0 while calls are free of charge: the library's own look-ups, constructors, the prelude."""
+
+    wheel_registers: tuple[Callable[[], MotorRegisters], ...]
+    """Read the registers of the left and the right wheel; set with the brick."""
 
     pressed: frozenset[str]
     """The pressed buttons of the brick, by their names in the library."""
