@@ -60,7 +60,7 @@ def ink(color: tuple[int, int, int], before: str = "", more: str = "") -> Probe:
 def moved_back(cell: Cell, words: str) -> bool:
     cell("%sim_magic -RW")
     cell(f"%sim_magic -W {words}")
-    return bool(cell("%sim_robot_state").result["x_mm"] == 150)
+    return bool(cell("roboSim.state").result["x_mm"] == 150)
 
 
 def another_simulator(cell: Cell, words: str) -> Any:

@@ -39,7 +39,7 @@ def check_that_all_is_well(cell: Cell) -> None:
     frame = cell("%sim_data").result
     assert list(frame[frame.run == 1].value) == [1.0]
     assert cell("%%sim_magic -RW\nprint('next')\n").out == "next\n"
-    assert cell("%sim_robot_state").result["x_mm"] == 700
+    assert cell("roboSim.state").result["x_mm"] == 700
 
 
 @pytest.mark.slow_cases("among its lines")

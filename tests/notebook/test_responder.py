@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 
 import pytest
@@ -65,14 +66,48 @@ def test_without_collaboration_there_are_no_messages(cell: Cell) -> None:
     assert cell(text).out == "PY::?\n{'messages': []}\n"
 
 
-def test_a_responder_may_have_its_old_name(cell: Cell) -> None:
-    cell("roboSim.pyresponder = str.upper")
-    text = "%%sim_magic -RWL\nfrom ev3dev2_glue import pyState\nprint('PY::hello')\nprint(pyState())"
-    assert cell(text).out == "PY::hello\n{'messages': ['HELLO']}\n"
+OLD_ANSWERS = [
+    ("None", "", []),
+    ("'0'", "PY RESPONSE\n0\n", []),
+    ("{'a': 1}", "PY RESPONSE\n{'a': 1}\n", []),
+    ("'JSON::[1, null]'", "PY RESPONSE\nJSON::[1, null]\n", [[1, None]]),
+    ("text", "PY RESPONSE\nPY::0\n", []),
+    ("' JSON::1'", "PY RESPONSE\n JSON::1\n", []),
+]
+"""What a `pyresponder` returns, what the cell shows of it, and what the program gets."""
+
+
+@pytest.mark.parametrize(("answer", "shown", "got"), OLD_ANSWERS, ids=[answer for answer, _, _ in OLD_ANSWERS])
+def test_under_its_old_name_a_responder_talks_in_texts(answer: str, shown: str, got: list[object], cell: Cell) -> None:
+    cell(f"heard = []\ndef respond(text):\n    heard.append(text)\n    return {answer}\nroboSim.pyresponder = respond")
+    text = "from ev3dev2_glue import pyState\nprint('PY::0')\nprint('other')\nprint(pyState()['messages'])"
+    assert cell(f"%%sim_magic -RW --collab\n{text}").out == f"PY::0\n{shown}other\n{got}\n"
+    assert cell("heard").result == ["PY::0"]
+
+
+def test_under_its_old_name_a_responder_gets_the_pixels_as_text(cell: Cell) -> None:
+    cell("heard = []\nroboSim.pyresponder = heard.append")
+    text = "print('image_data both')\nprint('IMG_DATA')\nprint('IMG_DATA left')"
+    cell(f"%%sim_magic_preloaded -b Grey_bands -x 1520 -RWHL\n{text}")
+    heard, records = cell("heard").result, cell("roboSim.raw_image_data").result
+    assert heard[0] == heard[1]
+    begin, _, sent = heard[0].partition("::")
+    sides = {record.split(" ")[0]: record.split(" ")[1] for record in records}
+    assert (begin, json.loads(sent)) == ("IMG_DATA", sides)
+    assert list(sides) == ["left", "right"]
+
+
+@pytest.mark.parametrize("names", [("responder", "pyresponder"), ("pyresponder", "responder")])
+def test_the_responder_that_was_set_last_answers(names: tuple[str, str], cell: Cell) -> None:
+    cell("first, second = [], []\n"
+         f"roboSim.{names[0]} = first.append\nroboSim.{names[1]} = second.append")  # fmt: skip
+    cell("%%sim_magic -RWL\nprint('PY::hello')")
+    assert cell("first, second").result == ([], ["PY::hello" if names[1] == "pyresponder" else "hello"])
+    assert cell(f"roboSim.{names[0]}").result is None
 
 
 def test_a_responder_sees_the_pixels_that_are_sent_to_it(cell: Cell) -> None:
-    cell("def dark(line):\n    frame = roboSim.image_data()\n    assert list(frame.side) == ['left'], line\n"
+    cell("def dark(line):\n    frame = roboSim.images()\n    assert list(frame.side) == ['left'], line\n"
          "    return int(eds.bw_image_data(frame).to_numpy().sum())\nroboSim.responder = dark")  # fmt: skip
     text = "from ev3dev2_glue import pyState\nprint('IMG_DATA left')\nprint(pyState()['messages'])"
     out = cell(f"%%sim_magic_preloaded -b Grey_bands -x 1520 -RWL\n{text}").out
@@ -106,6 +141,10 @@ MISTAKES = [
     ),
     pytest.param("'no function'", "roboSim.responder: must be a function, got 'no function'", id="no function"),
 ]
+OLD_MISTAKES = [
+    pytest.param("'no function'", "roboSim.pyresponder: must be a function, got 'no function'", id="no function"),
+    pytest.param("lambda text: 'JSON::{'", "roboSim.pyresponder: the answer is no JSON: ", id="no JSON"),
+]
 
 
 @pytest.mark.slow_cases("a key")
@@ -118,6 +157,14 @@ def test_a_wrong_responder_is_one_line(responder: str, told: str, cell: Cell) ->
     # Its last state stays in the cell, where the program ran at all.
     assert ("stopped · " in shown.plain) == (responder != "'no function'")
     assert cell("%%sim_magic -RW\nprint('next')").out == "next\n"
+
+
+@pytest.mark.parametrize(("responder", "told"), OLD_MISTAKES)
+def test_a_wrong_responder_of_the_old_name_is_one_line(responder: str, told: str, cell: Cell) -> None:
+    cell(f"roboSim.pyresponder = {responder}")
+    shown = cell("%%sim_magic -RWL --speed 1\nprint('PY::?')\nwhile True:\n    pass\n")
+    assert shown.err.startswith(f"tuisim: {told}")
+    assert shown.err.count("\n") == 1
 
 
 @pytest.mark.slow

@@ -20,7 +20,9 @@ from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError, counted
 from tuisim.notebook.display import Scene, Stage, start_record
-from tuisim.protocol import Answer, Reply
+from tuisim.notebook.image_log import IMAGE_DATA, SENT_DATA, ArrayReader, ImageLog, asked_side
+from tuisim.notebook.old_formats import sent_text
+from tuisim.protocol import Answer, Reply, Wheels
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.records import OutputRow, Stream, line_of
 from tuisim.runs.run_folder import StoredRun
@@ -44,12 +46,36 @@ ROWS_A_DRAWING = 10_000
 BYTES_IN_A_HURRY = 1 << 20
 """Output processed at once."""
 
-FOR_THE_NOTEBOOK = ("PY::", "IMG_DATA")
+TEXT_PREFIX = "PY::"
+FOR_THE_NOTEBOOK = (TEXT_PREFIX, SENT_DATA)
 """Prefixes of lines for the responder."""
+
+JSON_PREFIX = "JSON::"
+"""Begins an answer that the program gets, where answers are text."""
+
+RESPONSE_HEADING = "PY RESPONSE"
 
 Responder = Callable[[str], object]
 Result = TypeVar("Result")
 _SHOWN = {Stream.STDOUT, Stream.STDERR, Stream.SPEECH}
+
+
+@dataclass(frozen=True, slots=True)
+class Listener:
+    """The notebook's functions that hear a program and may answer it."""
+
+    responder: Responder | None = None
+    """Called with each line for the notebook, in collaborative mode."""
+    in_texts: bool = False
+    """Whether the responder talks as under the old simulator: it gets whole lines, with the pixels in them, and only
+    answers that begin with `JSON_PREFIX` reach the program."""
+    image_handler: Callable[[], object] | None = None
+    """Called after each logged pixel array; its answers are texts."""
+
+    @property
+    def answers(self) -> bool:
+        """Whether the program may get answers."""
+        return self.responder is not None or self.image_handler is not None
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,16 +90,17 @@ class CellRun:
     refresh_s: float
     traces: tuple[PenTrace, ...]
     """Pen traces of earlier runs on the mat."""
-    responder: Responder | None
-    """The function that answers the program, in collaborative mode."""
+    listener: Listener
+    images: ImageLog
+    """Gets the pixel arrays that the program logs."""
     quiet: bool
     """Whether speech is not shown either."""
 
 
-def run_cell(cell: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) -> StoredRun:
+def run_cell(cell: CellRun, stage: Stage, begun: Callable[[StoredRun, Wheels], None]) -> StoredRun:
     """Run a program and show it; block until it ends or the kernel is interrupted.
 
-    `begun` is called with the run as soon as its recording exists.
+    `begun` is called with the run as soon as its recording exists, and again at its end.
 
     Raises:
         ConfigError: the responder has returned what a program cannot get; the run has been stopped.
@@ -81,22 +108,23 @@ def run_cell(cell: CellRun, stage: Stage, begun: Callable[[StoredRun], None]) ->
     store = RunStore()
     paced = cell.speed > 0
     options = RunOptions(
-        live=paced, speed=cell.speed, asks_user=True, time_waits=not paced, replies=cell.responder is not None
+        live=paced, speed=cell.speed, asks_user=True, time_waits=not paced, replies=cell.listener.answers
     )
     with Interruption() as interruption, closing(start_run(cell.program, cell.spec, options, store)) as handle:
         run = store.load_run(handle.run_id)
-        begun(run)
+        begun(run, handle.wheels)
         screen = _Screen(cell, stage, run)
         try:
-            _Follower(cell, handle, screen, interruption).follow()
+            _Follower(cell, handle, screen, interruption, run).follow()
         except BaseException:  # whatever a responder raises, the program must not outlive the cell
+            cell.images.incomplete(run)
             handle.stop()
             handle.wait(STOP_WAIT_S)
             raise
         finally:
             handle.close()
             done = handle.stored()
-            begun(done)
+            begun(done, handle.wheels)
             # A user who has interrupted a flood of lines does not wait until all are read.
             hurry = interruption.count > 0
             screen.draw(end_text(done, hurry=hurry), ROWS_A_DRAWING if hurry else None)
@@ -156,8 +184,11 @@ class Interruption:
 
 
 class _Follower:
-    def __init__(self, cell: CellRun, handle: RunHandle, screen: _Screen, interruption: Interruption) -> None:
+    def __init__(
+        self, cell: CellRun, handle: RunHandle, screen: _Screen, interruption: Interruption, run: StoredRun
+    ) -> None:
         self._cell, self._handle, self._screen, self._interruption = cell, handle, screen, interruption
+        self._run, self._arrays = run, ArrayReader(run)
         self._said: list[Any] = []
         """Answers of the responder that have not been sent to the program."""
         self._stopping = False
@@ -186,15 +217,48 @@ class _Follower:
 
     def _relay(self) -> bool:
         """Show new output, pass lines to the responder, and return whether there is more."""
-        rows = self._handle.output.new_rows(ROWS_AT_ONCE)
-        show_rows(rows, quiet=self._cell.quiet)
-        if self._cell.responder is not None:
-            for row in rows:
-                if row.stream == Stream.STDOUT and row.text.startswith(FOR_THE_NOTEBOOK):
-                    heard = row.text.removeprefix(FOR_THE_NOTEBOOK[0])
-                    answer = self._interruption.call(partial(self._cell.responder, heard))
-                    self._said += [] if answer is None else [_message(answer)]
+        rows, shown = self._handle.output.new_rows(ROWS_AT_ONCE), 0
+        for at, row in enumerate(rows, 1):
+            asked, addressed = asked_side(row), self._is_addressed(row)
+            if asked or addressed:
+                # What the notebook's functions print belongs below the line that they hear.
+                show_rows(rows[shown:at], quiet=self._cell.quiet)
+                shown = at
+            if asked:
+                self._log_arrays(row)
+            if addressed:
+                self._hear(row)
+        show_rows(rows[shown:], quiet=self._cell.quiet)
         return len(rows) == ROWS_AT_ONCE
+
+    def _is_addressed(self, row: OutputRow) -> bool:
+        listens = self._cell.listener.responder is not None
+        return listens and row.stream == Stream.STDOUT and row.text.startswith(FOR_THE_NOTEBOOK)
+
+    def _log_arrays(self, row: OutputRow) -> None:
+        handler = self._cell.listener.image_handler
+        for array in self._arrays.arrays(row):
+            self._cell.images.add(self._run, array)
+            if handler is not None and not array.sent:
+                self._take_text("roboSim.live_image_handler", self._interruption.call(handler) or None)
+
+    def _hear(self, row: OutputRow) -> None:
+        listener, call = self._cell.listener, self._interruption.call
+        assert listener.responder is not None
+        if not listener.in_texts:
+            answer = call(partial(listener.responder, row.text.removeprefix(TEXT_PREFIX)))
+            self._said += [] if answer is None else [_message("roboSim.responder", answer)]
+            return
+        heard = sent_text(self._arrays.seen(row)) if row.text.startswith(SENT_DATA) else row.text
+        self._take_text("roboSim.pyresponder", call(partial(listener.responder, heard)))
+
+    def _take_text(self, who: str, answer: object) -> None:
+        """Show an answer of the old kind; keep what of it is for the program."""
+        if answer is None:
+            return
+        print(f"{RESPONSE_HEADING}\n{answer}")
+        if isinstance(answer, str) and answer.startswith(JSON_PREFIX):
+            self._said.append(_parsed(who, answer.removeprefix(JSON_PREFIX)))
 
     def _reply(self) -> None:
         handle = self._handle
@@ -212,6 +276,7 @@ class _Follower:
         while not (self._interruption.count and shown > ROWS_AFTER_INTERRUPT) and self._relay():
             shown += ROWS_AT_ONCE
         if self._handle.output.new_rows(1):
+            self._cell.images.incomplete(self._run)
             print("… and more lines, which are in the log", file=sys.stderr)
         ended = self._handle.ended
         if ended and ended.error and not any(row.stream == Stream.STDERR for row in self._handle.output.rows()):
@@ -246,12 +311,19 @@ class _Screen:
         self._stage.show(Scene(cell.spec, cell.files, cell.program.text, last, traces, self._samples), status)
 
 
+def shown_text(row: OutputRow) -> str:
+    """Return the line that a cell shows for a row."""
+    if row.text.startswith(IMAGE_DATA) and (side := asked_side(row)):
+        return f"{side} image data logged..."
+    return line_of(row)
+
+
 def show_rows(rows: Sequence[OutputRow], *, quiet: bool = False) -> None:
     """Print rows in order, batched by stream."""
     shown = _SHOWN - {Stream.SPEECH} if quiet else _SHOWN
     printed = (row for row in rows if row.stream in shown)
     for is_error, group in groupby(printed, key=lambda row: row.stream == Stream.STDERR):
-        print("\n".join(line_of(row) for row in group), file=sys.stderr if is_error else sys.stdout)
+        print("\n".join(shown_text(row) for row in group), file=sys.stderr if is_error else sys.stdout)
 
 
 def _plain(value: Any) -> Any:
@@ -261,12 +333,19 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"a {type(value).__name__}")
 
 
-def _message(answer: object) -> Any:
+def _parsed(who: str, text: str) -> Any:
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise ConfigError(f"the answer is no JSON: {error}", f'{JSON_PREFIX}{{"key": 1}} is one', key=who) from None
+
+
+def _message(who: str, answer: object) -> Any:
     try:
         return json.loads(json.dumps(answer, default=_plain))
     except (TypeError, ValueError, RecursionError) as error:
         hint = "text, numbers, True, None, lists and dicts; None means no answer"
-        raise ConfigError(f"the program cannot get {error}", hint, key="roboSim.responder") from None
+        raise ConfigError(f"the program cannot get {error}", hint, key=who) from None
 
 
 def _ask(prompt: str) -> str | None:

@@ -22,7 +22,7 @@ from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.sensors import mounted
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
-from tuisim.notebook.eds import arrays_at
+from tuisim.notebook.image_log import arrays_at
 from tuisim.runs.samples import Sample
 from tuisim.runs.views import TickRecord, instant_of
 from tuisim.source import source_lines

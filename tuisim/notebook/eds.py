@@ -5,8 +5,7 @@ The functions import what they need: a notebook loads this module even if it doe
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from tuisim.errors import LogError
@@ -15,12 +14,8 @@ if TYPE_CHECKING:
     import pandas as pd
     from PIL.Image import Image
 
-    from tuisim.core.field import Field
-    from tuisim.core.spec import ColorSensorSpec, NoiseSpec, RunSpec
+    from tuisim.notebook.image_log import LoggedArray
     from tuisim.runs.run_folder import StoredRun
-    from tuisim.runs.views import TickRecord
-
-_IMAGE_LINE = re.compile(r"(?:IMG_DATA|image_data):?\s+(left|right|both)\s*")
 
 IMAGE_COLUMNS = ("side", "vals", "clock", "run")
 """Columns of the frame of pixel arrays."""
@@ -42,44 +37,21 @@ def get_image_data_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
     Raises:
         LogError: a recording is damaged, or its mat is gone.
     """
+    from tuisim.notebook.image_log import logged_arrays
+
+    return image_frame(logged_arrays(run) for run in log)
+
+
+def image_frame(arrays: Iterable[Iterable[LoggedArray]]) -> pd.DataFrame:
+    """Return the pixel arrays of each run as `get_image_data_from_datalog` does."""
     import pandas as pd
 
     rows = [
-        (sensor.name, list(rgba), time_s, ordinal)
-        for ordinal, run in enumerate(log, 1)
-        for sensor, rgba, time_s in _logged_arrays(run)
+        (array.side, list(array.rgba), array.time_ns / 1e9, ordinal)
+        for ordinal, of_run in enumerate(arrays, 1)
+        for array in of_run
     ]
     return pd.DataFrame(rows, columns=list(IMAGE_COLUMNS))
-
-
-def _logged_arrays(run: StoredRun) -> Iterator[tuple[ColorSensorSpec, bytes, float]]:
-    from tuisim.runs.records import Stream
-    from tuisim.runs.run_folder import open_mat
-
-    field: Field | None = None
-    for row in run.output.rows():
-        asked = _IMAGE_LINE.fullmatch(row.text) if row.stream == Stream.STDOUT else None
-        if asked is None or row.tick >= run.telemetry.count:
-            continue
-        field = field or open_mat(run)
-        record = run.telemetry.record(row.tick)
-        for sensor, pixels in arrays_at(run.spec, record, run.noise_at(record), field):
-            if asked[1] in (sensor.name, "both"):
-                yield sensor, with_alpha(pixels), row.time_ns / 1e9
-
-
-def arrays_at(spec: RunSpec, record: TickRecord, noise: NoiseSpec, field: Field) -> list[tuple[ColorSensorSpec, bytes]]:
-    """Return the pixels under the colour sensors at a tick: RGB bytes, row by row."""
-    from tuisim.core.sensors.color import pixel_array
-    from tuisim.runs.views import instant_of
-
-    instant = instant_of(record, spec, noise)
-    return [(sensor, pixel_array(sensor, instant, field)) for sensor in spec.robot.color_sensors]
-
-
-def with_alpha(rgb: bytes) -> bytes:
-    """Return RGB bytes as RGBA, all opaque."""
-    return b"".join(rgb[at : at + 3] + b"\xff" for at in range(0, len(rgb), 3))
 
 
 def picture_of(vals: Iterable[int]) -> Image:
@@ -97,7 +69,12 @@ def picture_of(vals: Iterable[int]) -> Image:
     return Image.frombytes("RGBA", (side, side), data)
 
 
-def _check_logged(index: int, count: int) -> None:
+def check_logged(index: int, count: int) -> None:
+    """Check the index of a logged array, or of a pair of them.
+
+    Raises:
+        LogError: there are not so many.
+    """
     if not count:
         raise LogError("no pixel arrays are logged", "print('image_data both') in the program logs some")
     if not -count <= index < count:
@@ -115,7 +92,7 @@ def image_pair(frame: pd.DataFrame, index: int = -1) -> list[Image]:
         LogError: there is no such moment.
     """
     moments = frame[["run", "clock"]].drop_duplicates().to_numpy()
-    _check_logged(index, len(moments))
+    check_logged(index, len(moments))
     run, clock = moments[index]
     here = frame[(frame.run == run) & (frame.clock == clock)].drop_duplicates("side")
     return [picture_of(vals) for vals in here.vals]
@@ -138,7 +115,7 @@ def bw_image_data(
     import numpy as np
     import pandas as pd
 
-    _check_logged(index, len(frame))
+    check_logged(index, len(frame))
     grey = np.asarray(picture_of(frame.vals.iloc[index]).convert("L"))
     if crop is not None:
         left, top, right, bottom = crop

@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from tuisim.errors import ConfigError
-from tuisim.notebook import eds
+from tuisim.notebook import eds, old_formats
+from tuisim.notebook.image_log import ImageLog
+from tuisim.protocol import Wheels
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -20,7 +22,9 @@ if TYPE_CHECKING:
     from tuisim.config.mat_cache import FieldFiles
     from tuisim.config.options import Settings
     from tuisim.core.spec import RunSpec
+    from tuisim.notebook.cell_run import Listener
     from tuisim.notebook.display import Scene, Stage
+    from tuisim.notebook.image_log import LoggedArray
     from tuisim.notebook.magic_line import MagicWords
     from tuisim.runs.run_folder import StoredRun
     from tuisim.source import Program
@@ -46,11 +50,17 @@ class Lab:
     def __init__(self) -> None:
         self.autorun = False
         """Whether executing a program cell also runs its program, as with `-R`."""
-        self.responder: Callable[[str], object] | None = None
-        """In collaborative mode: called with each line that a program prints for the notebook, without `PY::`.
+        self.live_image_handler: Callable[[int], object] | None = None
+        """The old simulator's: called with the number of records after each pixel array that a program logs.
 
-        A return value other than None is an answer; `pyState()` in the program returns all of them.
+        A true answer is treated like one of `pyresponder`.
         """
+        self._responder: Callable[[str], object] | None = None
+        self._in_texts = False
+        """Whether the responder is a `pyresponder`."""
+        self._images = ImageLog()
+        self._wheels = Wheels()
+        """Of the last run."""
         self._persistent: Mapping[str, Any] = {}
         self._program: Program | None = None
         self._runs: list[StoredRun] = []
@@ -60,13 +70,30 @@ class Lab:
         """Pen traces on the mat, until it is cleared or replaced."""
 
     @property
+    def responder(self) -> Callable[[str], object] | None:
+        """In collaborative mode: called with each line that a program prints for the notebook, without `PY::`.
+
+        A return value other than None is an answer; `pyState()` in the program returns all of them.
+        It replaces a `pyresponder`.
+        """
+        return None if self._in_texts else self._responder
+
+    @responder.setter
+    def responder(self, responder: Callable[[str], object] | None) -> None:
+        self._responder, self._in_texts = responder, False
+
+    @property
     def pyresponder(self) -> Callable[[str], object] | None:
-        """Alias of `responder`, for the old simulator's name."""
-        return self.responder
+        """The old simulator's responder: called with whole lines, `PY::` included, or with `IMG_DATA::` and JSON.
+
+        Its answers are shown below a heading; the program gets the JSON of those that begin with `JSON::`.
+        It replaces a `responder`.
+        """
+        return self._responder if self._in_texts else None
 
     @pyresponder.setter
     def pyresponder(self, responder: Callable[[str], object] | None) -> None:
-        self.responder = responder
+        self._responder, self._in_texts = responder, True
 
     # The log
 
@@ -78,14 +105,61 @@ class Lab:
     def clear_datalog(self) -> None:
         """Discard the log; the runs stay in the store."""
         self._runs.clear()
+        self._images.clear()
 
     def data(self) -> pd.DataFrame:
         """Return the samples of all runs since the log was cleared."""
         return eds.get_dataframe_from_datalog(self._runs)
 
-    def image_data(self) -> pd.DataFrame:
-        """Return the pixel arrays that were logged since the log was cleared."""
-        return eds.get_image_data_from_datalog(self._runs)
+    def images(self) -> pd.DataFrame:
+        """Return the pixel arrays that were logged since the log was cleared, as numbers; see `eds`."""
+        return eds.image_frame(self._images.of(self._runs))
+
+    def logged_arrays(self) -> list[list[LoggedArray]]:
+        """Return the pixel arrays that `raw_image_data` has, run by run."""
+        return [[array for array in of_run if not array.sent] for of_run in self._images.of(self._runs)]
+
+    # The log under the old simulator's names
+
+    @property
+    def raw_image_data(self) -> list[str]:
+        """Each logged pixel array as `SIDE r,g,b,a,… CLOCK`, with the clock in 1/30 s."""
+        return [old_formats.record_text(array) for of_run in self.logged_arrays() for array in of_run]
+
+    def image_data(self, datatype: str = "dataframe", mode: str = "rgb") -> pd.DataFrame | list[str]:
+        """Return the logged pixel arrays as a frame of texts, or as `raw_image_data`.
+
+        Args:
+            datatype: `dataframe` or `raw`.
+            mode: Which numbers the frame has, as in `process_raw_image_data`.
+
+        Raises:
+            ConfigError: there is no such type or mode.
+        """
+        if datatype not in ("dataframe", "raw"):
+            raise ConfigError(f"no such type {datatype!r}", "dataframe, raw", key="datatype")
+        return self.raw_image_data if datatype == "raw" else old_formats.image_frame(self.raw_image_data, mode)
+
+    process_raw_image_data = staticmethod(old_formats.process_raw_image_data)
+
+    def robot_state(self) -> dict[str, Any]:
+        """Return the old simulator's dictionary of the robot's state, see `old_formats.robot_state`."""
+        from tuisim.config.mat_cache import open_field
+        from tuisim.notebook.display import start_record
+        from tuisim.runs.run_folder import field_files, open_mat
+
+        run = self._last
+        record = run.telemetry.last() if run else None
+        if run is None or record is None:
+            spec = self.spec
+            field, highest_deg = open_field(field_files(spec)), spec.world.start.heading_deg
+            return old_formats.robot_state(
+                spec, start_record(spec), spec.world.noise, field, highest_deg, self._wheels
+            )  # fmt: skip
+        highest_deg = float(run.telemetry.array()["heading_deg"].max())
+        return old_formats.robot_state(
+            run.spec, record, run.noise_at(record), open_mat(run), highest_deg, self._wheels
+        )  # fmt: skip
 
     # The world
 
@@ -138,10 +212,9 @@ class Lab:
         runs = plan.settings.autorun or (self.autorun and text is not None)
         if runs and plan.program is None:
             raise ConfigError("there is no program to run", "write one in a cell below %%sim_magic_preloaded", key="-R")
-        if words.collaborative and not (self.responder is None or callable(self.responder)):
-            raise ConfigError(f"must be a function, got {self.responder!r}", key="roboSim.responder")
+        listener = self._listener(words.collaborative)
         if plan.spec != self._spec or words.move_back:
-            self._last = None
+            self._last, self._wheels = None, Wheels()
         before = self._spec.world if self._spec else plan.spec.world
         same_mat = (before.background, before.background_fit) == (
             plan.spec.world.background, plan.spec.world.background_fit)  # fmt: skip
@@ -149,7 +222,7 @@ class Lab:
         self._persistent, self._program, self._spec = plan.persistent, plan.program, plan.spec
         stage = Stage(plan.settings)
         if runs:
-            self._run(plan, stage, words)
+            self._run(plan, stage, words, listener)
         else:
             scene, status = self._scene(plan)
             stage.show(scene, f"nothing is running · {status}" if words.stop else status)
@@ -174,20 +247,37 @@ class Lab:
             program = Program("cell", "\n" + text, settings.preload or prelude)
         return _Plan(persistent, settings, spec, field_files(spec), program)
 
-    def _run(self, plan: _Plan, stage: Stage, words: MagicWords) -> None:
+    def _listener(self, collaborative: bool) -> Listener:
+        from tuisim.notebook.cell_run import Listener
+
+        name = "pyresponder" if self._in_texts else "responder"
+        responder, handler = self._responder if collaborative else None, self.live_image_handler
+        for key, function in ((name, responder), ("live_image_handler", handler)):
+            if not (function is None or callable(function)):
+                raise ConfigError(f"must be a function, got {function!r}", key=f"roboSim.{key}")
+
+        def handled() -> object:
+            return handler(sum(map(len, self.logged_arrays()))) if handler is not None else None
+
+        return Listener(responder, self._in_texts, None if handler is None else handled)
+
+    def _run(self, plan: _Plan, stage: Stage, words: MagicWords, listener: Listener) -> None:
         from tuisim.charts.world_image import pen_trace
         from tuisim.notebook.cell_run import CellRun, run_cell
 
         assert plan.program is not None
-        responder = self.responder if words.collaborative else None
         cell = CellRun(
-            plan.program, plan.spec, plan.files, plan.settings.speed or 0.0, words.refresh_s, self._traces, responder,
-            plan.settings.quiet,
+            plan.program, plan.spec, plan.files, plan.settings.speed or 0.0, words.refresh_s, self._traces, listener,
+            self._images, plan.settings.quiet,
         )  # fmt: skip
 
-        def note(run: StoredRun) -> None:
+        def note(run: StoredRun, wheels: Wheels) -> None:
+            self._wheels = wheels
             # The run is in the log from its start, for a responder, which may have started runs itself.
-            places = [at for at, known in enumerate(self._runs) if known.id == run.id] or [len(self._runs)]
+            places = [at for at, known in enumerate(self._runs) if known.id == run.id]
+            if not places:
+                self._images.begin(run)
+                places = [len(self._runs)]
             self._last, self._runs[places[0] : places[0] + 1] = run, [run]
 
         try:
@@ -199,9 +289,9 @@ class Lab:
 
     def _scene(self, plan: _Plan) -> tuple[Scene, str]:
         """Return the scene while nothing runs, and its status line."""
-        from tuisim.notebook.cell_run import end_text
+        from tuisim.notebook.cell_run import end_text, shown_text
         from tuisim.notebook.display import Scene, start_record
-        from tuisim.runs.records import TEXT_STREAMS, line_of
+        from tuisim.runs.records import TEXT_STREAMS
         from tuisim.runs.samples import samples_of
 
         text, start = plan.program.text if plan.program else "", start_record(plan.spec)
@@ -209,7 +299,7 @@ class Lab:
             return Scene(plan.spec, plan.files, text, start, self._traces, printed=()), (
                 "ready: -R runs the program" if text else "ready")  # fmt: skip
         rows = self._last.output.all_rows()
-        printed = [line_of(row) for row in rows if row.stream in TEXT_STREAMS]
+        printed = [shown_text(row) for row in rows if row.stream in TEXT_STREAMS]
         last, samples = self._last.telemetry.last() or start, list(samples_of(rows))
         return Scene(plan.spec, plan.files, text, last, self._traces, samples, printed), end_text(self._last)
 

@@ -67,7 +67,7 @@ def _command(magic: str) -> Command:
                metavar="S", type=Value(lambda text: refresh(text, "-F")), group=group,
                help="Seconds between two redraws."),
         option("-L", "--collab", "collaborative", is_flag=True, group=group,
-               help="`roboSim.responder` answers the program."),
+               help="`roboSim.pyresponder` or `.responder` answers the program."),
     ]  # fmt: skip
     return Command(f"%{magic}", params=params, add_help_option=False)
 
@@ -120,8 +120,9 @@ def _log_command(magic: str) -> Command:
             option("-i", "--index", **index, help="Which image, from 0; -1 is the last."),
             option("-r", "--random", is_flag=True, help="Any image."),
             option("-t", "--threshold", type=_whole("--threshold", 0, 255), default=127, metavar="N",
-                   help="The lightest grey that counts as dark (127)."),
-            option("-c", "--crop", type=Value(_corners), metavar="L,T,R,B", help="Part of the image, in pixels."),
+                   help="The lightest grey that becomes black (127)."),
+            option("-c", "--crop", type=Value(_corners), metavar="L,T,R,B",
+                   help="Part of the image, in pixels (3,3,17,17)."),
             option("-n", "--nocrop", is_flag=True, help="The whole image (unless --crop is given)."),
             option("-d", "--digitclass", is_flag=True, hidden=True),
         ]  # fmt: skip

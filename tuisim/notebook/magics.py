@@ -10,14 +10,15 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from IPython.core.interactiveshell import InteractiveShell
-from IPython.display import display
 
 from tuisim.errors import ConfigError, TuisimError
-from tuisim.notebook import eds
+from tuisim.notebook import eds, old_formats
 from tuisim.notebook.lab import Lab, roboSim
 from tuisim.source import PRELUDE_TEXTS, PRELUDES
 
 if TYPE_CHECKING:
+    from PIL.Image import Image
+
     from tuisim.config.command_line import Arguments
 
 Handler = Callable[[str, str | None], Any]
@@ -88,27 +89,21 @@ def _sim_data(lab: Lab, found: Arguments) -> Any:
     return lab.clear_datalog() if found.clear else lab.data()
 
 
-def _sim_robot_state(lab: Lab, found: Arguments) -> dict[str, Any]:
-    from tuisim.notebook.display import table_bundle
-
-    state = lab.state
-    display(table_bundle("Robot", [(name, str(value)) for name, value in state.items()]), raw=True)
-    return state
+def _sim_robot_state(lab: Lab, found: Arguments) -> old_formats.RobotState:
+    return old_formats.RobotState(lab.robot_state)
 
 
-def _sim_image_pair(lab: Lab, found: Arguments) -> None:
-    from tuisim.notebook.display import picture_bundle
-
-    for picture in eds.image_pair(lab.image_data(), found.index):
-        display(picture_bundle(picture.resize((160, 160), 0), "sensor"), raw=True)
+def _sim_image_pair(lab: Lab, found: Arguments) -> old_formats.ImagePair:
+    return old_formats.image_pair(lab.logged_arrays(), found.index)
 
 
-def _sim_bw_image_data(lab: Lab, found: Arguments) -> Any:
+def _sim_bw_image_data(lab: Lab, found: Arguments) -> Image:
     from random import randrange
 
-    frame = lab.image_data()
-    index = randrange(len(frame)) if found.random and len(frame) else found.index
-    return eds.bw_image_data(frame, index, found.threshold, None if found.nocrop else found.crop)
+    arrays = [array for of_run in lab.logged_arrays() for array in of_run]
+    index = randrange(len(arrays)) if found.random and arrays else found.index
+    crop = found.crop or (None if found.nocrop else old_formats.FOCUS_PX)
+    return old_formats.bw_picture(arrays, index, found.threshold, crop)
 
 
 LOG_MAGICS: Mapping[str, Log] = {

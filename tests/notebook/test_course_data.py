@@ -1,0 +1,195 @@
+"""A notebook with the data cells of a course's chapters 4, 5 and 8, in the kernel that `tuisim kernel install` adds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from nbformat import NotebookNode
+
+from tests.notebook.lesson import execute, pictures, result, stream
+
+LOAD = "from nbev3devsim.load_nbev3devwidget import roboSim, eds, tqdma\n%load_ext nbev3devsim"
+
+HELPERS = """\
+import json
+import numpy as np
+import pandas as pd
+from PIL import Image
+
+def pixels(frame, index, mode='RGB'):
+    values = [int(value) for value in frame.iloc[index]['vals'].split(',')]
+    if mode == 'L':
+        picture = Image.new('L', (20, 20))
+        picture.putdata(values)
+        return picture
+    picture = Image.new('RGB', (20, 20))
+    picture.putdata([tuple(values[at:at + 3]) for at in range(0, len(values), 3)])
+    return picture
+
+def zoom(picture):
+    return picture.resize((picture.width * 10, picture.height * 10))
+
+def features(picture):
+    return np.array(picture.resize((28, 28)).convert('L')).reshape(1, -1) / 255
+"""
+"""What a course's helper package does with frames and pictures, written anew."""
+
+DRIVE = """\
+%%sim_magic_preloaded -b Grey_bands -x 590 -pRWH --profile nbev3devsim -N 2
+import time
+print('image_data left')
+tank_drive.on(SpeedPercent(50), SpeedPercent(50))
+for i in range(2):
+    time.sleep(0.5)
+    print('image_data both')
+print('image_data right')
+"""
+
+TALK = """\
+%%sim_magic_preloaded --collab -RWH -b Grey_bands -x 1520
+import ev3dev2_glue as glue
+print('PY::hello')
+print('PY::0')
+print('IMG_DATA')
+for message in glue.pyState()['messages']:
+    print('got', message)
+"""
+
+SCAN = """\
+%%sim_magic_preloaded -RWH
+from ev3dev2_glue import pyState
+print('image_data both')
+print(pyState())
+"""
+
+CELLS = {
+    "load": LOAD,
+    "helpers": HELPERS,
+    # Chapter 4 and 8: what is under the sensors.
+    "drive": DRIVE,
+    "raw": "raw = roboSim.raw_image_data\n"
+    "[(side, len(vals.split(',')), clock) for side, vals, clock in (text.split(' ') for text in raw)]",
+    "frame": "df = roboSim.image_data()\n"
+    "print(list(df.columns), list(df['side']), list(df['clock']), {type(text).__name__ for text in df['vals']})",
+    "modes": "[len(roboSim.image_data(mode=mode)['vals'].iloc[-1].split(','))"
+    " for mode in ('rgb', 'reflected', 'greyscale', 'bw')]",
+    "same": "roboSim.image_data(datatype='raw') == roboSim.raw_image_data",
+    "processed": "one = raw[0].split(' ')[1]\n"
+    "(roboSim.process_raw_image_data(one) == df['vals'][0],"
+    " roboSim.process_raw_image_data(one, mode='bw', to_str=False)[:3])",
+    "picture": "zoom(pixels(df, -1))",
+    "grey picture": "zoom(pixels(roboSim.image_data(mode='greyscale'), 0, 'L'))",
+    "state": "robot = %sim_robot_state\nrobot.update()\nprint(json.dumps(robot.state))",
+    "shown state": "robot",
+    "light": "pd.DataFrame([{side: robot.state[f'{side}_light_pc'] for side in ('left', 'right')}])",
+    "bw": "bw = %sim_bw_image_data --index -1 --threshold 127\nzoom(bw)",
+    "bw kind": "(isinstance(bw, Image.Image), bw.mode, bw.size, features(bw).shape)",
+    "bw parts": "whole = %sim_bw_image_data -i 0 -t 200 --nocrop\npart = %sim_bw_image_data -c 4,4,16,12 --random\n"
+    "(whole.size, part.size)",
+    "pair": "left, right = %sim_image_pair -p -1\n"
+    "[(isinstance(picture, Image.Image), picture.mode, picture.size) for picture in (left, right)]",
+    "shown pair": "%sim_image_pair",
+    "first pair": "left, right = %sim_image_pair --pairindex 0\nzoom(left)",
+    "bar": "total = 0\nfor index in tqdma(range(len(df))):\n    total += np.array(pixels(df, index)).shape[0]\ntotal",
+    # Chapter 5 and 8: answers of the notebook.
+    "responder": "heard = []\ndef respond(text):\n    heard.append(text)\n"
+    "    if text.startswith('IMG_DATA'):\n        sides = json.loads(text.split('::', 1)[1])\n"
+    "        parts = {side: roboSim.process_raw_image_data(vals, 'bw', False) for side, vals in sides.items()}\n"
+    "        return 'JSON::' + json.dumps({side: part.count('0') for side, part in parts.items()})\n"
+    "    return text\nroboSim.pyresponder = respond",
+    "talk": TALK,
+    "heard": "[text[:13] for text in heard]",
+    "clear": "roboSim.clear_datalog()\n(roboSim.raw_image_data, len(roboSim.image_data()))",
+    "handler": "def handle(count):\n    left_right = roboSim.image_data(mode='greyscale')\n"
+    "    return 'JSON::' + json.dumps({'count': count, 'rows': len(left_right)}) if count == 2 else None\n"
+    "roboSim.live_image_handler = handle",
+    "scan": SCAN,
+    "ours": "frame = roboSim.images()\n"
+    "(list(frame.columns), type(frame.vals[0][0]).__name__, roboSim.state['profile'])",
+    "our picture": "zoom(eds.image_pair(frame)[0])",
+}
+
+
+@pytest.fixture(scope="module")
+def done(course_kernel: str) -> Mapping[str, NotebookNode]:
+    return execute(CELLS, course_kernel)
+
+
+pytestmark = pytest.mark.slow
+
+
+def value(cell: NotebookNode) -> Any:
+    return eval(result(cell), {})
+
+
+def test_no_cell_complains(done: Mapping[str, NotebookNode]) -> None:
+    assert {name: stream(cell, "stderr") for name, cell in done.items() if stream(cell, "stderr")} == {}
+
+
+def test_records_are_texts_with_the_old_clock(done: Mapping[str, NotebookNode]) -> None:
+    assert stream(done["drive"]).splitlines() == [
+        f"{side} image data logged..." for side in ("left", "both", "both", "right")
+    ]
+    sides, clocks = ["left", *["left", "right"] * 2, "right"], ["0", "15", "15", "30", "30", "30"]
+    assert value(done["raw"]) == [(side, 1600, clock) for side, clock in zip(sides, clocks, strict=True)]
+    assert stream(done["frame"]).strip() == f"{['side', 'vals', 'clock']} {sides} {clocks} {{'str'}}"
+    assert value(done["modes"]) == [1200, 400, 400, 400]
+    assert value(done["same"]) is True
+    assert value(done["processed"]) == (True, ["1", "1", "1"])
+
+
+def test_the_state_has_the_old_units(done: Mapping[str, NotebookNode]) -> None:
+    state = eval(stream(done["state"]).replace("true", "True"), {})
+    assert (state["_x"], state["_y"], state["_angle"]) == (590, 1143 - 500, 0)
+    # 30 ticks up to 525 °/s, 28 °/s more in each.
+    assert state["leftWheel"] == state["rightWheel"]
+    assert state["leftWheel"] == state["leftWheel"] | {"speed_sp": 525, "command": "run-forever", "state": "running"}
+    way_mm = state["leftWheel"]["pos"] / 360 * math.pi * 56
+    assert state["x"] - state["_x"] == pytest.approx(way_mm)
+    assert (state["penDown"], state["_sensorNoise"], state["_wheelNoise"]) == (True, 2, 0)
+    assert state["left_light_raw"] == state["sensor1"]
+    assert "leftWheel" in result(done["shown state"])
+    assert "left" in result(done["light"])
+
+
+def test_pictures_are_of_the_sensors_disc(done: Mapping[str, NotebookNode], tmp_path: Path) -> None:
+    assert value(done["bw kind"]) == (True, "1", (14, 14), (1, 784))
+    assert value(done["bw parts"]) == ((20, 20), (12, 8))
+    assert value(done["pair"]) == [(True, "L", (14, 14))] * 2
+    shown = ("picture", "grey picture", "bw", "shown pair", "first pair", "our picture")
+    sizes = {}
+    for name in shown:
+        (picture,) = pictures(done[name])
+        picture.save(tmp_path / f"{name}.png")
+        sizes[name] = picture.size
+    assert sizes == dict(zip(shown, [(200, 200), (200, 200), (140, 140), (290, 140), (140, 140), (200, 200)],
+                             strict=True))  # fmt: skip
+    corner, middle = (np.asarray(pictures(done["picture"])[0])[at, at] for at in (2, 100))
+    assert corner.tolist() == [245, 226, 225]
+    assert np.ptp(middle) <= 8
+
+
+def test_answers_reach_the_program_as_json_only(done: Mapping[str, NotebookNode]) -> None:
+    assert stream(done["talk"]).splitlines() == [
+        "PY::hello", "PY RESPONSE", "PY::hello", "PY::0", "PY RESPONSE", "PY::0",
+        "IMG_DATA", "PY RESPONSE", 'JSON::{"left": 305, "right": 305}', "got {'left': 305, 'right': 305}",
+    ]  # fmt: skip
+    assert value(done["heard"]) == ["PY::hello", "PY::0", 'IMG_DATA::{"l']
+    assert value(done["clear"]) == ([], 0)
+    assert stream(done["scan"]).splitlines() == [
+        "both image data logged...", "PY RESPONSE", 'JSON::{"count": 2, "rows": 2}',
+        "{'messages': [{'count': 2, 'rows': 2}]}",
+    ]  # fmt: skip
+
+
+def test_the_bar_counts_all(done: Mapping[str, NotebookNode]) -> None:
+    assert value(done["bar"]) == 120
+
+
+def test_ours_stay_reachable(done: Mapping[str, NotebookNode]) -> None:
+    assert value(done["ours"]) == (["side", "vals", "clock", "run"], "int", "nbev3devsim")

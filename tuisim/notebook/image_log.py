@@ -1,0 +1,149 @@
+"""The pixel arrays that programs log with `print('image_data left|right|both')`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from tuisim.runs.records import Stream
+
+if TYPE_CHECKING:
+    from tuisim.core.field import Field
+    from tuisim.core.spec import ColorSensorSpec, NoiseSpec, RunSpec
+    from tuisim.runs.records import OutputRow
+    from tuisim.runs.run_folder import StoredRun
+    from tuisim.runs.views import TickRecord
+
+IMAGE_DATA, SENT_DATA = "image_data", "IMG_DATA"
+"""Begin of a line that logs pixel arrays, and of one that also sends them to a responder."""
+
+_LINE = re.compile(rf"({IMAGE_DATA}|{SENT_DATA})(?::?\s+(left|right|both))?\s*")
+
+
+@dataclass(frozen=True, slots=True)
+class LoggedArray:
+    """The pixels under one colour sensor, as a program has logged them."""
+
+    side: str
+    """Name of the sensor."""
+    rgba: bytes
+    """Row by row, four bytes a pixel."""
+    time_ns: int
+    sent: bool
+    """Whether the line was for a responder, which the old simulator did not log."""
+
+
+def asked_side(row: OutputRow) -> str:
+    """Return the side of the pixel arrays that a line asks for: left, right or both; empty if it asks for none."""
+    # Most lines are told apart without the slower search.
+    if row.stream != Stream.STDOUT or not row.text.startswith((IMAGE_DATA, SENT_DATA)):
+        return ""
+    found = _LINE.fullmatch(row.text)
+    if found is None:
+        return ""
+    return found[2] or ("both" if found[1] == SENT_DATA else "")
+
+
+def arrays_at(spec: RunSpec, record: TickRecord, noise: NoiseSpec, field: Field) -> list[tuple[ColorSensorSpec, bytes]]:
+    """Return the pixels under the colour sensors at a tick: RGB bytes, row by row."""
+    from tuisim.core.sensors.color import pixel_array
+    from tuisim.runs.views import instant_of
+
+    instant = instant_of(record, spec, noise)
+    return [(sensor, pixel_array(sensor, instant, field)) for sensor in spec.robot.color_sensors]
+
+
+def with_alpha(rgb: bytes) -> bytes:
+    """Return RGB bytes as RGBA, all opaque."""
+    return b"".join(rgb[at : at + 3] + b"\xff" for at in range(0, len(rgb), 3))
+
+
+class ArrayReader:
+    """Computes pixel arrays from the recording of a run, which may still be active."""
+
+    def __init__(self, run: StoredRun) -> None:
+        self._run = run
+        self._field: Field | None = None
+
+    def arrays(self, row: OutputRow) -> list[LoggedArray]:
+        """Return the arrays that a line logs.
+
+        Raises:
+            LogError: the recording is damaged, or its mat is gone.
+        """
+        side = asked_side(row)
+        sent = row.text.startswith(SENT_DATA)
+        return [
+            LoggedArray(name, rgba, row.time_ns, sent)
+            for name, rgba in (self.seen(row) if side else {}).items()
+            if side in (name, "both")
+        ]
+
+    def seen(self, row: OutputRow) -> dict[str, bytes]:
+        """Return RGBA bytes by sensor, from the tick of a row; empty if that is lost.
+
+        Raises:
+            LogError: as for `arrays`.
+        """
+        from tuisim.runs.run_folder import open_mat
+
+        run = self._run
+        if row.tick >= run.telemetry.count:
+            return {}
+        self._field = self._field or open_mat(run)
+        record = run.telemetry.record(row.tick)
+        found = arrays_at(run.spec, record, run.noise_at(record), self._field)
+        return {sensor.name: with_alpha(pixels) for sensor, pixels in found}
+
+
+def logged_arrays(run: StoredRun) -> list[LoggedArray]:
+    """Return all pixel arrays that a run has logged.
+
+    Raises:
+        LogError: the recording is damaged, or its mat is gone.
+    """
+    reader = ArrayReader(run)
+    return [array for row in run.output.rows() for array in reader.arrays(row)]
+
+
+class ImageLog:
+    """The pixel arrays of a notebook's runs, each computed once.
+
+    Those of the run in progress are added as its lines are heard: a function of the notebook that
+    hears a line finds what was logged up to this line, however far the program is by then.
+    """
+
+    def __init__(self) -> None:
+        self._arrays: dict[str, list[LoggedArray]] = {}
+
+    def begin(self, run: StoredRun) -> None:
+        """Start to add the arrays of a run; without effect if that has begun."""
+        self._arrays.setdefault(run.id, [])
+
+    def add(self, run: StoredRun, array: LoggedArray) -> None:
+        """Add an array of a run that has begun."""
+        self._arrays[run.id].append(array)
+
+    def incomplete(self, run: StoredRun) -> None:
+        """Note that not all lines of a run were heard: its arrays are computed when they are asked for."""
+        self._arrays.pop(run.id, None)
+
+    def clear(self) -> None:
+        """Discard all arrays up to now; a run in progress continues to add."""
+        for arrays in self._arrays.values():
+            arrays.clear()
+
+    def of(self, runs: Iterable[StoredRun]) -> list[list[LoggedArray]]:
+        """Return the arrays of each run.
+
+        Raises:
+            LogError: a recording is damaged, or its mat is gone.
+        """
+        return [self._of_run(run) for run in runs]
+
+    def _of_run(self, run: StoredRun) -> list[LoggedArray]:
+        if run.id not in self._arrays:
+            self._arrays[run.id] = logged_arrays(run)
+        return self._arrays[run.id]

@@ -1,0 +1,269 @@
+"""What a notebook gets under the names of the old simulator, in its types and units.
+
+Pixel arrays are text, clocks count 1/30 s, and the robot's state is one dictionary with y downwards and angles in
+radians. Our own objects are in `eds` and in `Lab`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from tuisim.errors import ConfigError, LogError
+from tuisim.notebook.eds import check_logged, picture_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from PIL.Image import Image
+
+    from tuisim.core.field import Field
+    from tuisim.core.spec import NoiseSpec, RunSpec
+    from tuisim.notebook.image_log import LoggedArray
+    from tuisim.protocol import MotorRegisters, Wheels
+    from tuisim.runs.views import TickRecord
+
+TICKS_PER_S = 30
+SIDES = ("left", "right")
+"""Names of the colour sensors, first sensor1, then sensor2."""
+
+FOCUS_PX = (3, 3, 17, 17)
+"""Left, top, right and bottom of the part of a picture that lies inside the sensor's disc."""
+
+MODES = ("rgb", "reflected", "greyscale", "bw")
+_MAX_BLACK = 3
+"""The lightest value that the mode `bw` takes for black."""
+
+
+# Pixel arrays as text
+
+
+def values_text(rgba: bytes) -> str:
+    """Return an array as text: `r,g,b,a,r,g,b,a,…`."""
+    return ",".join(map(str, rgba))
+
+
+def record_text(array: LoggedArray) -> str:
+    """Return a record of the image log: `SIDE r,g,b,a,… CLOCK`."""
+    return f"{array.side} {values_text(array.rgba)} {array.time_ns * TICKS_PER_S // 10**9}"
+
+
+def sent_text(seen: Mapping[str, bytes]) -> str:
+    """Return what a responder is called with for `IMG_DATA`; a sensor that the robot has not got is empty."""
+    import json
+
+    return f"IMG_DATA::{json.dumps({side: values_text(seen.get(side, b'')) for side in SIDES})}"
+
+
+def process_raw_image_data(text: str, mode: str = "rgb", to_str: bool = True) -> str | list[str]:
+    """Return a part of the numbers in `r,g,b,a,…`, as text joined by commas or as a list of texts.
+
+    Args:
+        text: Four numbers a pixel.
+        mode: `rgb` is all but each fourth number; `reflected` and `greyscale` are the first of each pixel; `bw` is 1
+            where that is above 3, else 0.
+        to_str: Whether to join the result.
+
+    Raises:
+        ConfigError: there is no such mode.
+    """
+    if mode not in MODES:
+        raise ConfigError(f"no such mode {mode!r}", ", ".join(MODES), key="mode")
+    numbers = text.split(",")
+    found = [number for at, number in enumerate(numbers) if at % 4 != 3] if mode == "rgb" else numbers[::4]
+    if mode == "bw":
+        found = ["1" if int(number) > _MAX_BLACK else "0" for number in found]
+    return ",".join(found) if to_str else found
+
+
+def image_frame(records: Iterable[str], mode: str = "rgb") -> pd.DataFrame:
+    """Return records as a frame of texts with the columns `side`, `vals` and `clock`.
+
+    Raises:
+        ConfigError: there is no such mode.
+    """
+    import pandas as pd
+
+    rows = [
+        (side, process_raw_image_data(values, mode), clock)
+        for side, values, clock in (record.split(" ") for record in records)
+    ]
+    return pd.DataFrame(rows, columns=["side", "vals", "clock"])
+
+
+# Pictures
+
+
+_GAP_GREY = 128
+"""Between the two pictures of a pair: it differs from white and from black."""
+
+
+class ImagePair(NamedTuple):
+    """The pictures under both sensors at one time, in greys; a notebook shows them side by side."""
+
+    left: Image
+    right: Image
+
+    def _repr_png_(self) -> bytes:
+        import io
+
+        from PIL import Image
+
+        scale, gap = 10, 10
+        width, height = self.left.width * scale, self.left.height * scale
+        both = Image.new("L", (width + gap + self.right.width * scale, height), _GAP_GREY)
+        for at, picture in ((0, self.left), (width + gap, self.right)):
+            both.paste(picture.resize((picture.width * scale, picture.height * scale), 0), (at, 0))
+        png = io.BytesIO()
+        both.save(png, "PNG")
+        return png.getvalue()
+
+
+def image_pair(arrays: Iterable[Sequence[LoggedArray]], index: int = -1) -> ImagePair:
+    """Return the pictures that were logged of both sensors at the same time.
+
+    Args:
+        arrays: The arrays of each run.
+        index: Index of the pair, from 0; -1 is the last.
+
+    Raises:
+        LogError: there is no such pair.
+    """
+    pairs: list[tuple[LoggedArray, LoggedArray]] = []
+    for of_run in arrays:
+        moments: dict[int, dict[str, LoggedArray]] = {}
+        for array in of_run:
+            moments.setdefault(array.time_ns, {}).setdefault(array.side, array)
+        pairs += [(seen["left"], seen["right"]) for seen in moments.values() if seen.keys() >= set(SIDES)]
+    check_logged(index, len(pairs))
+    left, right = (picture_of(array.rgba).convert("L").crop(FOCUS_PX) for array in pairs[index])
+    return ImagePair(left, right)
+
+
+def bw_picture(
+    arrays: Sequence[LoggedArray], index: int = -1, threshold: int = 127, crop: tuple[int, int, int, int] | None = None
+) -> Image:
+    """Return one logged picture in black and white.
+
+    Args:
+        arrays: The arrays of all runs.
+        index: Which array, from 0; -1 is the last.
+        threshold: The lightest grey, 0 … 255, that becomes black.
+        crop: Left, top, right and bottom of a part, in pixels; None for the whole picture.
+
+    Raises:
+        LogError: there is no such array, or it is smaller than the part.
+    """
+    check_logged(index, len(arrays))
+    picture = picture_of(arrays[index].rgba).convert("L")
+    if crop is not None:
+        if crop[2] > picture.width or crop[3] > picture.height:
+            raise LogError(f"the part ends outside the picture: {crop}", f"{picture.width} × {picture.height} pixels")
+        picture = picture.crop(crop)
+    return picture.point([255 if grey > threshold else 0 for grey in range(256)], "1")
+
+
+# The robot's state
+
+
+def robot_state(
+    spec: RunSpec, record: TickRecord, noise: NoiseSpec, field: Field, highest_deg: float, wheels: Wheels
+) -> dict[str, Any]:
+    """Return the old simulator's dictionary of a robot's state.
+
+    Args:
+        spec: The run.
+        record: The moment.
+        noise: The noise at that moment.
+        field: The mat.
+        highest_deg: The largest heading up to then.
+        wheels: The registers of the wheel motors.
+    """
+    from tuisim.core.sensors import mounted
+    from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING
+    from tuisim.notebook.image_log import arrays_at, with_alpha
+    from tuisim.runs.views import instant_of
+
+    start, pose, instant = spec.world.start, record.pose, instant_of(record, spec, noise)
+    measured: dict[str, float] = {}
+    for kind, sensor in mounted(spec.robot):
+        measured.update(zip(kind.columns(sensor), kind.measure(sensor, instant, spec, field), strict=True))
+    seen = {sensor.name: values_text(with_alpha(rgb)) for sensor, rgb in arrays_at(spec, record, noise, field)}
+    state: dict[str, Any] = {
+        **_place("", pose.x_mm, pose.y_mm, _wrapped(pose.heading_deg, highest_deg)),
+        **_place("_", start.x_mm, start.y_mm, start.heading_deg),
+        "penDown": bool(record.flags & FLAG_PEN_DOWN),
+        "_wheelNoise": noise.motor,
+        "_sensorNoise": noise.light,
+        "leftWheel": _wheel(
+            wheels.left, record.left_position_deg, record.left_speed_dps, record.flags & FLAG_LEFT_RUNNING
+        ),
+        "rightWheel": _wheel(
+            wheels.right, record.right_position_deg, record.right_speed_dps, record.flags & FLAG_RIGHT_RUNNING
+        ),
+    }
+    for at, side in enumerate(SIDES, 1):
+        state[f"sensor{at}"] = [measured.get(f"{side}_{channel}", 0) for channel in ("red", "green", "blue")]
+        state[f"sensor{at}dataArray"] = seen.get(side, "")
+    state["gyro"] = [measured.get("gyro_deg", 0), measured.get("gyro_rate_dps", 0)]
+    state["ultrasonic"] = measured.get("ultrasonic_mm", 0)
+    for at, side in enumerate(SIDES, 1):
+        state |= _light(side, state[f"sensor{at}"])
+    return state
+
+
+def _wrapped(heading_deg: float, highest_deg: float) -> float:
+    """Return a heading as the old simulator counts it: it drops by 360° when it passes 360°, but never rises."""
+    return heading_deg - 360 * max(0, math.ceil(highest_deg / 360) - 1)
+
+
+def _place(prefix: str, x_mm: float, y_mm: float, heading_deg: float) -> dict[str, float]:
+    from tuisim.core.spec import FIELD_HEIGHT_MM
+
+    return {f"{prefix}x": x_mm, f"{prefix}y": FIELD_HEIGHT_MM - y_mm, f"{prefix}angle": math.radians(heading_deg)}
+
+
+def _wheel(registers: MotorRegisters, position_deg: float, speed_dps: float, runs: int) -> dict[str, Any]:
+    return {
+        "polarity": registers.polarity,
+        "pos": position_deg,
+        "time_sp": registers.time_sp_s,
+        "position_sp": registers.position_sp,
+        "speed_sp": registers.speed_sp,
+        "speed": speed_dps if registers.speed_dps is None else registers.speed_dps,
+        "command": registers.command,
+        "state": "running" if runs else "",
+    }
+
+
+def _light(side: str, rgb: list[float]) -> dict[str, Any]:
+    # Unlike what a program reads, the means are not truncated.
+    return {
+        f"{side}_light_raw": rgb,
+        f"{side}_light": rgb[0],
+        f"{side}_light_pc": 100 * rgb[0] / 255,
+        f"{side}_light_full": 100 * sum(rgb) / 765,
+    }
+
+
+_LONG_TEXT = 60
+
+
+class RobotState:
+    """The robot's state as a dictionary in `state`, from the time when it was asked for, or of the last `update()`."""
+
+    def __init__(self, read: Callable[[], dict[str, Any]]) -> None:
+        self._read = read
+        self.state = read()
+        """By the old simulator's names; see `robot_state`."""
+
+    def update(self) -> None:
+        """Read the state again."""
+        self.state = self._read()
+
+    def _repr_mimebundle_(self, **_: object) -> dict[str, Any]:
+        from tuisim.notebook.display import table_bundle
+
+        rows = ((name, str(value)) for name, value in self.state.items())
+        return table_bundle("Robot", [(name, text if len(text) <= _LONG_TEXT else text[:_LONG_TEXT] + "…")
+                                      for name, text in rows])  # fmt: skip

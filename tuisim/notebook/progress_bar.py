@@ -1,0 +1,39 @@
+"""A progress bar for notebooks that says when it is done."""
+
+from __future__ import annotations
+
+import io
+import math
+import struct
+import wave
+
+from IPython.core.getipython import get_ipython
+from IPython.display import Audio, display
+from tqdm.notebook import tqdm
+
+RATE_HZ, TONE_HZ, TONE_S = 8000, 440.0, 0.4
+
+
+def tone_wav() -> bytes:
+    """Return a short tone as a WAV file."""
+    count = int(RATE_HZ * TONE_S)
+    levels = (round(16_000 * math.sin(2 * math.pi * TONE_HZ * at / RATE_HZ)) for at in range(count))
+    data = io.BytesIO()
+    with wave.open(data, "wb") as sound:
+        sound.setnchannels(1)
+        sound.setsampwidth(2)
+        sound.setframerate(RATE_HZ)
+        sound.writeframes(struct.pack(f"<{count}h", *levels))
+    return data.getvalue()
+
+
+class SoundedBar(tqdm):  # type: ignore[misc] # tqdm ships no types
+    """`tqdm.notebook.tqdm`, which sounds a tone at its end in a notebook."""
+
+    def close(self) -> None:
+        """End the bar; the first time with a tone."""
+        # A bar that has been closed, or is not shown, is disabled.
+        sounds = not self.disable and hasattr(get_ipython(), "kernel")
+        super().close()
+        if sounds:
+            display(Audio(tone_wav(), autoplay=True))
