@@ -55,7 +55,7 @@ PORT = Table(
         Check("a.mode, a.status", "('tacho-motor', 'tacho-motor')", "LegoPort.mode"),
         Check("a.set_device = 'lego-ev3-l-motor'"),
         Check("a.set_device = 'lego-nxt-motor'",
-              "NotSimulated: ev3dev2.port.LegoPort.set_device: lego-ev3-l-motor is plugged into outC",
+              "NotSimulated: ev3dev2.port.LegoPort.set_device: the NXT motor (lego-nxt-motor) is not simulated",
               "LegoPort.set_device"),
         Check("a.set_device", "Exception: set_device is a write-only property!"),
         Check("a.status = 'x'", "AttributeError"),
@@ -69,8 +69,13 @@ EMPTY_PORT = Table(
     "from ev3dev2.port import *\na, b = LegoPort('outA'), LegoPort('outD')",
     (
         Check("a.mode, a.status", "('auto', 'no-motor')"),
-        Check("a.mode = 'led'"),
-        Check("a.mode, a.status, b.mode", "('led', 'led', 'auto')"),
-        Check("a.set_device = 'rcx-led'", "NotSimulated: ev3dev2.port.LegoPort.set_device: nothing is plugged into"),
+        Check("a.mode = 'led'", "NotSimulated: ev3dev2.port.LegoPort.mode: a lamp on a motor port (led) is not"),
+        Check("a.mode = 'tacho-motor'"),
+        Check("a.mode, a.status, b.mode", "('tacho-motor', 'tacho-motor', 'auto')"),
+        Check("a.set_device = 'rcx-led'", "NotSimulated: ev3dev2.port.LegoPort.set_device: a lamp on a motor port"),
+        Check(
+            "a.set_device = 'lego-ev3-l-motor'",
+            "NotSimulated: ev3dev2.port.LegoPort.set_device: nothing is plugged into",
+        ),
     ),
 )

@@ -28,7 +28,7 @@ SENSOR = Table(
         Check("Sensor(driver_name='lego-ev3-us').decimals", "1", "Sensor.decimals"),
         Check("[x.address for x in list_sensors(driver_name='lego-ev3-color')]",
               "['ev3-ports:in2', 'ev3-ports:in3']", "list_sensors"),
-        Check("I2cSensor()", "DeviceNotFound"),
+        Check("I2cSensor()", "NotSimulated: ev3dev2.sensor.I2cSensor: an I2C sensor (nxt-i2c-sensor) is not"),
     ),
 )  # fmt: skip
 
@@ -62,8 +62,8 @@ COLOR = Table(
               "(None, (189, 43, 43), (255, 255, 255))", "ColorSensor.calibrate_white"),
         Check("LightSensor.MODES == (LightSensor.MODE_REFLECT, LightSensor.MODE_AMBIENT) == ('REFLECT', 'AMBIENT')",
               "True", "LightSensor LightSensor.MODES LightSensor.MODE_REFLECT LightSensor.MODE_AMBIENT"),
-        Check("LightSensor()", "DeviceNotFound: LightSensor is not connected."),
-        Check("SoundSensor()", "DeviceNotFound: SoundSensor is not connected."),
+        Check("LightSensor()", "NotSimulated: ev3dev2.sensor.lego.LightSensor: the NXT light sensor"),
+        Check("SoundSensor()", "NotSimulated: ev3dev2.sensor.lego.SoundSensor: the NXT sound sensor"),
         Check("TouchSensor('in2')", "DeviceNotFound: TouchSensor(in2) is not connected."),
         Check("InfraredSensor()", "DeviceNotFound: InfraredSensor is not connected."),
     ),

@@ -29,6 +29,8 @@ from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import Deadlock, Session, StopProgram
 from tuisim.runtime.stack import patch_faulthandler
 from tuisim.runtime.tracebacks import point_at_namesake, report_error
+from tuisim.shim.evdev.devices import point_at_gamepads
+from tuisim.shim.unsupported.modules import point_at_package
 from tuisim.shim.waits import Wait, waits_for
 
 
@@ -260,6 +262,8 @@ class ProgramRunner:
         self.stdout.finish()
         point_at_prelude(error)
         point_at_namesake(error, self._session.program_file)
+        point_at_package(error)
+        point_at_gamepads(error)
         report = report_error(error.with_traceback(trace), self._session.program_file, self._config.text)
         self._write_error(report.text)
         end = End.DEADLOCK if isinstance(error, Deadlock) else End.RAISED
@@ -286,6 +290,8 @@ class ProgramRunner:
             return
         point_at_prelude(error)
         point_at_namesake(error, self._session.program_file)
+        point_at_package(error)
+        point_at_gamepads(error)
         self._write_error(report_error(error, self._session.program_file, self._config.text).text)
 
     def _ignored_error(self, ignored: Any) -> None:

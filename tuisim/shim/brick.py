@@ -25,6 +25,7 @@ from tuisim.shim.motor import KINDS, BrowserTacho, Tacho, TachoMotor
 from tuisim.shim.power import BATTERY, POWER_CLASS, Battery
 from tuisim.shim.sensors import DEVICES, ColorDevice, LegoSensor
 from tuisim.shim.session import Session
+from tuisim.shim.unsupported.devices import PORT_MODES, of_driver, refusal
 
 PORT_CLASS, MOTOR_CLASS, SENSOR_CLASS = "lego-port", "tacho-motor", "lego-sensor"
 """Classes of devices, by their kernel names."""
@@ -98,10 +99,12 @@ class LegoPort:
         if text not in self._kind.modes:
             raise refuse(text)
         self._session.command()
+        if self._plugged is None and text in PORT_MODES:
+            raise refusal("ev3dev2.port.LegoPort.mode", PORT_MODES[text], text)
         if self._plugged is not None and text not in (AUTO, self._plugged.mode):
             raise NotSimulated(
                 f"ev3dev2.port.LegoPort.mode: {text!r} would disconnect {self._plugged.driver_name} from {self._port}",
-                f"{AUTO} or {self._plugged.mode}",
+                f"{AUTO} or {self._plugged.mode}; NXT, I2C and analog devices are not simulated",
             )
         self._mode = text
 
@@ -109,6 +112,8 @@ class LegoPort:
         self._session.command()
         if self._mode in (AUTO, "raw"):
             raise OSError(errno.EOPNOTSUPP, "set_device")
+        if (kind := of_driver(text)) is not None:
+            raise refusal("ev3dev2.port.LegoPort.set_device", kind, text)
         if self._plugged is None or text != self._plugged.driver_name:
             there = self._plugged.driver_name if self._plugged else "nothing"
             raise NotSimulated(

@@ -9,9 +9,10 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from tuisim.shim.brick import build_brick, ports_hint
-from tuisim.shim.buttons import evdev_module, patch_button_module
+from tuisim.shim.buttons import patch_button_module
 from tuisim.shim.console import Terminal, patch_console_module
 from tuisim.shim.display import Screen, patch_display_module
+from tuisim.shim.evdev.devices import evdev_modules
 from tuisim.shim.fonts import patch_fonts_module, quiet_pillow
 from tuisim.shim.leds import patch_led_module
 from tuisim.shim.library import connect, patch_motor_module, patch_sensor_module
@@ -20,7 +21,8 @@ from tuisim.shim.session import Session
 from tuisim.shim.shell.commands import Shell
 from tuisim.shim.shell.processes import Replace, System, finish_asyncio
 from tuisim.shim.sound import Mixer, patch_sound_module
-from tuisim.shim.unsupported import PROCESSES, REFUSED, refuse_classes
+from tuisim.shim.unsupported.modules import HardwareFinder
+from tuisim.shim.unsupported.parts import PROCESSES, REFUSED, refuse_classes
 
 Finish = Callable[[types.ModuleType], None]
 
@@ -98,6 +100,7 @@ def install(
         **more_finishers,
     }
     finish_imports(finishers, is_own)
+    sys.meta_path.append(HardwareFinder())
     connect(brick, partial(ports_hint, session))
     sys.modules["ev3dev2_glue"] = glue_module(session)
-    sys.modules["evdev"] = evdev_module(session)
+    sys.modules.update(evdev_modules(session))

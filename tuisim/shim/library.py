@@ -13,6 +13,7 @@ from tuisim.core.profile import MS, MotorLaw
 from tuisim.shim.browser_library import speak_as_browser
 from tuisim.shim.device_files import Brick, free_of_charge
 from tuisim.shim.session import Session
+from tuisim.shim.unsupported.devices import other_sensors_note, refused_device
 from tuisim.shim.waits import Wait, waits_for
 
 
@@ -112,8 +113,10 @@ def _patch_look_up(library: Any, hint: Callable[[str], str]) -> None:
         try:
             look_up(self, class_name, *args, **kwargs)
         except library.DeviceNotFound as error:
-            if addition := hint(class_name):
-                error.args = (f"{error} {addition}",)
+            refused = refused_device(self, class_name, library.DeviceNotFound)
+            if refused is not None:
+                raise refused from None
+            error.args = (" ".join(filter(None, (str(error), hint(class_name), other_sensors_note(self, class_name)))),)
             raise
 
     library.Device.__init__ = __init__

@@ -13,6 +13,7 @@ from tuisim.core.sensors import SENSORS, color, gyro, infrared, touch, ultrasoni
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, InfraredSpec, TouchSpec, UltrasonicSpec
 from tuisim.shim.device_files import SimDevice, Writer, refuse
 from tuisim.shim.session import Session
+from tuisim.shim.unsupported.devices import foreign_mode
 
 RAW_WHITE = 300
 """Value of the raw channels on white; the library scales by it until it is calibrated."""
@@ -87,7 +88,7 @@ class LegoSensor:
     def set_mode(self, text: str) -> None:
         """Switch the mode; costs nothing."""
         if text not in self.modes:
-            raise refuse(text)
+            raise foreign_mode(text, self._port, self._driver_name) or refuse(text)
         self.mode = text
 
     def measure(self, mode: str) -> tuple[int, ...]:

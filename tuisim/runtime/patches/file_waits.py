@@ -14,6 +14,7 @@ from tuisim.core.profile import NS_PER_S
 from tuisim.runtime.control import THREADS
 from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.session import Session
+from tuisim.shim.unsupported.modules import refuse_bluetooth
 from tuisim.shim.waits import Wait, waits_for
 
 Found = TypeVar("Found")
@@ -116,7 +117,8 @@ class FileWaits:
     # socket
 
     def finish_socket(self, module: types.ModuleType) -> None:
-        """Let blocking sockets wait in simulated time."""
+        """Let blocking sockets wait in simulated time, and refuse those for Bluetooth."""
+        refuse_bluetooth(module)
         sockets: Any = module.socket
         for names, writes in ((_READS, False), (_WRITES, True)):
             for name in names:

@@ -1,0 +1,103 @@
+"""Modules for other hardware: importable if a brick has them, and refused by name where they are used."""
+
+from __future__ import annotations
+
+import socket
+from pathlib import Path
+
+import pytest
+
+from tests.running import Run, Start, over
+from tuisim.shim.unsupported.modules import BLUETOOTH, ELSEWHERE, ON_THE_BRICK, PACKAGES
+
+USES = {
+    "pybluez": ("import bluetooth\nbluetooth.discover_devices(lookup_names=True)", "bluetooth.discover_devices: Blue"),
+    "every name": ("from bluetooth import *\nBluetoothSocket(RFCOMM)", "bluetooth.BluetoothSocket: Bluetooth is not"),
+    "class of the program": (
+        "import bluetooth\nclass Finder(bluetooth.DeviceDiscoverer):\n    def __init__(self): pass\nFinder()",
+        "bluetooth.DeviceDiscoverer: Bluetooth is not simulated",
+    ),
+    "constant": ("import bluetooth\nbluetooth.RFCOMM + 1", "bluetooth.RFCOMM: Bluetooth is not simulated"),
+    "socket": (
+        "import socket\nsocket.socket(socket.AF_BLUETOOTH, socket.SOCK_STREAM, socket.BTPROTO_RFCOMM)",
+        "socket.AF_BLUETOOTH: Bluetooth is not simulated",
+    ),
+    "smbus": ("from smbus import SMBus\nSMBus(3)", "smbus.SMBus: the I2C bus of the brick is not simulated"),
+    "smbus2": ("from smbus2 import SMBus, i2c_msg\nSMBus(3)", "smbus2.SMBus: the I2C bus of the brick is not"),
+    "serial": ("import serial\nserial.Serial('/dev/tty_in1', 9600)", "serial.Serial: a serial port is not simulated"),
+    "submodule": (
+        "from serial.tools import list_ports\nlist_ports.comports()",
+        "serial.tools.list_ports.comports: a serial port is not simulated",
+    ),
+    "deeper": ("import usb.core\nusb.core.find()", "usb.core.find: the brick's USB port is not simulated"),
+    "Pixy": ("from pixycamev3.pixy2 import Pixy2\nPixy2()", "pixycamev3.pixy2.Pixy2: the Pixy camera is not"),
+    "GPIO": ("import RPi.GPIO as GPIO", "RPi: the Raspberry Pi is not simulated"),
+    "camera": ("from picamera import PiCamera", "picamera: the camera of the Raspberry Pi is not simulated"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "words"), USES.values(), ids=USES)
+def test_the_program_ends_with_its_name(run: Run, text: str, words: str) -> None:
+    done = run(text, prelude="none")
+    assert done.errors[-1].startswith(f"NotSimulated: {words}")
+    assert done.errors[-1].endswith(")")
+    assert (done.ended.exit_code, done.ended.error_line) == (1, text.count("\n") + 1)
+
+
+def test_every_module_of_the_brick_can_be_imported(run: Run) -> None:
+    names = sorted(ON_THE_BRICK)
+    stars = "".join(f"from {name} import *\n" for name in names)
+    done = run(f"import {', '.join(names)}\n{stars}print(serial, serial.Serial, sep='; ')", prelude="none")
+    assert done.lines == ["<module 'serial' (not simulated)>; <serial.Serial, which is not simulated>"]
+
+
+def test_a_program_can_do_without_what_a_brick_does_not_have(run: Run) -> None:
+    tries = "".join(f"try:\n    import {name}\nexcept ImportError:\n    print('{name}')\n" for name in ELSEWHERE)
+    assert run(tries, prelude="none").lines == list(ELSEWHERE)
+
+
+def test_errors_can_be_handled(run: Run) -> None:
+    done = run(
+        "import serial\ntry:\n    try:\n        int('x')\n    except serial.SerialException:\n        pass\n"
+        "except ValueError as error:\n    print(error)",
+        prelude="none",
+    )
+    assert done.lines == ["invalid literal for int() with base 10: 'x'"]
+
+
+def test_a_module_beside_the_program_comes_first(start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "serial.py").write_text("print('own')\n")
+    monkeypatch.chdir(tmp_path)
+    assert over(start("import serial", prelude="none")).lines == ["own"]
+
+
+def test_other_sockets_work(run: Run) -> None:
+    text = "import socket\na, b = socket.socketpair()\na.send(b'x')\nprint(b.recv(1), socket.AF_BLUETOOTH)"
+    assert run(text, prelude="none").lines == [f"b'x' {BLUETOOTH['AF_BLUETOOTH']}"]
+
+
+@pytest.mark.parametrize("name", [name for name in BLUETOOTH if hasattr(socket, name)])
+def test_numbers_are_those_of_the_system(name: str) -> None:
+    assert getattr(socket, name) == BLUETOOTH[name]
+
+
+@pytest.mark.parametrize(
+    ("name", "package"),
+    [("paho.mqtt.client", "paho-mqtt"), ("flask_of_mine", "flask_of_mine")],
+    ids=["other name", "same name"],
+)
+def test_a_missing_package_says_how_to_install_it(run: Run, name: str, package: str) -> None:
+    done = run(f"import {name}", prelude="none")
+    assert done.errors[-2] == f"ModuleNotFoundError: No module named '{name.partition('.')[0]}'"
+    assert f"`pip install {package}`" in done.errors[-1]
+
+
+@pytest.mark.parametrize("name", ["'ev3dev2.sensor.pixy'", "'a b'", "3"], ids=["of the library", "no name", "no text"])
+def test_other_import_errors_say_nothing_of_packages(run: Run, name: str) -> None:
+    done = run(f"raise ModuleNotFoundError('none', name={name})", prelude="none")
+    assert done.errors[-1] == "ModuleNotFoundError: none"
+
+
+def test_no_module_is_in_two_tables() -> None:
+    names = [*ON_THE_BRICK, *ELSEWHERE, *PACKAGES]
+    assert len(names) == len(set(names))

@@ -1,0 +1,216 @@
+"""Modules for hardware that the simulated brick does not have, and what to do about others that are missing.
+
+A module of the brick that drives its radio, its bus or its USB port can be imported; what the program uses of it
+raises NotSimulated. A module for another computer cannot be imported on a brick either: the import raises
+NotSimulated, which is an ImportError, too, for programs that can do without it.
+"""
+
+from __future__ import annotations
+
+import sys
+import types
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import wraps
+from importlib.machinery import ModuleSpec
+from typing import Any, NoReturn
+
+from tuisim.errors import NotSimulated
+
+_RADIO = "to drive by hand, use the brick's buttons or RemoteControlledTank; parts of a program can talk by queue.Queue"
+_BUS = "the sensors of ev3dev2.sensor.lego are simulated"
+_CAMERA = "use a ColorSensor for colours, and an UltrasonicSensor for distances"
+_GAMEPAD = "to drive by hand, use the brick's buttons or RemoteControlledTank"
+_MICROPHONE = "it is silent here: start by a TouchSensor or a Button; ev3dev2.sound makes sounds"
+
+
+@dataclass(frozen=True, slots=True)
+class Hardware:
+    """What a module is for."""
+
+    title: str
+    instead: str
+    """What a program can do instead."""
+    names: tuple[str, ...] = ()
+    """What `from … import *` gives."""
+
+
+_SMBUS = Hardware("the I2C bus of the brick", _BUS, ("SMBus",))
+_USB = Hardware("the brick's USB port", _BUS)
+_SOUND_CARD = Hardware("the brick's sound card", _MICROPHONE)
+
+ON_THE_BRICK: Mapping[str, Hardware] = {
+    "bluetooth": Hardware(
+        "Bluetooth",
+        _RADIO,
+        (
+            "BluetoothError", "BluetoothSocket", "DeviceDiscoverer", "HCI", "L2CAP", "PORT_ANY", "RFCOMM", "SCO",
+            "SERIAL_PORT_CLASS", "SERIAL_PORT_PROFILE", "advertise_service", "discover_devices", "find_service",
+            "get_available_port", "is_valid_address", "is_valid_uuid", "lookup_name", "read_local_bdaddr",
+            "stop_advertising",
+        ),
+    ),
+    "smbus": _SMBUS,
+    "smbus2": Hardware(_SMBUS.title, _BUS, ("SMBus", "i2c_msg")),
+    "serial": Hardware("a serial port", _BUS, ("Serial", "SerialException")),
+    "usb": _USB,
+    "hid": _USB,
+    "pyudev": _USB,
+    "pixycamev3": Hardware("the Pixy camera", _CAMERA),
+    "approxeng": Hardware("a gamepad", _GAMEPAD),
+    "alsaaudio": _SOUND_CARD,
+    "pyaudio": _SOUND_CARD,
+    "sounddevice": _SOUND_CARD,
+}  # fmt: skip
+"""Modules that can be imported but not used, by name."""
+
+_PI = Hardware("the Raspberry Pi", "this is an EV3: use ev3dev2")
+_PI_CAMERA = Hardware("the camera of the Raspberry Pi", _CAMERA)
+_BRICKPI = Hardware("the BrickPi", "this is an EV3: use ev3dev2")
+
+ELSEWHERE: Mapping[str, Hardware] = {
+    "RPi": _PI,
+    "gpiozero": _PI,
+    "pigpio": _PI,
+    "spidev": _PI,
+    "wiringpi": _PI,
+    "picamera": _PI_CAMERA,
+    "picamera2": _PI_CAMERA,
+    "brickpi": _BRICKPI,
+    "brickpi3": _BRICKPI,
+    "microbit": Hardware("the micro:bit", "this is an EV3: use ev3dev2"),
+    "spike": Hardware("the SPIKE hub", "this is an EV3: use ev3dev2"),
+    "mindstorms": Hardware("the hub of the Robot Inventor", "this is an EV3: use ev3dev2"),
+}
+"""Modules that cannot be imported, by name."""
+
+PACKAGES: Mapping[str, str] = {
+    "cv2": "opencv-python-headless",
+    "ev3dev": "python-ev3dev",
+    "paho": "paho-mqtt",
+    "sklearn": "scikit-learn",
+    "skimage": "scikit-image",
+    "yaml": "PyYAML",
+    "zmq": "pyzmq",
+}
+"""Packages that have another name than their module, by that."""
+
+_ERRORS = ("Error", "Exception", "Timeout")
+"""Ends of the names of exceptions, which a program names in its handlers."""
+
+
+def _refused(name: str) -> NotSimulated:
+    hardware = ON_THE_BRICK.get(top := name.partition(".")[0]) or ELSEWHERE[top]
+    return NotSimulated(f"{name}: {hardware.title} is not simulated", hardware.instead)
+
+
+class _Part(type):
+    """A name of a module: a class, so that it can be derived from; any use raises NotSimulated."""
+
+    full_name: str
+
+    def _use(cls, *_: object, **__: object) -> NoReturn:
+        raise _refused(cls.full_name)
+
+    __call__ = __getitem__ = __iter__ = __len__ = __int__ = __index__ = __float__ = __enter__ = __exit__ = _use
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __lt__ = __le__ = __gt__ = __ge__ = _use
+    __and__ = __rand__ = __or__ = __ror__ = __xor__ = __rxor__ = __lshift__ = __rlshift__ = __invert__ = _use
+
+    def __getattr__(cls, name: str) -> Any:
+        return _part(cls, cls.full_name, name)
+
+    def __repr__(cls) -> str:
+        return f"<{cls.full_name}, which is not simulated>"
+
+
+def _part(place: Any, path: str, name: str) -> Any:
+    """Return a name of a module or of a part of it, and keep it there."""
+    if name.startswith("__"):
+        raise AttributeError(f"{path} has no attribute {name!r}")
+    words = {"full_name": f"{path}.{name}", "__module__": path}
+    made: Any = type(name, (OSError,), words) if name.endswith(_ERRORS) else _Part(name, (), words)
+    setattr(place, name, made)
+    return made
+
+
+class HardwareModule(types.ModuleType):
+    """A module, or a module in it, that can be imported but not used."""
+
+    def __getattr__(self, name: str) -> Any:
+        return _part(self, self.__name__, name)
+
+
+class HardwareFinder:
+    """Finds the modules for hardware; the last finder, so that a file of the program or a package comes first."""
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None = None, target: types.ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """Return how to load a module; None for others."""
+        top = fullname.partition(".")[0]
+        if top == fullname:
+            known = top in ON_THE_BRICK or top in ELSEWHERE
+        else:
+            known = isinstance(sys.modules.get(top), HardwareModule)
+        loader: Any = self
+        return ModuleSpec(fullname, loader, origin="not simulated", is_package=True) if known else None
+
+    def create_module(self, spec: ModuleSpec) -> types.ModuleType:
+        """Return the module.
+
+        Raises:
+            NotSimulated: it is for another computer.
+        """
+        if (top := spec.name.partition(".")[0]) in ELSEWHERE:
+            told = _refused(spec.name)
+            both: Any = type("NotSimulated", (NotSimulated, ImportError), {"__module__": NotSimulated.__module__})
+            raise both(told.message, told.hint)
+        module = HardwareModule(spec.name, f"{ON_THE_BRICK[top].title}, which is not simulated.")
+        if spec.name == top:
+            vars(module)["__all__"] = list(ON_THE_BRICK[top].names)
+        return module
+
+    def exec_module(self, module: types.ModuleType) -> None:
+        """Do nothing: names are made when they are used."""
+
+
+BLUETOOTH: Mapping[str, Any] = {
+    "AF_BLUETOOTH": 31,
+    "BTPROTO_L2CAP": 0,
+    "BTPROTO_HCI": 1,
+    "BTPROTO_SCO": 2,
+    "BTPROTO_RFCOMM": 3,
+    "BDADDR_ANY": "00:00:00:00:00:00",
+    "BDADDR_LOCAL": "00:00:00:FF:FF:FF",
+}
+"""Names of `socket` that are missing where Python was built without Bluetooth."""
+
+
+def refuse_bluetooth(module: types.ModuleType) -> None:
+    """Refuse sockets for Bluetooth; called after the import of `socket`."""
+    names: Any = vars(module)
+    for name, value in BLUETOOTH.items():
+        names.setdefault(name, value)
+    real = module.socket.__init__
+
+    @wraps(real)
+    def __init__(self: Any, family: int = -1, *given: Any, **named: Any) -> None:  # noqa: N807
+        if family == names["AF_BLUETOOTH"]:
+            raise NotSimulated("socket.AF_BLUETOOTH: Bluetooth is not simulated", _RADIO)
+        real(self, family, *given, **named)
+
+    module.socket.__init__ = __init__
+
+
+def point_at_package(error: BaseException) -> None:
+    """Add a note to the error about a missing module: where it can come from."""
+    if not isinstance(error, ModuleNotFoundError) or not isinstance(error.name, str):
+        return
+    top = error.name.partition(".")[0]
+    if not top.isidentifier() or top in sys.modules or top in sys.stdlib_module_names:
+        return
+    package = PACKAGES.get(top, top)
+    error.add_note(
+        f"{top} is neither beside the program nor installed. A package of Python is installed with "
+        f"`pip install {package}`, in the environment of tuisim."
+    )
