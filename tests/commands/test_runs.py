@@ -24,6 +24,7 @@ from tuisim.runs import store as store_module
 from tuisim.runs.catalogue import CATALOGUE_FILE
 from tuisim.runs.records import TELEMETRY_FILE, OutputRow, OutputWriter, TelemetryWriter
 from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.side_files import READS_FILE
 from tuisim.runs.store import RunStore
 from tuisim.runs.views import OutputView
 
@@ -175,3 +176,39 @@ def test_rerun_without_a_folder_for_temporary_runs_is_told(
     assert run_command(["runs", "rerun", "last"]) == 2
     reason = "no folder for temporary runs can be created: No such file or directory"
     assert capsys.readouterr().err == f"tuisim: {tmp_path}/missing: {reason}\n"
+
+
+def test_a_file_of_another_run_is_listed_and_missed(here: Command, home: Path, tmp_path: Path) -> None:
+    (tmp_path / "first.py").write_text("open('cal\\x1b.txt', 'w').write('42')\n")
+    (tmp_path / "second.py").write_text("open('cal\\x1b.txt').read()\n")
+    file = tmp_path / "cal\x1b.txt"
+    here("run", "first.py")
+    here("run", "second.py")
+    assert "file " not in here("runs", "show", "1").stdout
+    assert f"file read (2 bytes): {tmp_path}/cal\ufffd.txt" in here("runs", "show", "2").stdout.splitlines()
+    (listed,) = json.loads(here("runs", "show", "2", "--json").stdout)["files_read"]
+    assert (listed["path"], listed["there"], listed["bytes"]) == (str(file), True, 2)
+    assert here("runs", "rerun", "2").stderr == ""
+    file.write_text("43")
+    assert here("runs", "rerun", "2").stderr == (
+        f"note: a file that the program opens has changed since: {tmp_path}/cal\ufffd.txt\n"
+    )
+    file.unlink()
+    (note,) = json.loads(here("runs", "rerun", "2", "--json").stdout)["notes"]
+    assert note == f"a file that the program opens is gone: {file}"
+
+
+def test_a_file_that_was_not_there_is_listed(here: Command, home: Path, tmp_path: Path) -> None:
+    (tmp_path / "tries.py").write_text("try:\n    open('cal.txt')\nexcept OSError:\n    pass\n")
+    here("run", "tries.py")
+    assert f"file looked for, and not there: {tmp_path}/cal.txt" in here("runs", "show", "1").stdout.splitlines()
+    (tmp_path / "cal.txt").write_text("")
+    assert "was not there, and is there now" in here("runs", "rerun", "1").stderr
+
+
+def test_a_damaged_list_of_files_is_noted(make: Make, here: Command) -> None:
+    run = make("a: 1")
+    (run.folder / READS_FILE).write_text("3\n")
+    shown = here("runs", "show", "1").stdout
+    assert READS_FILE in shown
+    assert "a: 1" in shown

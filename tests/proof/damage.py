@@ -40,7 +40,16 @@ from tuisim.lessons.files import load_lesson
 from tuisim.lessons.progress import load_progress
 from tuisim.marks.journal import Journal
 from tuisim.notebook.cells import notebook_programs
-from tuisim.runs.side_files import ACTIONS_FILE, MODULES_FILE, STOP_FILE, read_actions, read_modules, read_stop_tick
+from tuisim.runs.side_files import (
+    ACTIONS_FILE,
+    MODULES_FILE,
+    READS_FILE,
+    STOP_FILE,
+    read_actions,
+    read_modules,
+    read_reads,
+    read_stop_tick,
+)
 
 MEMORY_MB = 4096
 """More address space than this has no process that reads damaged files."""
@@ -80,6 +89,7 @@ _TEXTS = {
     MODULES_FILE: '{"name": "tools", "file": "tools.py", "folders": null, "text": "x = 1"}\n'
     '{"name": "pack", "file": "", "folders": ["pack"], "text": ""}\n',
     STOP_FILE: '{"tick": 12}',
+    READS_FILE: '{"path": "/tmp/a", "there": true, "bytes": 3, "mtime_ns": 12, "crc32": 7}\n{"left_out": 2}\n',
 }
 """Files that no command writes."""
 
@@ -236,6 +246,7 @@ FORMATS: Mapping[str, Format] = {
     "marks": Format("marks.jsonl", _reads(_journal), Syntax.ROWS),
     "actions": Format(ACTIONS_FILE, _reads(lambda path: read_actions(Path(path).parent)), Syntax.ROWS),
     "modules": Format(MODULES_FILE, _reads(lambda path: read_modules(Path(path).parent)), Syntax.ROWS),
+    "reads": Format(READS_FILE, _reads(lambda path: read_reads(Path(path).parent)), Syntax.ROWS),
     "stop": Format(STOP_FILE, _reads(lambda path: read_stop_tick(Path(path).parent)), Syntax.JSON),
     "telemetry": Format("home/runs/plain/telemetry.bin", _run("plain", *_SHOWN), Syntax.FIELDS, is_slow=True),
     "output": Format("home/runs/plain/output.bin", _run("plain", *_SHOWN), Syntax.FIELDS, is_slow=True),

@@ -14,15 +14,16 @@ from tuisim.commands.echo import Progress, echo, echo_error, echo_json, echo_jso
 from tuisim.commands.exit_status import describe, last_state
 from tuisim.commands.movies import movie, picture
 from tuisim.config.command_line import AS_JSON, Group, Value, argument, command, option
-from tuisim.errors import ConfigError, LogError, counted
+from tuisim.errors import ConfigError, LogError, counted, shortened
 from tuisim.logs.export import EXPORTERS, LISTED, check_targets, export_samples, export_telemetry
 from tuisim.protocol import Unended
 from tuisim.runs.diff import RunDiff, recording_in_words, setup_in_words
 from tuisim.runs.frames import damage_note
 from tuisim.runs.handle import ASK_AGAIN_S
 from tuisim.runs.records import OutputRow, Stream, line_of
-from tuisim.runs.rerun import rerun, same
+from tuisim.runs.rerun import changed_files, rerun, same
 from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.side_files import MOST_PATH, FilesRead, read_reads
 from tuisim.runs.store import COMPACT_TICKS, RunStore, bytes_in, compact_run
 from tuisim.runs.temporary import temporary_home
 
@@ -99,12 +100,22 @@ def _plain(row: OutputRow) -> dict[str, object]:
     return {"time_s": row.time_ns / 1e9, "line": row.line, "stream": STREAMS[row.stream], "text": row.text}
 
 
+def _files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
+    """Return the files that the program has read, and a note if their list is damaged."""
+    try:
+        return read_reads(run.folder), ()
+    except LogError as error:
+        return FilesRead(), (str(error),)
+
+
 def _show(run: StoredRun, *, as_json: bool) -> None:
     """Print a run; rows are printed while they are read, because there may be millions."""
     rows = (row for row in run.output.rows() if row.stream in STREAMS)
     if as_json:
         # The counts are known only after all rows have been read.
-        echo_json_head("output", map(_plain, rows), describe(run))
+        read, _ = _files_read(run)
+        files = {"files_read": [asdict(file) for file in read.files], "files_left_out": read.left_out}
+        echo_json_head("output", map(_plain, rows), describe(run) | files)
         return
     facts = describe(run, QUICK_BYTES)
     echo(f"{facts['id']} · {facts['created']} · {facts['background']} · {facts['robot']} · {facts['profile']} · "
@@ -112,8 +123,14 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
     echo(last_state(facts))
     if facts["arguments"]:
         echo(f"arguments: {shlex.join(facts['arguments'])}")
-    for note in facts["notes"]:
+    read, damage = _files_read(run)
+    for note in (*facts["notes"], *damage):
         echo(f"note: {note}")
+    for file in read.files:
+        what = f"read ({counted(file.bytes, 'byte')})" if file.there else "looked for, and not there"
+        echo(f"file {what}: {shortened(file.path, MOST_PATH)}")
+    if read.left_out:
+        echo(f"and {counted(read.left_out, 'more file')}")
     for row in rows:
         echo(f"{row.time_ns / 1e9:10.3f} s  {'! ' if row.stream == Stream.STDERR else ''}{line_of(row)}")
     if facts["error"]:
@@ -176,6 +193,9 @@ def rerun_runs(words: Sequence[str], as_json: bool) -> int:
 
 def _rerun(run: StoredRun, *, as_json: bool) -> int:
     """Run it again and print whether the result is the same; return the exit code."""
+    notes = changed_files(run)
+    for note in notes:
+        echo_error(f"note: {note}")
     with temporary_home() as home:
         scratch = RunStore(home)
         handle = rerun(run, scratch)
@@ -189,7 +209,7 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
         tell(f"comparing run {run.number}")
         found = same(run, scratch.load_run(handle.run_id))
     if as_json:
-        echo_json({"run": run.number, **found.to_plain()})
+        echo_json({"run": run.number, **found.to_plain(), "notes": list(notes)})
     else:
         echo_lines(diff_text(found))
     return 0 if found.same else 1

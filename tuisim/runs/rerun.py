@@ -9,11 +9,11 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from tuisim.errors import LogError
+from tuisim.errors import LogError, shortened
 from tuisim.protocol import End, RunState, Stop, Unended, UserAction
 from tuisim.runs.diff import RunDiff, diff_runs
 from tuisim.runs.handle import RunHandle, RunOptions, program_again, start_run
-from tuisim.runs.side_files import read_stop_tick
+from tuisim.runs.side_files import MOST_PATH, read_reads, read_stop_tick, state_of
 
 if TYPE_CHECKING:
     from tuisim.runs.run_folder import StoredRun
@@ -52,6 +52,25 @@ def same(run: StoredRun, again: StoredRun) -> RunDiff:
     whole = diff_runs(run, again)
     # How far threads get during cleanup depends on the real clock.
     return whole if whole.same else diff_runs(run, again, prefix=True, until=read_stop_tick(run.folder))
+
+
+def changed_files(run: StoredRun) -> tuple[str, ...]:
+    """Return a note for each file that the run has read and that is another one now, so that a re-run may differ.
+
+    Raises:
+        LogError: the list of the files is damaged.
+    """
+    notes = []
+    for read in read_reads(run.folder).files:
+        now = state_of(read.path)
+        if now is not None and read.same_as(now):
+            continue
+        if not read.there:
+            what = "was not there, and is there now"
+        else:
+            what = "has changed since" if now is not None and now.there else "is gone"
+        notes.append(f"a file that the program opens {what}: {shortened(read.path, MOST_PATH)}")
+    return tuple(notes)
 
 
 def _stopped_by_itself(run: StoredRun) -> bool:

@@ -1,4 +1,4 @@
-"""The small files of a run folder: its lock, the user's actions, the place of a stop, the program's own modules.
+"""The small files of a run folder: lock, user actions, place of a stop, own modules, and files that were read.
 
 Pure Python: the child, which writes them, imports it.
 """
@@ -9,9 +9,13 @@ import fcntl
 import json
 import os
 import shutil
+import stat
+from binascii import crc32
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from tuisim.atomic import private
 from tuisim.core.spec import NoiseSpec
@@ -36,6 +40,13 @@ MODULES_FILE = "modules.jsonl"
 
 They allow repeating the run after the modules have changed or are gone.
 """
+
+READS_FILE = "reads.jsonl"
+"""Files outside the run folder that the program has opened for reading, one JSON object per line."""
+MOST_READS = 100
+"""Further files are only counted."""
+MOST_PATH = 200
+"""Characters of a path that are shown."""
 
 
 def hold(folder: Path) -> int:
@@ -188,3 +199,119 @@ def copy_modules(source: Path, target: Path) -> None:
             shutil.copy2(source / MODULES_FILE, target / MODULES_FILE)
     except OSError as error:
         raise LogError(f"cannot be copied: {error.strerror or error}", file=str(source / MODULES_FILE)) from error
+
+
+@dataclass(frozen=True, slots=True)
+class FileRead:
+    """A file when a program first opened it to read it."""
+
+    path: str
+    there: bool
+    """Whether there was a file."""
+    bytes: int = 0
+    mtime_ns: int = 0
+    crc32: int = -1
+    """Checksum of the contents; -1 if there is none."""
+
+    def same_as(self, other: FileRead) -> bool:
+        """Return whether the contents are equal, as far as can be told."""
+        if not (self.there and other.there):
+            return self.there == other.there
+        if self.crc32 < 0 or other.crc32 < 0:
+            return (self.bytes, self.mtime_ns) == (other.bytes, other.mtime_ns)
+        return (self.bytes, self.crc32) == (other.bytes, other.crc32)
+
+
+@dataclass(frozen=True, slots=True)
+class FilesRead:
+    """The files that a program has read."""
+
+    files: tuple[FileRead, ...] = ()
+    left_out: int = 0
+    """How many more there were."""
+
+
+_stat, _open, _read, _close = os.stat, os.open, os.read, os.close
+"""Saved before those of the program are replaced, which note what it opens."""
+_PART_BYTES = 1 << 20
+MOST_SUMMED_BYTES = 1 << 22
+"""A larger file has no checksum: its size and time tell whether it has changed."""
+
+
+def state_of(path: str) -> FileRead | None:
+    """Return a file as it is now, or that there is none; None for folders, devices and the like."""
+    try:
+        found = _stat(path)
+    except (OSError, ValueError) as error:
+        gone = isinstance(error, FileNotFoundError | NotADirectoryError)
+        return FileRead(path, there=False) if gone else None
+    if not stat.S_ISREG(found.st_mode):
+        return None
+    return FileRead(path, True, found.st_size, found.st_mtime_ns, _checksum(path, found.st_size))
+
+
+def _checksum(path: str, size: int) -> int:
+    if size > MOST_SUMMED_BYTES:
+        return -1
+    total = 0
+    try:
+        descriptor = _open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NONBLOCK)
+    except OSError:
+        return -1
+    try:
+        for _ in range(0, MOST_SUMMED_BYTES + 1, _PART_BYTES):
+            total = crc32(_read(descriptor, _PART_BYTES), total)
+    except OSError:
+        return -1
+    finally:
+        _close(descriptor)
+    return total
+
+
+def note_read(run_folder: Path, read: FileRead) -> None:
+    """Add a file to those that were read.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    _append_read(run_folder, asdict(read))
+
+
+def note_reads_left_out(run_folder: Path, count: int) -> None:
+    """Note how many more files were read.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    _append_read(run_folder, {"left_out": count})
+
+
+def _append_read(run_folder: Path, row: Mapping[str, object]) -> None:
+    with open(run_folder / READS_FILE, "ab", opener=private) as file:
+        file.write(json.dumps(row).encode() + b"\n")
+
+
+def read_reads(run_folder: Path) -> FilesRead:
+    """Return the files that the program of a run has read; an incomplete last row is ignored.
+
+    Raises:
+        LogError: the file is damaged.
+    """
+    path = run_folder / READS_FILE
+    found: dict[str, FileRead] = {}
+    left_out = 0
+    try:
+        for line in path.read_bytes().split(b"\n")[:-1]:
+            row: dict[str, Any] = json.loads(line)
+            if "left_out" in row:
+                left_out = int(row["left_out"])
+                continue
+            name = str(row["path"])
+            found.setdefault(
+                name, FileRead(name, bool(row["there"]), int(row["bytes"]), int(row["mtime_ns"]), int(row["crc32"]))
+            )
+    except FileNotFoundError:
+        return FilesRead()
+    except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
+        raise LogError(f"cannot be read: {error}", file=str(path)) from error
+    return FilesRead(tuple(found.values())[:MOST_READS], left_out + max(0, len(found) - MOST_READS))

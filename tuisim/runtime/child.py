@@ -31,6 +31,7 @@ from tuisim.runtime.patches.clock import (
     patch_process_times,
     patch_time,
 )
+from tuisim.runtime.patches.file_reads import FileReads
 from tuisim.runtime.patches.file_waits import FileWaits
 from tuisim.runtime.patches.randomness import finish_random, finish_uuid, patch_urandom
 from tuisim.runtime.patches.replacement import PatchedModules, replace
@@ -136,6 +137,8 @@ class Child:
             lambda file: own_files(session.program_file)(file),
         )
         sys.meta_path.insert(0, PatchedModules())
+        self._reads = FileReads()
+        self._reads.patch()
 
         def leave(outcome: Outcome) -> NoReturn:
             interrupts.remove()
@@ -172,6 +175,7 @@ class Child:
             self._sim.on_turns = self._write_turns
         remember_source(session.program_file, config.text)
         self._runner.connect(config)
+        self._reads.begin(config.folder, config.own_folder, session.program_file)
 
     def _write_turns(self, turns: tuple[Turn, ...]) -> None:
         sim = self._sim
@@ -195,6 +199,7 @@ class Child:
         self._telemetry.close()
         self._output.close()
         self._channel.send(protocol.Wheels(*(read() for read in self._session.wheel_registers)))
+        self._reads.end()
         self._channel.send(
             protocol.Ended(end, self._sim.tick, self._session.now, exit_code, summary, error, error_line)
         )

@@ -101,3 +101,9 @@ def test_other_import_errors_say_nothing_of_packages(run: Run, name: str) -> Non
 def test_no_module_is_in_two_tables() -> None:
     names = [*ON_THE_BRICK, *ELSEWHERE, *PACKAGES]
     assert len(names) == len(set(names))
+
+
+@pytest.mark.parametrize("name", [*ON_THE_BRICK, *ELSEWHERE])
+def test_the_guide_names_each_module(name: str, root: Path) -> None:
+    page = (root / "tuisim/guide/pages/library-differences.md").read_text("utf-8")
+    assert f"`{name}`" in page
