@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
 from tests.running import Run
-from tuisim.shim.unsupported.devices import DRIVERS, SIMULATED, of_driver
+from tuisim.errors import NotSimulated
+from tuisim.shim.unsupported.devices import DRIVERS, SIMULATED, of_driver, refused_device
 
 SENSORS = "from ev3dev2.sensor import *\nfrom ev3dev2.sensor.lego import *\n"
 MOTORS = "from ev3dev2.motor import *\n"
@@ -89,3 +92,28 @@ def test_each_kind_is_found(pattern: str) -> None:
         of_driver(pattern.replace("*", "-0") if pattern.endswith("*") else pattern.replace("*", "x"))
         == DRIVERS[pattern]
     )
+
+
+def test_the_error_is_the_librarys_own_too() -> None:
+    # The older library raises no class of its own.
+    error = refused_device(
+        SimpleNamespace(kwargs={"address": "in1", "driver_name": "pixy-lego"}), "lego-sensor", OSError
+    )
+    assert isinstance(error, NotSimulated)
+    assert isinstance(error, OSError)
+    assert str(error).startswith("SimpleNamespace: the Pixy camera (pixy-lego) is not simulated")
+
+
+@pytest.mark.parametrize(
+    ("class_name", "wanted"),
+    [
+        ("lego-sensor", {"address": "in1"}),
+        ("lego-sensor", {"address": 3, "driver_name": None}),
+        ("tacho-motor", {"address": "outE"}),
+        ("lego-sensor", {"driver_name": ["lego-ev3-touch", "lego-nxt-touch"]}),
+        ("lego-port", {"address": ["in1", "out"]}),
+    ],
+    ids=["port", "no texts", "no port", "one of them", "several ports"],
+)
+def test_what_another_robot_may_have_is_not_refused(class_name: str, wanted: dict[str, object]) -> None:
+    assert refused_device(SimpleNamespace(kwargs=wanted), class_name, OSError) is None
