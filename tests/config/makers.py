@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from tuisim.core.css_colors import css_names
 from tuisim.core.spec import (
     INPUT_PORTS,
+    MOTOR_ENDS,
     MOTOR_KINDS,
     OUTPUT_PORTS,
     STRATEGIES,
@@ -40,6 +41,12 @@ presses = st.builds(
 )  # fmt: skip
 
 
+def further_motors(port: str) -> st.SearchStrategy[MotorSpec]:
+    """Motors on a port with both end stops, one or none."""
+    kinds, low, high = st.sampled_from(MOTOR_KINDS), st.none() | mm(-1e5, -1), st.none() | mm(0, 1e5)
+    return st.builds(MotorSpec, st.just(port), kinds, low, high)
+
+
 @st.composite
 def robots(draw: st.DrawFn) -> RobotSpec:
     """Robots of every make: with and without each sensor, on any ports, colour sensors in any order."""
@@ -55,10 +62,13 @@ def robots(draw: st.DrawFn) -> RobotSpec:
                       max_range_mm=mm(1, 1e4), noise_mm=mm(0, 1000),
                       ray_angles_deg=st.lists(mm(-360, 360), min_size=1, max_size=5).map(tuple))  # fmt: skip
     left, right, *free = draw(st.permutations(OUTPUT_PORTS))
-    motors = draw(st.lists(st.sampled_from(free), unique=True, max_size=2))
+    motors = [draw(further_motors(port)) for port in draw(st.lists(st.sampled_from(free), unique=True, max_size=2))]
     spare = ports[len(colors) : 2]
     further = draw(st.sampled_from(["touch", "ultrasonic", "none"])) if spare else "none"
-    touch = st.builds(TouchSpec, st.just("bumper"), st.sampled_from(spare or ["in1"]), places, places, mm(1, 500))
+    ends = [(motor.port, end) for motor in motors for end in MOTOR_ENDS if getattr(motor, f"{end}_deg") is not None]
+    presser = draw(st.sampled_from([("", "low"), *ends]))
+    touch = st.builds(TouchSpec, st.just("bumper"), st.sampled_from(spare or ["in1"]), places, places, mm(1, 500),
+                      *map(st.just, presser))  # fmt: skip
     second = st.builds(UltrasonicSpec, st.just("back"), st.sampled_from(spare or ["in1"]), places, places)
     infrared = st.builds(InfraredSpec, port=st.just(ports[3]), x_mm=places, y_mm=places, angle_deg=mm(-360, 360))
     at_last = draw(st.sampled_from(["gyro", "infrared", "none"]))
@@ -75,8 +85,11 @@ def robots(draw: st.DrawFn) -> RobotSpec:
         ultrasonic=draw(st.none() | ultrasonic),
         gyro=GyroSpec(port=ports[3]) if at_last == "gyro" else None,
         pen=draw(pens),
-        extra_motors=tuple(MotorSpec(port, draw(st.sampled_from(MOTOR_KINDS))) for port in motors),
+        extra_motors=tuple(motors),
         extra_ultrasonics=(draw(second),) if further == "ultrasonic" else (),
         touch_sensors=(draw(touch),) if further == "touch" else (),
         infrared=draw(infrared) if at_last == "infrared" else None,
+        left_reversed=draw(st.booleans()),
+        right_reversed=draw(st.booleans()),
+        gear_ratio=draw(st.just(1.0) | mm(0.01, 100)),
     )

@@ -118,6 +118,31 @@ EXPLORER = {field.name: getattr(ROBOTS["Explorer"], field.name) for field in fie
         ("[pen]\ncolor = 'Teal'", {"pen": PenSpec(color="teal")}),
         ("[ultrasonic]\nnoise_mm = 5", {"ultrasonic": UltrasonicSpec(noise_mm=5)}),
         ("[motors]\noutA = 'medium'", {"extra_motors": (MotorSpec("outA", "medium"),)}),
+        ("right_reversed = true\ngear_ratio = 0.5", {"right_reversed": True, "gear_ratio": 0.5}),
+        (
+            "[motors]\noutD = 'large'\n[motors.outA]\nlow_deg = -90\nhigh_deg = 0\n[motors.outB]\nkind = 'medium'",
+            {
+                "extra_motors": (MotorSpec("outD", "large"), MotorSpec("outA", "medium", -90.0, 0.0)),
+                "left_motor": "medium",
+            },
+        ),
+        (
+            "ultrasonic = false\nmotors.outA.high_deg = 90\n[touch_sensors.end]\nport = 'in1'\npressed_by = 'outA'\n"
+            "pressed_at = 'high'",
+            {
+                "ultrasonic": None,
+                "extra_motors": (MotorSpec("outA", high_deg=90.0),),
+                "touch_sensors": (TouchSpec("end", "in1", pressed_by="outA", pressed_at="high"),),
+            },
+        ),
+        (
+            "base = 'Explorer'\nname = 'mine'\nmotors.outA.low_deg = -90\ntouch_sensors.bumper.y_mm = 70",
+            {
+                **EXPLORER,
+                "extra_motors": (MotorSpec("outA", low_deg=-90.0),),
+                "touch_sensors": (TouchSpec("bumper", "in1", 0.0, 70.0, 60.0),),
+            },
+        ),
         (
             "ultrasonic = false\n[touch_sensors.nose]\nport = 'in1'",
             {"ultrasonic": None, "touch_sensors": (TouchSpec("nose"),)},
@@ -143,6 +168,10 @@ EXPLORER = {field.name: getattr(ROBOTS["Explorer"], field.name) for field in fie
         "pen",
         "ultrasonic",
         "motor",
+        "wheel motors",
+        "end stops",
+        "touch at an end stop",
+        "changed parts of a base",
         "touch",
         "infrared",
         "second ultrasonic",

@@ -48,6 +48,17 @@ MISTAKES: dict[str, Callable[[], Any]] = {
     "motor on a wheel's port": lambda: RobotSpec(extra_motors=(MotorSpec("outB"),)),
     "motor on no port": lambda: RobotSpec(extra_motors=(MotorSpec("outX"),)),
     "two motors on a port": lambda: RobotSpec(extra_motors=(MotorSpec("outA"), MotorSpec("outA"))),
+    "low end above the start": lambda: MotorSpec("outA", low_deg=1.0),
+    "high end below the start": lambda: MotorSpec("outA", high_deg=-1.0),
+    "no room between the ends": lambda: MotorSpec("outA", low_deg=0.0, high_deg=0.0),
+    "gear without teeth": lambda: RobotSpec(gear_ratio=0.0),
+    "pressed by a wheel": lambda: replace(ROBOT, touch_sensors=(TouchSpec(port="in3", pressed_by="outB"),)),
+    "pressed by no motor": lambda: RobotSpec(
+        ultrasonic=None, touch_sensors=(TouchSpec(pressed_by="outA", pressed_at="high"),)
+    ),
+    "pressed at no end": lambda: replace(ROBOT, touch_sensors=(TouchSpec(port="in3", pressed_by="outA"),)),
+    "pressed on no port": lambda: TouchSpec(pressed_by="in2"),
+    "pressed in the middle": lambda: TouchSpec(pressed_at="middle"),
     "two sensors on a port": lambda: RobotSpec(touch_sensors=(TouchSpec(port="in2"),)),
     "sensor on no port": lambda: RobotSpec(gyro=None, infrared=InfraredSpec(port="in9")),
     "two sensors of a name": lambda: replace(ROBOT, touch_sensors=(TouchSpec("behind", "in3"),)),
@@ -66,8 +77,28 @@ def test_impossible_parts_are_refused(make: Callable[[], Any]) -> None:
         make()
 
 
-def test_parts_are_kept_when_a_run_is_written_down() -> None:
-    assert from_plain(json.loads(json.dumps(to_plain(RUN)))) == RUN
+HOMING = replace(
+    ROBOT,
+    extra_motors=(MotorSpec("outA", "medium", -90.0), MotorSpec("outD", "large", 0.0, 45.5)),
+    touch_sensors=(TouchSpec(port="in3", pressed_by="outD", pressed_at="high"),),
+    left_reversed=True,
+    gear_ratio=0.5,
+)
+"""A robot with everything that says how its motors are built in."""
+
+
+@pytest.mark.parametrize("robot", [ROBOT, HOMING], ids=["further parts", "mechanics"])
+def test_parts_are_kept_when_a_run_is_written_down(robot: RobotSpec) -> None:
+    run = replace(RUN, robot=robot)
+    assert from_plain(json.loads(json.dumps(to_plain(run)))) == run
+
+
+def test_what_is_as_usual_is_not_written_down() -> None:
+    robot = to_plain(RUN)["robot"]
+    assert not {"left_reversed", "right_reversed", "gear_ratio"} & robot.keys()
+    assert (robot["extra_motors"][0], list(robot["touch_sensors"][0])) == (
+        {"port": "outA", "kind": "medium"}, ["name", "port", "x_mm", "y_mm", "width_mm"]
+    )  # fmt: skip
 
 
 def test_a_run_written_before_there_were_such_parts_can_be_read() -> None:

@@ -315,7 +315,9 @@ def changed(base: Value, values: Mapping[str, object], at: Location) -> Value:
         ConfigError: a value is wrong.
     """
     kind: Any = type(base)
-    found: Value = convert({**{key: getattr(base, key) for key in kind.__dataclass_fields__}, **values}, kind, at)
+    # Without the defaults: an empty text may be one, but a file cannot give it.
+    own = {each.name: value for each in fields(kind) if (value := getattr(base, each.name)) != each.default}
+    found: Value = convert({**own, **values}, kind, at)
     return found
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from itertools import takewhile
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -75,11 +76,15 @@ ROBOTS: Mapping[str, RobotSpec] = {
 DEFAULT_ROBOT = "Default_Robot"
 LENGTH_KEYS = ("wheel_diameter_mm", "wheel_spacing_mm", "wheel_width_mm", "back_mm")
 PORT_KEYS = ("left_port", "right_port")
-_BODY_KEYS = ("name", *LENGTH_KEYS, *PORT_KEYS)
+MOUNTED_KEYS = {"left_reversed": False, "right_reversed": False, "gear_ratio": 1.0}
+"""Keys of how the motors drive the wheels, with their usual values, which files omit."""
+_BODY_KEYS = ("name", *LENGTH_KEYS, *PORT_KEYS, *MOUNTED_KEYS)
 """Keys whose values are those of the fields."""
+_MOTOR_KEYS = ("kind", "low_deg", "high_deg")
 PEN_KEYS = ("x_mm", "y_mm", "color", "width_mm", "down")
 _TOP_KEYS = (
-    "base", "name", *LENGTH_KEYS, "weight", *PORT_KEYS, "motors", *(mount.key for mount in MOUNTS), "pen",
+    "base", "name", *LENGTH_KEYS, "weight", *PORT_KEYS, *MOUNTED_KEYS, "motors", *(mount.key for mount in MOUNTS),
+    "pen",
 )  # fmt: skip
 
 COMMENTS = {
@@ -87,6 +92,12 @@ COMMENTS = {
     "back_mm": "how far the body reaches behind the axle, as a negative y",
     "weight": f"{', '.join(ROBOT_WEIGHTS)}, or a number",
     "left_port": "outA … outD",
+    "left_reversed": "mounted the other way round: positive speeds turn the wheel backwards",
+    "right_reversed": "mounted the other way round: positive speeds turn the wheel backwards",
+    "gear_ratio": "motor turns per wheel turn",
+    "kind": "large or medium",
+    "low_deg": "end stop backwards, from the position at the start",
+    "high_deg": "end stop forwards, from the position at the start",
     "port": "in1 … in4",
     "x_mm": "to the right of the robot's centre",
     "y_mm": "forward of the axle",
@@ -98,7 +109,13 @@ COMMENTS = {
     "ray_angles_deg": "directions of the rays; the nearest echo counts",
     "color": "a CSS colour name, or #rrggbb",
 }
-_FURTHER_COMMENTS: Mapping[type, Mapping[str, str]] = {TouchSpec: {"width_mm": "of the bumper, across the robot"}}
+_FURTHER_COMMENTS: Mapping[type, Mapping[str, str]] = {
+    TouchSpec: {
+        "width_mm": "of the bumper, across the robot",
+        "pressed_by": "port of the motor that presses it, in place of obstacles and walls",
+        "pressed_at": "low or high: the motor's end stop where it does",
+    }
+}
 """Comments on keys in sensors of one class only."""
 
 _HEAD = (
@@ -172,21 +189,36 @@ def _weight(data: object, at: Location) -> float:
 
 
 def _motors(robot: Mapping[str, Any], base: RobotSpec, at: Location) -> dict[str, Any]:
-    """Return motor kinds by port, as fields of `RobotSpec`; `false` removes a motor of the base."""
+    """Return motors by port, as fields of `RobotSpec`; `false` removes a motor of the base."""
     wheels = {files.convert(robot.get(key, getattr(base, key)), str, at.at(key)): key for key in PORT_KEYS}
-    kinds = {motor.port: motor.kind for motor in base.extra_motors}
+    motors = {motor.port: motor for motor in base.extra_motors}
     found: dict[str, Any] = {}
     at = at.at("motors")
-    for port, kind in files.table(robot["motors"], at, OUTPUT_PORTS).items():
-        if port in wheels and kind is False:
-            raise at.at(port).wrong("drives a wheel", f"it cannot be removed; {wheels[port]} sets its port")
-        if port in wheels:
-            found[wheels[port].replace("port", "motor")] = files.one_of(kind, at.at(port), MOTOR_KINDS)
-        elif kind is False:
-            kinds.pop(port, None)
+    for port, data in files.table(robot["motors"], at, OUTPUT_PORTS).items():
+        wheel = wheels.get(port)
+        if wheel and data is False:
+            raise at.at(port).wrong("drives a wheel", f"it cannot be removed; {wheel} sets its port")
+        if wheel:
+            key = wheel.replace("port", "motor")
+            motor = _motor(data, MotorSpec(port, getattr(base, key)), at.at(port))
+            if (motor.low_deg, motor.high_deg) != (None, None):
+                raise at.at(port).wrong("drives a wheel, which has no end stops", "only its kind can be set here")
+            found[key] = motor.kind
+        elif data is False:
+            motors.pop(port, None)
         else:
-            kinds[port] = files.one_of(kind, at.at(port), MOTOR_KINDS)
-    return {**found, "extra_motors": tuple(MotorSpec(port, kind) for port, kind in kinds.items())}
+            motors[port] = _motor(data, motors.get(port, MotorSpec(port)), at.at(port))
+    return {**found, "extra_motors": tuple(motors.values())}
+
+
+def _motor(data: object, base: MotorSpec, at: Location) -> MotorSpec:
+    """Return a motor with the values in a table, or of the kind that a text names."""
+    if not isinstance(data, dict):
+        return replace(base, kind=files.one_of(data, at, MOTOR_KINDS))
+    values = files.table(data, at, _MOTOR_KEYS)
+    if "kind" in values:
+        files.one_of(values["kind"], at.at("kind"), MOTOR_KINDS)
+    return files.changed(base, values, at)
 
 
 def _single(data: object, mount: Mount, base: RobotSpec, at: Location) -> SensorSpec | None:
@@ -328,6 +360,7 @@ def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = PEN
     lines = [f"[{parent}]"] if parent else []
     values = _values(spec, ("name", *LENGTH_KEYS, "weight", *PORT_KEYS))
     values["weight"] = next((name for name, weight in ROBOT_WEIGHTS.items() if weight == spec.weight), spec.weight)
+    values |= {key: value for key, usual in MOUNTED_KEYS.items() if (value := getattr(spec, key)) != usual}
     lines += files.toml_lines(values, COMMENTS)
     names = [sensor.name for sensor in spec.color_sensors]
     if gone := [sensor.name for sensor in ROBOTS[DEFAULT_ROBOT].color_sensors if sensor.name not in names]:
@@ -340,12 +373,27 @@ def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = PEN
         for sensor in spec.sensors_in(mount):
             place = f"{mount.key}.{files.toml_key(sensor.name)}" if mount.many else mount.key
             comments = {**COMMENTS, **_FURTHER_COMMENTS.get(mount.spec, {})}
-            lines += ["", f"[{under}{place}]", *files.toml_lines(_values(sensor, files.keys_of(mount.spec)), comments)]
-    wheels = [motor for motor in spec.wheel_motors if motor.kind != "large"]
-    if wheels or spec.extra_motors:
-        motors: dict[str, Scalar] = {motor.port: motor.kind for motor in (*wheels, *spec.extra_motors)}
-        lines += ["", f"[{under}motors]", *files.toml_lines(motors)]
+            keys = [key for key in files.keys_of(mount.spec) if not _is_no_presser(sensor, key)]
+            lines += ["", f"[{under}{place}]", *files.toml_lines(_values(sensor, keys), comments)]
+    lines += _motor_lines(spec, f"{under}motors")
     return [*lines, "", f"[{under}pen]", *files.toml_lines(_values(spec.pen, pen_keys), COMMENTS)]
+
+
+def _is_no_presser(sensor: SensorSpec, key: str) -> bool:
+    return isinstance(sensor, TouchSpec) and not sensor.pressed_by and key.startswith("pressed_")
+
+
+def _motor_lines(spec: RobotSpec, table: str) -> list[str]:
+    """Return the motors that differ from a large one on each wheel: by kind, or as tables with their end stops."""
+    motors = (*(motor for motor in spec.wheel_motors if motor.kind != "large"), *spec.extra_motors)
+    # In a file all tables follow the keys, and the order of the motors counts.
+    plain = list(takewhile(lambda motor: motor.low_deg is motor.high_deg is None, motors))
+    kinds: dict[str, Scalar] = {motor.port: motor.kind for motor in plain}
+    lines = ["", f"[{table}]", *files.toml_lines(kinds)] if kinds else []
+    for motor in motors[len(plain) :]:
+        values = {key: value for key, value in _values(motor, _MOTOR_KEYS).items() if value is not None}
+        lines += ["", f"[{table}.{motor.port}]", *files.toml_lines(values, COMMENTS)]
+    return lines
 
 
 def _values(spec: object, keys: Iterable[str]) -> dict[str, Scalar]:

@@ -55,21 +55,41 @@ REMOTE_CHANNELS = (1, 2, 3, 4)
 """Channels of a remote control or beacon."""
 
 
+MOTOR_ENDS = ("low", "high")
+"""Ends of the range of a motor with end stops, for `TouchSpec.pressed_at`."""
+
+MAX_RANGE_DEG = 100_000
+"""Largest distance of an end stop from the motor's position at the start."""
+
+
 @dataclass(frozen=True, slots=True)
 class MotorSpec:
-    """A motor on a port."""
+    """A motor on a port. Its end stops are in degrees of the motor from its position at the start; None is no stop.
+
+    A motor that is mounted the other way round just has its stops at other degrees, so this is no value of its own.
+    """
 
     port: str
     kind: str = "medium"
     """One of `MOTOR_KINDS`."""
+    low_deg: float | None = None
+    """The motor turns no further backwards than here; 0 or below."""
+    high_deg: float | None = None
+    """The motor turns no further forwards than here; 0 or above."""
 
     def __post_init__(self) -> None:
         require_one_of(self.kind, "kind of motor", MOTOR_KINDS, "motors")
+        if self.low_deg is not None:
+            require(self.low_deg, -MAX_RANGE_DEG, 0, "low_deg")
+        if self.high_deg is not None:
+            require(self.high_deg, 0, MAX_RANGE_DEG, "high_deg")
+        if self.low_deg == self.high_deg is not None:
+            raise RobotError("equals low_deg: the motor could not turn", key="high_deg")
 
 
 @dataclass(frozen=True, slots=True)
 class TouchSpec:
-    """A touch sensor: pressed while its bumper touches an obstacle or a wall."""
+    """A touch sensor: pressed while its bumper touches an obstacle or a wall, or by a motor at its end stop."""
 
     name: str = "touch"
     port: str = "in1"
@@ -77,11 +97,18 @@ class TouchSpec:
     y_mm: float = 45.0
     width_mm: float = 20.0
     """Width of the bumper, across the robot."""
+    pressed_by: str = ""
+    """Port of the motor that presses it at an end stop, in place of obstacles and walls; empty for a bumper."""
+    pressed_at: str = "low"
+    """The end stop at which that motor presses it, one of `MOTOR_ENDS`."""
 
     def __post_init__(self) -> None:
         require(self.x_mm, -500, 500, f"{self.name}.x_mm")
         require(self.y_mm, -500, 500, f"{self.name}.y_mm")
         require(self.width_mm, 1, 500, f"{self.name}.width_mm")
+        if self.pressed_by:
+            require_one_of(self.pressed_by, "port", OUTPUT_PORTS, f"{self.name}.pressed_by")
+        require_one_of(self.pressed_at, "end", MOTOR_ENDS, f"{self.name}.pressed_at")
 
 
 @dataclass(frozen=True, slots=True)
@@ -308,6 +335,11 @@ class RobotSpec:
     left_motor: str = "large"
     """Kind of the motor of the left wheel, one of `MOTOR_KINDS`."""
     right_motor: str = "large"
+    left_reversed: bool = False
+    """Whether the motor of the left wheel is mounted the other way round: positive speeds turn the wheel backwards."""
+    right_reversed: bool = False
+    gear_ratio: float = 1.0
+    """Turns of a wheel's motor for one turn of the wheel: above 1 the robot is slower than its motors."""
 
     @property
     def wheel_motors(self) -> tuple[MotorSpec, MotorSpec]:
@@ -342,6 +374,7 @@ class RobotSpec:
         require(self.wheel_width_mm, 1, 200, "wheel_width_mm")
         require(self.back_mm, -1000, 0, "back_mm")
         require(self.weight, 0, 1000, "weight")
+        require(self.gear_ratio, 0.01, 100, "gear_ratio")
         for key in ("left_port", "right_port"):
             require_one_of(getattr(self, key), "port", OUTPUT_PORTS, key)
         for key in ("left_motor", "right_motor"):
@@ -363,11 +396,27 @@ class RobotSpec:
                     key=f"{sensor.name}.port",
                 )
             used.add(sensor.port)
+        self._check_names()
+        for touch in self.touch_sensors:
+            self._check_presser(touch)
+
+    def _check_names(self) -> None:
         names = [sensor.name for sensor in self.color_sensors]
         if len(set(names)) < len(names):
             raise RobotError("two colour sensors have the same name", "give each its own", key="color_sensors")
         if len({sensor.name for sensor in self.sensors}) < len(self.sensors):
             raise RobotError("two sensors have the same name", "give each its own", key="sensors")
+
+    def _check_presser(self, touch: TouchSpec) -> None:
+        port, end = touch.pressed_by, f"{touch.pressed_at}_deg"
+        motors = {motor.port: motor for motor in self.extra_motors}
+        if port and port not in motors:
+            what = "drives a wheel" if port in (self.left_port, self.right_port) else "has no motor"
+            raise RobotError(f"{port} {what}", "the port of another motor", key=f"{touch.name}.pressed_by")
+        if port and getattr(motors[port], end) is None:
+            raise RobotError(
+                f"the motor on {port} has no such end stop", f"give it {end}", key=f"{touch.name}.pressed_at"
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -440,8 +489,16 @@ _OMITTED_DEFAULTS: Mapping[str, Any] = {
     **{mount.field: () if mount.many else None for mount in MOUNTS if mount.field not in _FIRST_MOUNTS},
     "left_motor": "large",
     "right_motor": "large",
+    "left_reversed": False,
+    "right_reversed": False,
+    "gear_ratio": 1.0,
 }
 """Fields of a robot added since the first stored runs; omitted at these values, so that exports do not change."""
+_OMITTED_PARTS: Mapping[str, Mapping[str, Any]] = {
+    "extra_motors": {"low_deg": None, "high_deg": None},
+    "touch_sensors": {"pressed_by": "", "pressed_at": "low"},
+}
+"""As `_OMITTED_DEFAULTS`, for the parts in a field of a robot."""
 
 
 def to_plain(spec: RunSpec) -> dict[str, Any]:
@@ -450,6 +507,11 @@ def to_plain(spec: RunSpec) -> dict[str, Any]:
     for key, usual in _OMITTED_DEFAULTS.items():
         if plain["robot"][key] == usual:
             del plain["robot"][key]
+    for key, usual_values in _OMITTED_PARTS.items():
+        plain["robot"][key] = tuple(
+            {name: value for name, value in part.items() if name not in usual_values or value != usual_values[name]}
+            for part in plain["robot"][key]
+        )
     plain["profile"] = profile_to_plain(spec.profile)
     return plain
 
