@@ -238,6 +238,13 @@ class TestReckoning:
         assert_allclose(got.y_mm, [20, 20, 20], atol=1e-9)
         assert_allclose(got.heading_deg, [0, 0, 90])
 
+    def test_the_positions_are_those_of_the_motors(self) -> None:
+        usual, geared = RobotSpec(), RobotSpec(left_reversed=True, gear_ratio=0.5)
+        left, right = column(0, 100, 130), column(0, 120, 160)
+        expected = dead_reckoning(left, right, Pose(0, 0, 0), usual)
+        got = dead_reckoning(left * -0.5, right * 0.5, Pose(0, 0, 0), geared)
+        assert_allclose([got.x_mm, got.y_mm, got.heading_deg], [expected.x_mm, expected.y_mm, expected.heading_deg])
+
     def test_an_arc_is_round(self) -> None:
         robot = RobotSpec()
         per_degree = math.pi * robot.wheel_diameter_mm / 360

@@ -55,6 +55,15 @@ PAIRS = RobotSpec(
     touch_sensors=(TouchSpec("touch_left", "in3", x_mm=-40.0), TouchSpec("touch_right", "in4", x_mm=40.0)),
 )
 
+ARM = RobotSpec(
+    extra_motors=(MotorSpec("outA", low_deg=-90.0, high_deg=180.0),),
+    gyro=None,
+    touch_sensors=(TouchSpec("end", "in4", pressed_by="outA"),),
+    left_reversed=True,
+    gear_ratio=0.8,
+)
+"""An arm between two end stops, which presses a sensor at the lower one."""
+
 FAR_WALL = WorldSpec(background="Empty_Map", start=START)
 FURNISHED = WorldSpec(
     background="Empty_Map",
@@ -89,7 +98,10 @@ REMOTE = WorldSpec(
 )
 """Somebody holds every set of buttons for a second, on all channels at once."""
 
-ROBOTS = {"square": SQUARE, "plain": PLAIN, "eyes": EYES, "pairs": PAIRS, "default": RobotSpec()}
+ROBOTS = {
+    "square": SQUARE, "plain": PLAIN, "eyes": EYES, "pairs": PAIRS, "default": RobotSpec(), "arm": ARM,
+    "reversed": RobotSpec(left_reversed=True, right_reversed=True), "geared": RobotSpec(gear_ratio=0.5),
+}  # fmt: skip
 WORLDS = {
     "empty": FAR_WALL,
     "furnished": FURNISHED,

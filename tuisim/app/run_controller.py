@@ -11,6 +11,7 @@ from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import RunPhase, Snapshot, snapshot_of
 from tuisim.app.timeline import Timeline
+from tuisim.core.end_stops import flags_at_start
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
@@ -186,7 +187,8 @@ class RunView:
 
     def _at_rest(self, pose: Pose) -> Instant:
         spec = self.next_run.spec
-        return Instant(0, pose, gyro_zero_deg=pose.heading_deg, noise=spec.world.noise, seed=spec.seed)
+        flags = flags_at_start(spec.robot)
+        return Instant(0, pose, gyro_zero_deg=pose.heading_deg, end_flags=flags, noise=spec.world.noise, seed=spec.seed)
 
     @property
     def _is_of_run(self) -> bool:

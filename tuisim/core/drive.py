@@ -26,14 +26,26 @@ def float32(value: float) -> float:
     return float(_FLOAT32.unpack(_FLOAT32.pack(value))[0])
 
 
-def mm_per_degree(robot: RobotSpec) -> float:
-    """Return how far a wheel rolls per degree."""
-    return math.pi * robot.wheel_diameter_mm / 360.0
+def mm_per_degree(robot: RobotSpec) -> tuple[float, float]:
+    """Return how far the left and the right wheel roll forwards per degree of their motors; negative if reversed."""
+    return _signed(math.pi * robot.wheel_diameter_mm / 360.0 / robot.gear_ratio, robot)
+
+
+def _signed(forwards_mm: float, robot: RobotSpec) -> tuple[float, float]:
+    """Return the same way for the left and the right wheel, negative where the motor is reversed."""
+    return (
+        -forwards_mm if robot.left_reversed else forwards_mm,
+        -forwards_mm if robot.right_reversed else forwards_mm,
+    )
 
 
 def turn_rate_dps(left_dps: float, right_dps: float, robot: RobotSpec) -> float:
-    """Return the counter-clockwise rate of turn that results from the speeds of the wheels."""
-    return (right_dps - left_dps) * robot.wheel_diameter_mm / (2.0 * robot.wheel_spacing_mm)
+    """Return the counter-clockwise rate of turn that results from the speeds of the wheels' motors."""
+    left_dps, right_dps = (
+        -left_dps if robot.left_reversed else left_dps,
+        -right_dps if robot.right_reversed else right_dps,
+    )
+    return (right_dps - left_dps) * robot.wheel_diameter_mm / (2.0 * robot.wheel_spacing_mm) / robot.gear_ratio
 
 
 class Records(NamedTuple):
@@ -59,7 +71,7 @@ def _fill(records: Records, at: int, left: EvenGlide, right: EvenGlide, zero_deg
 
 
 class Glide(NamedTuple):
-    """Motion of one wheel over several ticks."""
+    """Motion of one wheel's motor over several ticks."""
 
     rolls_deg: list[float]
     """Rotation in each tick."""
@@ -68,7 +80,7 @@ class Glide(NamedTuple):
 
 
 class EvenGlide(NamedTuple):
-    """Motion of one wheel at a steady speed over several ticks."""
+    """Motion of one wheel's motor at a steady speed over several ticks."""
 
     roll_deg: float
     """Rotation in each tick."""
@@ -117,10 +129,14 @@ class BrickDrive:
     `early` is the fraction of a tick's turn that already applies to the motion of that tick.
     """
 
-    __slots__ = ("_early", "_mm_per_deg", "_spacing_mm", "gyro_zero_deg", "heading_deg", "x_mm", "y_mm")
+    __slots__ = (
+        "_early", "_left_mm_per_deg", "_right_mm_per_deg", "_spacing_mm", "gyro_zero_deg", "heading_deg", "x_mm",
+        "y_mm",
+    )  # fmt: skip
 
     def __init__(self, robot: RobotSpec, start: Pose, early: float) -> None:
-        self._mm_per_deg, self._spacing_mm, self._early = mm_per_degree(robot), robot.wheel_spacing_mm, early
+        self._left_mm_per_deg, self._right_mm_per_deg = mm_per_degree(robot)
+        self._spacing_mm, self._early = robot.wheel_spacing_mm, early
         self.x_mm, self.y_mm, self.heading_deg = start.x_mm, start.y_mm, start.heading_deg
         self.gyro_zero_deg = float32(start.heading_deg)
 
@@ -129,8 +145,8 @@ class BrickDrive:
         self.x_mm, self.y_mm, self.heading_deg = pose.x_mm, pose.y_mm, pose.heading_deg
 
     def roll(self, left_deg: float, right_deg: float) -> None:
-        """Move the robot by one tick's rotation of the wheels."""
-        left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
+        """Move the robot by one tick's rotation of the wheels' motors."""
+        left_mm, right_mm = left_deg * self._left_mm_per_deg, right_deg * self._right_mm_per_deg
         turned = degrees((right_mm - left_mm) / self._spacing_mm)
         heading = radians(self.heading_deg + turned * self._early)
         forward = (left_mm + right_mm) / 2
@@ -141,10 +157,11 @@ class BrickDrive:
     def glide(self, records: Records, left: Glide, right: Glide) -> None:
         """Move the robot by several ticks and write a record for each."""
         buffer, offsets, ticks, line, flags, actions, hz = records
-        per_deg, spacing, early, zero = self._mm_per_deg, self._spacing_mm, self._early, self.gyro_zero_deg
+        left_per_deg, right_per_deg = self._left_mm_per_deg, self._right_mm_per_deg
+        spacing, early, zero = self._spacing_mm, self._early, self.gyro_zero_deg
         x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, TICK_RECORD.pack_into
         for at, tick, left_deg, left_at, right_deg, right_at in zip(offsets, ticks, *left, *right, strict=True):
-            left_mm, right_mm = left_deg * per_deg, right_deg * per_deg
+            left_mm, right_mm = left_deg * left_per_deg, right_deg * right_per_deg
             turned, forward = degrees((right_mm - left_mm) / spacing), (left_mm + right_mm) / 2
             way = radians(heading + turned * early)
             x += forward * cos(way)
@@ -158,7 +175,7 @@ class BrickDrive:
 
     def glide_evenly(self, records: Records, left: EvenGlide, right: EvenGlide) -> tuple[float, float]:
         """As `glide`, with the same rotation in each tick; returns the final encoder positions."""
-        left_mm, right_mm = left.roll_deg * self._mm_per_deg, right.roll_deg * self._mm_per_deg
+        left_mm, right_mm = left.roll_deg * self._left_mm_per_deg, right.roll_deg * self._right_mm_per_deg
         turned, forward = degrees((right_mm - left_mm) / self._spacing_mm), (left_mm + right_mm) / 2
         if not turned:
             return _glide_straight(self, forward, radians(self.heading_deg), records, left, right)
@@ -184,14 +201,16 @@ class BrowserDrive:
     """
 
     __slots__ = (
-        "_early", "_forward_mm", "_heading", "_left_deg", "_right_deg", "_rim_mm", "_spacing_mm", "_turn",
-        "gyro_zero_deg", "heading_deg", "x_mm", "y_mm",
+        "_early", "_forward_mm", "_heading", "_left_deg", "_left_rim_mm", "_right_deg", "_right_rim_mm", "_spacing_mm",
+        "_turn", "gyro_zero_deg", "heading_deg", "x_mm", "y_mm",
     )  # fmt: skip
 
     def __init__(self, robot: RobotSpec, start: Pose, early: float) -> None:
-        self._rim_mm, self._spacing_mm, self._early = math.pi * robot.wheel_diameter_mm, robot.wheel_spacing_mm, early
+        self._left_rim_mm, self._right_rim_mm = _signed(math.pi * robot.wheel_diameter_mm / robot.gear_ratio, robot)
+        """How far each wheel rolls per turn of its motor."""
+        self._spacing_mm, self._early = robot.wheel_spacing_mm, early
         self._left_deg = self._right_deg = self._forward_mm = self._turn = 0.0
-        """Rotation of the wheels in the last tick, and the step and turn that result from it."""
+        """Rotation of the wheels' motors in the last tick, and the step and turn that result from it."""
         self.put(start)
         self.gyro_zero_deg = float32(self.heading_deg)
 
@@ -202,7 +221,7 @@ class BrowserDrive:
         self.heading_deg = self._heading * 180.0 / math.pi
 
     def roll(self, left_deg: float, right_deg: float) -> None:
-        """Move the robot by one tick's rotation of the wheels."""
+        """Move the robot by one tick's rotation of the wheels' motors."""
         if left_deg != self._left_deg or right_deg != self._right_deg:
             self._left_deg, self._right_deg = left_deg, right_deg
             self._forward_mm, self._turn = self._step(left_deg, right_deg)
@@ -218,18 +237,19 @@ class BrowserDrive:
             self._heading, self.heading_deg = heading, heading * 180.0 / math.pi
 
     def _step(self, left_deg: float, right_deg: float) -> tuple[float, float]:
-        """Return the step in mm and the turn in radians for a rotation of the wheels."""
-        left_mm, right_mm = left_deg / 360.0 * self._rim_mm, right_deg / 360.0 * self._rim_mm
+        """Return the step in mm and the turn in radians for a rotation of the wheels' motors."""
+        left_mm, right_mm = left_deg / 360.0 * self._left_rim_mm, right_deg / 360.0 * self._right_rim_mm
         return (left_mm + right_mm) / 2, (right_mm - left_mm) / self._spacing_mm
 
     def glide(self, records: Records, left: Glide, right: Glide) -> None:
         """Move the robot by several ticks and write a record for each."""
         buffer, offsets, ticks, line, flags, actions, hz = records
-        rim, spacing, early, zero = self._rim_mm, self._spacing_mm, self._early, self.gyro_zero_deg
+        left_rim, right_rim = self._left_rim_mm, self._right_rim_mm
+        spacing, early, zero = self._spacing_mm, self._early, self.gyro_zero_deg
         x, y, heading, shown, pack_into = self.x_mm, self.y_mm, self._heading, self.heading_deg, TICK_RECORD.pack_into
         whole, pi = _WHOLE_TURN, math.pi
         for at, tick, left_deg, left_at, right_deg, right_at in zip(offsets, ticks, *left, *right, strict=True):
-            left_mm, right_mm = left_deg / 360.0 * rim, right_deg / 360.0 * rim
+            left_mm, right_mm = left_deg / 360.0 * left_rim, right_deg / 360.0 * right_rim
             turned, forward = (right_mm - left_mm) / spacing, (left_mm + right_mm) / 2
             way = heading + turned * early
             x += forward * cos(way)

@@ -14,6 +14,7 @@ from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.collision import Solids
 from tuisim.core.drive import BrickDrive, BrowserDrive, Drive, Records, mm_per_degree
+from tuisim.core.end_stops import flags_at_start
 from tuisim.core.motors import Motor, MotorState, top_speed_dps
 from tuisim.core.noise import wheel_noise
 from tuisim.core.profile import MotorLaw
@@ -80,9 +81,9 @@ class Motion:
     """
 
     __slots__ = (
-        "_buffer", "_early", "_hz", "_left_dps", "_longest_mm", "_mm_per_deg", "_right_dps", "_room_end",
-        "_sink", "_solids", "_spacing_mm", "_tick_s", "actions", "changed", "drive", "left", "line", "noise",
-        "pen_down", "right", "spec", "stall_ticks", "tick",
+        "_buffer", "_early", "_hz", "_left_dps", "_left_mm_per_deg", "_longest_mm", "_right_dps", "_right_mm_per_deg",
+        "_room_end", "_sink", "_solids", "_spacing_mm", "_tick_s", "actions", "changed", "drive", "end_flags", "left",
+        "line", "noise", "pen_down", "right", "spec", "stall_ticks", "tick",
     )  # fmt: skip
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
@@ -91,7 +92,7 @@ class Motion:
         self._hz = spec.profile.tick_hz
         self._tick_s = 1.0 / self._hz
         self.stall_ticks = stall_ticks(self._hz)
-        self._mm_per_deg = mm_per_degree(spec.robot)
+        self._left_mm_per_deg, self._right_mm_per_deg = mm_per_degree(spec.robot)
         self._spacing_mm = spec.robot.wheel_spacing_mm
         self._early = 0.5 if spec.profile.halfway_heading else 0.0
         """Fraction of a tick's turn that already applies to the motion of that tick."""
@@ -99,7 +100,7 @@ class Motion:
         if self._solids is not None:
             # One wheel at full speed forwards, the other backwards.
             fastest = max(top_speed_dps(motor.kind, spec.profile) for motor in spec.robot.wheel_motors)
-            farthest = fastest * self._tick_s * self._mm_per_deg
+            farthest = fastest * self._tick_s * abs(self._left_mm_per_deg)
             self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
         self.tick = 0
         self.drive = drive_of(spec)
@@ -108,6 +109,8 @@ class Motion:
         self.left, self.right = motor_of(spec, left.kind), motor_of(spec, right.kind)
         self.noise = spec.world.noise
         self.pen_down = spec.robot.pen.down
+        self.end_flags = flags_at_start(spec.robot)
+        """Which end stops the motors are at that drive no wheel: the bits of `core.end_stops`."""
         self.line = 0
         """Source line that spends the simulated time, for the record."""
         self.actions = 0
@@ -172,7 +175,7 @@ class Motion:
             drive.x_mm, drive.y_mm = drive.x_mm + aside_mm[0], drive.y_mm + aside_mm[1]
         self._left_dps, self._right_dps = left_deg * self._hz, right_deg * self._hz
         flags = (left.mode and FLAG_LEFT_RUNNING) | (right.mode and FLAG_RIGHT_RUNNING)
-        flags |= self.pen_down and FLAG_PEN_DOWN
+        flags |= (self.pen_down and FLAG_PEN_DOWN) | self.end_flags
         TICK_RECORD.pack_into(
             buffer, 64 + 64 * count,
             tick, self.line, drive.x_mm, drive.y_mm, drive.heading_deg, left.position_deg, right.position_deg,
@@ -191,8 +194,8 @@ class Motion:
         left, right = self.left, self.right
         if left.blocked_ticks or right.blocked_ticks:
             return 0
-        left_ends, right_ends = (left.moving_dps, left.aim_dps), (right.moving_dps, right.aim_dps)
-        per_dps = self._tick_s * self._mm_per_deg
+        left_ends, right_ends = self._wheel_ends(left, right)
+        per_dps = self._tick_s * abs(self._left_mm_per_deg)
         straight, turn = 0, 0.0
         if left_ends == right_ends and left_ends[0] * left_ends[1] >= 0:
             straight = 1 if sum(left_ends) > 0 else -1
@@ -207,6 +210,14 @@ class Motion:
         # Without any obstacle it is infinite.
         return most if free >= way * most else int(free / way)
 
+    def _wheel_ends(self, left: Motor, right: Motor) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Return the current and the target speed that each wheel's motor gives it, positive forwards."""
+        left_ends, right_ends = (left.moving_dps, left.aim_dps), (right.moving_dps, right.aim_dps)
+        return (
+            left_ends if self._left_mm_per_deg > 0 else (-left_ends[0], -left_ends[1]),
+            right_ends if self._right_mm_per_deg > 0 else (-right_ends[0], -right_ends[1]),
+        )
+
     def _pose(self) -> tuple[float, float, float]:
         drive = self.drive
         return drive.x_mm, drive.y_mm, drive.heading_deg
@@ -217,9 +228,9 @@ class Motion:
         """Undo the part of a tick that an obstacle or wall blocks.
 
         Returns:
-            The remaining degrees of each wheel, and the displacement that pushes the robot aside along x and y.
+            The remaining degrees of each wheel's motor, and the displacement that pushes the robot aside along x and y.
         """
-        left_mm, right_mm = left_deg * self._mm_per_deg, right_deg * self._mm_per_deg
+        left_mm, right_mm = left_deg * self._left_mm_per_deg, right_deg * self._right_mm_per_deg
         if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
             return left_deg, right_deg, None
         turn_deg = degrees((right_mm - left_mm) / self._spacing_mm)
@@ -247,6 +258,7 @@ class Motion:
             (FLAG_LEFT_RUNNING if self.left.mode else 0)
             | (FLAG_RIGHT_RUNNING if self.right.mode else 0)
             | (FLAG_PEN_DOWN if self.pen_down else 0)
+            | self.end_flags
         )
 
     def _make_room(self, ticks: int) -> Buffer:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from tuisim.core.drive import float32, turn_rate_dps
+from tuisim.core.end_stops import EndStops
 from tuisim.core.geometry import Pose
 from tuisim.core.motion import Motion, motor_of
 from tuisim.core.motors import Motor
@@ -50,6 +51,7 @@ class Simulation(Motion):
             right_speed_dps=right,
             turn_rate_dps=turn_rate_dps(left, right, self.spec.robot),
             gyro_zero_deg=self.drive.gyro_zero_deg,
+            end_flags=self.end_flags,
             noise=self.noise,
             seed=self.spec.seed,
         )
@@ -98,11 +100,12 @@ REPORT_DEG = 0.25
 class FurtherMotors(Simulation):
     """A simulation whose robot has motors besides its two wheel motors. They do not change the pose."""
 
-    __slots__ = ("_reported", "_reported_tick", "on_turns", "others")
+    __slots__ = ("_reported", "_reported_tick", "_stops", "on_turns", "others")
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
         super().__init__(spec, sink)
         self.others: tuple[Motor, ...] = tuple(motor_of(spec, motor.kind) for motor in spec.robot.extra_motors)
+        self._stops = tuple(EndStops(spec.robot, motor) for motor in spec.robot.extra_motors)
         self.on_turns: Callable[[tuple[Turn, ...]], None] = lambda _: None
         """Called when a motor deviates from its last report; until then each motor turns at the reported speed."""
         self._reported: tuple[Turn, ...] = ((0.0, 0.0),) * len(self.others)
@@ -122,12 +125,16 @@ class FurtherMotors(Simulation):
     def tick_once(self) -> None:
         """Run one tick of the robot, then of the extra motors."""
         super().tick_once()
-        for motor in self.others:
+        for motor, stops in zip(self.others, self._stops, strict=True):
             if not motor.resting:
                 before = motor.mode
-                motor.step(self.tick, 0.0)
-                if motor.mode != before:
+                stops.step(motor, self.tick)
+                if motor.mode != before or motor.blocked_ticks == self.stall_ticks:
                     self.changed = True
+        flags = sum(stops.flags for stops in self._stops)
+        if flags != self.end_flags:
+            self.end_flags = flags
+            self.rewrite_record()
         self._report_turns()
 
     def _report_turns(self) -> None:

@@ -58,6 +58,9 @@ REMOTE_CHANNELS = (1, 2, 3, 4)
 MOTOR_ENDS = ("low", "high")
 """Ends of the range of a motor with end stops, for `TouchSpec.pressed_at`."""
 
+MIN_RANGE_DEG = 5.0
+"""Smallest distance between the end stops of a motor."""
+
 MAX_RANGE_DEG = 100_000
 """Largest distance of an end stop from the motor's position at the start."""
 
@@ -83,8 +86,8 @@ class MotorSpec:
             require(self.low_deg, -MAX_RANGE_DEG, 0, "low_deg")
         if self.high_deg is not None:
             require(self.high_deg, 0, MAX_RANGE_DEG, "high_deg")
-        if self.low_deg == self.high_deg is not None:
-            raise RobotError("equals low_deg: the motor could not turn", key="high_deg")
+        if self.low_deg is not None and self.high_deg is not None and self.high_deg - self.low_deg < MIN_RANGE_DEG:
+            raise RobotError(f"must be at least {MIN_RANGE_DEG:g} above low_deg", key="high_deg")
 
 
 @dataclass(frozen=True, slots=True)

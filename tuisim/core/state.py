@@ -22,5 +22,7 @@ class Instant:
     """Counter-clockwise, over the last tick."""
     gyro_zero_deg: float = 0.0
     """Heading at which the gyro reads 0."""
+    end_flags: int = 0
+    """Which end stops the motors are at that drive no wheel: the bits of `core.end_stops`."""
     noise: NoiseSpec = NoiseSpec()
     seed: int = 0

@@ -23,6 +23,8 @@ POSITION_FIELDS = Struct("<" + "".join(kind[1:] for _, kind in TICK_FIELDS[:7]))
 FLAG_LEFT_RUNNING = 1
 FLAG_RIGHT_RUNNING = 2
 FLAG_PEN_DOWN = 4
+FLAG_FIRST_END = 8
+"""The lowest of the flags of `core.end_stops`."""
 
 Buffer: TypeAlias = mmap | bytearray
 """A mutable buffer: a mapped file, or memory."""

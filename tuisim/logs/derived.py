@@ -157,13 +157,13 @@ def dead_reckoning(
     headings at both ends.
 
     Args:
-        left_position_deg: Position of the left wheel since the start, shape (n,).
-        right_position_deg: Position of the right wheel.
+        left_position_deg: Position of the left wheel's motor since the start, shape (n,).
+        right_position_deg: Position of the right wheel's motor.
         start: Pose at the first count.
     """
-    per_degree = mm_per_degree(robot)
-    left = np.diff(left_position_deg, prepend=left_position_deg[:1]) * per_degree
-    right = np.diff(right_position_deg, prepend=right_position_deg[:1]) * per_degree
+    left_per_degree, right_per_degree = mm_per_degree(robot)
+    left = np.diff(left_position_deg, prepend=left_position_deg[:1]) * left_per_degree
+    right = np.diff(right_position_deg, prepend=right_position_deg[:1]) * right_per_degree
     turn_rad = (right - left) / robot.wheel_spacing_mm
     heading_rad = np.radians(start.heading_deg) + np.cumsum(turn_rad)
     halfway = heading_rad - turn_rad / 2.0

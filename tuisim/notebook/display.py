@@ -18,6 +18,7 @@ from tuisim.charts.sample_chart import sample_chart
 from tuisim.charts.world_image import PenTrace, arrays_picture, world_picture
 from tuisim.config.mat_cache import FieldFiles, mat_pixels, open_field
 from tuisim.config.options import Settings
+from tuisim.core.end_stops import flags_at_start
 from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.sensors import mounted
 from tuisim.core.sensors.color import ColorReading
@@ -85,7 +86,8 @@ class Scene:
 def start_record(spec: RunSpec) -> TickRecord:
     """Return the state before any run."""
     start = spec.world.start
-    return TickRecord(0, 0, start.x_mm, start.y_mm, start.heading_deg, *[0] * 7)
+    flags = flags_at_start(spec.robot)
+    return TickRecord(0, 0, start.x_mm, start.y_mm, start.heading_deg, 0.0, 0.0, 0.0, 0.0, 0.0, flags, 0)
 
 
 def instrumentation(scene: Scene) -> list[Row]:

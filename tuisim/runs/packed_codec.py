@@ -121,10 +121,10 @@ class RobotGeometry:
 
     @classmethod
     def of(cls, spec: RunSpec) -> RobotGeometry:
-        """Return that of a run, with the numbers that `core.motion` uses."""
+        """Return that of a run, with the numbers that `core.motion` uses; one reversed wheel alone takes more bytes."""
         return cls(
             1.0 / spec.profile.tick_hz,
-            mm_per_degree(spec.robot),
+            mm_per_degree(spec.robot)[0],
             spec.robot.wheel_spacing_mm,
             0.5 if spec.profile.halfway_heading else 0.0,
         )

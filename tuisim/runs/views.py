@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from tuisim.core.drive import turn_rate_dps
+from tuisim.core.end_stops import end_flags
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import Instant
@@ -75,6 +76,7 @@ def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
         right_speed_dps=record.right_speed_dps,
         turn_rate_dps=turn_rate_dps(record.left_speed_dps, record.right_speed_dps, spec.robot),
         gyro_zero_deg=record.gyro_zero_deg,
+        end_flags=end_flags(record.flags),
         noise=noise,
         seed=spec.seed,
     )

@@ -241,7 +241,7 @@ def touch_sensor(session: Session, spec: TouchSpec) -> LegoSensor:
     sim = session.sim
 
     def pressed() -> tuple[int]:
-        return (int(touch.pressed(sim.pose, spec, sim.spec.world)),)
+        return (int(touch.measure(spec, sim.instant(), sim.spec, session.field)[0]),)
 
     modes = {"TOUCH": Mode(pressed, sim.spec.profile.attribute_read_ns)}
     return LegoSensor(session, spec.port, SENSORS["touch"].driver_name, modes, "TOUCH")

@@ -1,7 +1,8 @@
-"""Touch sensor: pressed while its bumper touches an obstacle or a wall."""
+"""Touch sensor: pressed while its bumper touches an obstacle or a wall, or by a motor at its end stop."""
 
 from __future__ import annotations
 
+from tuisim.core.end_stops import end_flag
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec, TouchSpec, WorldSpec
@@ -12,7 +13,7 @@ REACH_MM = 2.0
 
 
 def pressed(pose: Pose, spec: TouchSpec, world: WorldSpec) -> bool:
-    """Return whether either end or the centre of the bumper touches something."""
+    """Return whether either end or the centre of a bumper touches something."""
     half = spec.width_mm / 2
     return any(_meets(*world_point(pose, spec.x_mm + aside, spec.y_mm), world) for aside in (-half, 0.0, half))
 
@@ -35,4 +36,6 @@ def columns(spec: TouchSpec) -> tuple[str, ...]:
 
 def measure(spec: TouchSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
     """Return the value of `columns`: 1 pressed, 0 not."""
+    if spec.pressed_by:
+        return (float(instant.end_flags & end_flag(run.robot, spec.pressed_by, spec.pressed_at) != 0),)
     return (float(pressed(instant.pose, spec, run.world)),)
