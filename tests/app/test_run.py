@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
@@ -28,6 +29,21 @@ async def test_a_run_shows_its_output_and_its_end() -> None:
         await until(pilot, lambda: "Colour: 0.0" in screen_text(app))
         await until(pilot, lambda: "finished" in screen_text(app).splitlines()[-1])
         assert app.run_controller.pose.x_mm > 1400
+
+
+PUSHES = "from time import sleep\ntank_drive.on(50, 50)\nsleep(2)\ntank_drive.off()\n"
+
+
+async def test_the_end_says_that_the_robot_stood_at_a_wall() -> None:
+    setup = settings(PUSHES, autorun=True, speed=0.0)
+    world = replace(setup.spec.world, solid=True, start=Pose(2200.0, 571.5, 0.0))
+    setup = replace(setup, spec=replace(setup.spec, world=world))
+    async with LabApp(setup).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        stood = "stood at the wall from 0.77 s on, its wheels pushed for 1.2 s"
+        await until(pilot, lambda: f"finished, {stood}" in notices(app))
+        # The output panel breaks the line.
+        await until(pilot, lambda: "— finished at 2.00 s, stood" in screen_text(app))
 
 
 @pytest.mark.slow

@@ -55,6 +55,27 @@ def test_run_prints_to_stdout_and_the_last_state_to_stderr(program: Path, here: 
     assert line.startswith("prog.py: finished · 0.000 s, tick 0 · x 100.00 mm, y 800.00 mm, heading 0.00° · 5 samples")
 
 
+PUSHES = """#!/usr/bin/env python3
+from ev3dev2.motor import MoveTank, OUTPUT_B, OUTPUT_C
+from time import sleep
+tank = MoveTank(OUTPUT_B, OUTPUT_C)
+tank.on(50, 50)
+sleep(2)
+"""
+
+
+def test_the_last_line_says_that_the_robot_stood_at_the_wall(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "push.py").write_text(PUSHES)
+    told = {}
+    for profile in ("ev3", "robolab"):
+        done = here("run", "push.py", "-x", "2200", "--profile", profile)
+        told[profile] = done.stderr.splitlines()[-1]
+    assert " · stood at the wall from 0.77 s on, its wheels pushed for 1.2 s · 0 samples · run 1" in told["ev3"]
+    assert "stood" not in told["robolab"]
+    stood = json.loads(here("run", "push.py", "-x", "2200", "--profile", "ev3", "--json").stdout)["standstill"]
+    assert (stood["at"], stood["times"], stood["until_s"]) == ("the wall", 1, None)
+
+
 def test_program_that_raises_shows_its_own_lines_only_and_keeps_its_rows(tmp_path: Path, here: Command) -> None:
     (tmp_path / "prog.py").write_text(RAISES)
     done = here("run", "prog.py", "--export", "rows.csv")

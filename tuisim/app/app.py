@@ -37,7 +37,7 @@ from tuisim.app.panel_messages import PanelMessages
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
-from tuisim.app.snapshot import GOOD_ENDS, AppState, RunPhase, Situation, end_label
+from tuisim.app.snapshot import GOOD_ENDS, AppState, RunPhase, Situation, end_words
 from tuisim.app.speech import Voice
 from tuisim.app.terminal.pacer import Pacer
 from tuisim.app.terminal.picture_mode import PictureMode, choose_colors, picture_mode_for
@@ -46,7 +46,7 @@ from tuisim.config.options import AUTO, DEFAULT_FPS, Settings
 from tuisim.config.user_config import FILE, UserConfig, load_config
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError, TuisimError
-from tuisim.protocol import End, Ended
+from tuisim.protocol import Ended
 from tuisim.runs.process import warm_up
 from tuisim.runs.run_folder import StoredRun
 from tuisim.source import Program
@@ -397,7 +397,7 @@ class LabApp(PanelMessages):
             self.say(branch_message(news.branched, recording))
             self.situation_changed()
         if news.ended:
-            self._ended(news.ended)
+            self._ended(news.ended, news.stood)
         if self._last_words and len(news.rows) < ROWS_A_POLL and self.panel_area.output:
             self.panel_area.output.note(self._last_words)
             self._last_words = ""
@@ -419,17 +419,14 @@ class LabApp(PanelMessages):
         if self.panel_area.output:
             self.panel_area.output.ask(prompt)
 
-    def _ended(self, ended: Ended) -> None:
+    def _ended(self, ended: Ended, stood: str) -> None:
         if self.panel_area.brick:
             self.panel_area.brick.release_all()
         good = ended.end in GOOD_ENDS
-        words = ended.summary or end_label(ended.end)
-        self.notify(words, severity="information" if good else "error", markup=False)
+        notice, self._last_words = end_words(ended, stood)
+        self.notify(notice, severity="information" if good else "error", markup=False)
         self.debugger.ended()
         self.document.run_ended_at(ended.error_line)
-        # The traceback is among the rows already.
-        known = ended.end in (End.FINISHED, End.RAISED)
-        self._last_words = f"— {end_label(ended.end) if known else words} at {ended.time_ns / 1e9:.2f} s"
         self.situation_changed()
         self.check_files()
 

@@ -19,6 +19,7 @@ from tuisim.config.folders import user_path
 from tuisim.config.options import Settings
 from tuisim.errors import LogError, TuisimError
 from tuisim.runs.handle import program_again
+from tuisim.runs.standstill import standstill_words
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
 
@@ -277,7 +278,8 @@ class Loader:
         self.lay_out(plan, program_of(run), mat)
         self._run_controller.replay(run)
         end_s = max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz
-        words = f"— {end_label(run.state)} at {end_s:.2f} s · {_title(run)}"
+        end = f"— {end_label(run.state)} at {end_s:.2f} s", standstill_words(run.telemetry, run.spec)
+        words = f"{', '.join(filter(None, end))} · {_title(run)}"
         self._app.run_changed(words, run.end.error_line if run.end else 0)
         for note in run.notes:
             self._app.say(note)

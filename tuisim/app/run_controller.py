@@ -21,6 +21,7 @@ from tuisim.protocol import RunState
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.recorded_run import Recording
 from tuisim.runs.records import OutputRow
+from tuisim.runs.standstill import standstill_words
 from tuisim.runs.store import RunStore
 from tuisim.runs.views import instant_of
 
@@ -483,9 +484,10 @@ class RunController(RunView):
                         self.timeline.breaks.append(event.tick)
                 case protocol.Spoke() if self._branch is None:
                     spoken.append(event)
+        stood = standstill_words(recording.telemetry, recording.spec) if ended else ""
         rows = recording.rows.take(ROWS_A_POLL)
         prompt = self.run.waiting_for_input if self.run and self.in_run else None
-        return RunUpdate(rows, ended, tuple(spoken), prompt, branched, tuple(pauses))
+        return RunUpdate(rows, ended, stood, tuple(spoken), prompt, branched, tuple(pauses))
 
 
 @dataclass(frozen=True, slots=True)
@@ -495,6 +497,8 @@ class RunUpdate:
     rows: list[OutputRow]
     ended: protocol.Ended | None = None
     """Set once, in the poll that receives the end."""
+    stood: str = ""
+    """Then also: where the robot stood in the way of something solid, in words."""
     spoken: tuple[protocol.Spoke, ...] = ()
     """Texts and sounds from the program."""
     prompt: str | None = None

@@ -15,7 +15,7 @@ from tuisim.core.sensors import color, gyro, ultrasonic, with_kinds
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
-from tuisim.protocol import End, Inspected, Paused, RunState, Unended
+from tuisim.protocol import End, Ended, Inspected, Paused, RunState, Unended
 from tuisim.runs.brick_state import BrickState
 from tuisim.source import Program
 
@@ -223,6 +223,19 @@ def telemetry_traces(instant: Instant, spec: RunSpec, field: Field) -> dict[str,
 def speed_label(speed: float) -> str:
     """Return a speed as users read it: ¼×, 2×, max."""
     return {0.0: "max", 0.25: "¼×", 0.5: "½×"}.get(speed, f"{speed:g}×")
+
+
+def end_words(ended: Ended, stood: str) -> tuple[str, str]:
+    """Return the end of a run for the notice and for the end of the output.
+
+    Args:
+        stood: Where the robot stood in the way of something solid, in words; may be empty.
+    """
+    words = ended.summary or end_label(ended.end)
+    # The traceback is among the rows already.
+    known = ended.end in (End.FINISHED, End.RAISED)
+    last = f"— {end_label(ended.end) if known else words} at {ended.time_ns / 1e9:.2f} s"
+    return ", ".join(filter(None, (words, stood))), ", ".join(filter(None, (last, stood)))
 
 
 def end_label(state: RunState | None) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any, assert_never
 
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
@@ -11,6 +12,7 @@ from tuisim.protocol import NO_ANSWER, End
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import counts_of
+from tuisim.runs.standstill import Standstill, standstill_of
 
 EXIT_RAISED, EXIT_BAD_OUTPUT, EXIT_LIMIT = 1, 2, 3
 
@@ -40,6 +42,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
     """
     last, end = run.telemetry.last(), run.end
     pose = last.pose if last else run.spec.world.start
+    stood = standstill_of(run.telemetry, run.spec)
     counts = counts_of(run.output) if most_bytes is None or run.output.length <= most_bytes else None
     return {
         "run": run.number,
@@ -58,6 +61,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
         "x_mm": pose.x_mm,
         "y_mm": pose.y_mm,
         "heading_deg": pose.heading_deg,
+        "standstill": asdict(stood) if stood else None,
         "lines": counts.lines if counts else None,
         "samples": counts.samples if counts else None,
         "summary": end.summary if end else "",
@@ -72,10 +76,11 @@ def last_state(facts: dict[str, Any]) -> str:
     state = facts["state"].replace("_", " ")
     what = state if facts["summary"] in ("", state) else f"{state}: {facts['summary']}"
     pose = Pose(facts["x_mm"], facts["y_mm"], facts["heading_deg"])
+    stood = f"{Standstill(**facts['standstill']).words} · " if facts["standstill"] else ""
     samples = "" if facts["samples"] is None else f"{counted(facts['samples'], 'sample')} · "
     return (
         f"{facts['program']}: {what} · {facts['time_s']:.3f} s, tick {facts['tick']} · "
-        f"{pose_in_words(pose)} · {samples}run {facts['run']}"
+        f"{pose_in_words(pose)} · {stood}{samples}run {facts['run']}"
     )
 
 
