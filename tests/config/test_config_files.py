@@ -437,4 +437,6 @@ def test_the_files_of_the_guide_work_together(tmp_path: Path) -> None:
     assert [sensor.name for sensor in explorer.sensors] == ["left", "middle", "back", "bumper"]
     assert [goal.name for goal in load_goals(tmp_path / "bands_goals.toml").goals] == ["levels", "black", "finish"]
     assert load_batch(tmp_path / "square.toml").programs == ("square.py",)
-    assert len(blocks) == 7
+    gripper = load_robot(str(tmp_path / "gripper.toml"))
+    assert (gripper.gear_ratio, gripper.extra_motors) == (0.5, (MotorSpec("outA", "medium", -90.0, 0.0),))
+    assert len(blocks) == 8

@@ -167,6 +167,15 @@ def _motor_kind_field(key: str, label: str) -> Field:
     return _robot_field(key, label, lambda robot: str(getattr(robot, key)), change, MOTOR_KINDS)
 
 
+def _reversed_field(key: str, label: str) -> Field:
+    """Return the field for a motor that is mounted the other way round."""
+
+    def change(robot: RobotSpec, word: str) -> RobotSpec:
+        return _with(robot, key, word == ON)
+
+    return _robot_field(key, label, lambda robot: ON if getattr(robot, key) else OFF, change, SWITCHED)
+
+
 def _robot_word(plan: NextRun) -> str:
     word = Path(plan.words.get("robot", plan.robot.spec.name)).name
     return f"{word}, edited" if plan.robot_is_edited else word
@@ -185,6 +194,9 @@ def _robot_fields() -> tuple[Field, ...]:
         _motor_port_field("right_port", "Right motor"),
         _motor_kind_field("left_motor", "Left kind"),
         _motor_kind_field("right_motor", "Right kind"),
+        _reversed_field("left_reversed", "Left rev."),
+        _reversed_field("right_reversed", "Right rev."),
+        _length("gear_ratio", "Gear ratio"),
     )
 
 
