@@ -42,11 +42,11 @@ def records(sim: Simulation) -> np.ndarray:
 def test_a_reversed_motor_that_runs_backwards_drives_as_a_usual_one_forwards(
     profile: str, sides: tuple[str, ...], step: int
 ) -> None:
-    robot = replace(RobotSpec(), **{f"{side}_reversed": True for side in sides})
-    speeds = {"left": 250.0, "right": 310.0}
-    usual = records(driven(profile, RobotSpec(), **speeds))
-    found = records(driven(profile, robot, **{side: -dps if side in sides else dps for side, dps in speeds.items()},
-                           step=step))  # fmt: skip
+    robot = RobotSpec(left_reversed="left" in sides, right_reversed="right" in sides)
+    left, right = 250.0, 310.0
+    usual = records(driven(profile, RobotSpec(), left, right))
+    given = -left if robot.left_reversed else left, -right if robot.right_reversed else right
+    found = records(driven(profile, robot, *given, step))
     for name in MOTOR_FIELDS:
         if name.startswith(sides):
             found[name] = 0.0 - found[name]
