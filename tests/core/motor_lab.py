@@ -38,6 +38,7 @@ from tuisim.runtime.program import Outcome, ProgramRunner
 from tuisim.runtime.run_config import RunConfig
 from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import Limits, Session
+from tuisim.shim.files.open_files import OpenFiles
 from tuisim.shim.install import install
 
 Row = list[float]
@@ -151,7 +152,7 @@ def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict
     # The program's own must be imported again, with locks of the scheduler.
     del sys.modules["threading"]
     patch_threads(scheduler)
-    install(session, {}, put_in_place, lambda file: False)
+    install(session, OpenFiles(), {}, put_in_place, lambda file: False)
 
     def leave(outcome: Outcome) -> NoReturn:
         raise SystemExit(outcome.end)

@@ -25,6 +25,8 @@ QUESTIONS = {
     "use my own picture as a mat": "own-mats",
     "change the wheel diameter": "world-files",
     "why is white 255 and not 100": "library-differences",
+    "from ev3dev.ev3 import": "device-files",
+    "read /sys/class/lego-sensor": "device-files",
     "why do I get the same result every time": "virtual-time",
     "why does the sensor value change slowly at the edge": "how-sensors-see",
     "robot does not drive straight": "motion-and-drift",

@@ -95,7 +95,7 @@ DID: dict[str, tuple[str, list[str], list[str]]] = {
 }  # fmt: skip
 """What a program does: its statements, the lines that it prints, and what is heard."""
 
-ONLY = "the simulated brick has only setfont, clear, beep, echo, espeak, aplay, amixer, stty"
+ONLY = "the simulated brick has only setfont, clear, beep, echo, espeak, aplay, amixer, stty, cat"
 REFUSED = {
     "os.system('ls -l')": f"ls: not found (return code 127): {ONLY}",
     "subprocess.run(['/bin/rm', '-r', '.'])": f"/bin/rm: not found (return code 127): {ONLY}",

@@ -39,7 +39,7 @@ CONTENTS: Mapping[Part, tuple[str, ...]] = {
     ),
     Part.REFERENCE: (
         "keys", "commands", "options", "settings", "breakpoints", "profile-rules", "data-columns", "world-files",
-        "goal-files", "the-brick", "library-differences",
+        "goal-files", "the-brick", "device-files", "library-differences",
     ),
     Part.EXPLANATION: ("virtual-time", "how-sensors-see", "motion-and-drift", "the-real-robot"),
     Part.PROJECT: ("contributing", "architecture", "security", "licences"),

@@ -106,6 +106,7 @@ class Child:
         from tuisim.runtime.patches.threads import patch_threads
         from tuisim.runtime.program import Outcome, ProgramRunner
         from tuisim.runtime.scheduler import Scheduler
+        from tuisim.shim.files.open_files import OpenFiles
         from tuisim.shim.install import install
 
         session, interrupts = self._session, self._interrupts
@@ -114,7 +115,8 @@ class Child:
         patch_datetime(session, lambda: self._config.own_folder)
         patch_process_times(session)
         patch_urandom(lambda: self._config.spec.seed)
-        waits = FileWaits(session)
+        files = OpenFiles()
+        waits = FileWaits(session, files)
         waits.patch_select()
         refuse_processes()
         patch_threads(scheduler)
@@ -123,6 +125,7 @@ class Child:
         limit_memory()
         install(
             session,
+            files,
             {
                 "pandas": lambda module: finish_pandas(session, module),
                 "random": lambda module: finish_random(self._config.spec.seed, module),

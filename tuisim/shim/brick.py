@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import errno
 from dataclasses import dataclass
+from functools import partial
 
 from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
@@ -29,6 +30,13 @@ from tuisim.shim.unsupported.devices import PORT_MODES, of_driver, refusal
 
 PORT_CLASS, MOTOR_CLASS, SENSOR_CLASS = "lego-port", "tacho-motor", "lego-sensor"
 """Classes of devices, by their kernel names."""
+BOARD_CLASS, BOARD = "board-info", "board0"
+BOARD_INFO = {"model": "LEGO MINDSTORMS EV3", "type": "main", "hw_rev": "7", "rom_rev": "6"}
+"""What the brick's board tells of itself."""
+CLASSES = (
+    BOARD_CLASS, "dc-motor", LED_CLASS, PORT_CLASS, SENSOR_CLASS, POWER_CLASS, "servo-motor", MOTOR_CLASS,
+)  # fmt: skip
+"""All classes of devices; of some the simulated brick never has one."""
 AUTO = "auto"
 """The mode in which a port detects the connected device by itself."""
 
@@ -144,7 +152,7 @@ def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
     Returns:
         The brick, and its colour sensors by device path.
     """
-    brick, robot, sim = Brick(), session.sim.spec.robot, session.sim
+    brick, robot, sim = Brick(CLASSES), session.sim.spec.robot, session.sim
     motors = zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)
     tachos: dict[str, Tacho] = {}
     # Sorted by port, so that a class without an address finds the first port.
@@ -165,7 +173,15 @@ def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
     for name, light in Lights(session).lights.items():
         brick.add(LED_CLASS, led_name(name), light.device())
     brick.add(POWER_CLASS, BATTERY, Battery(session).device())
+    brick.add(BOARD_CLASS, BOARD, board(session))
     return brick, colors
+
+
+def board(session: Session) -> SimDevice:
+    """Return the device that tells what kind of brick this is; asking it costs nothing."""
+    told = dict(BOARD_INFO)
+    told["uevent"] = "\n".join(f"BOARD_INFO_{name.upper()}={value}" for name, value in BOARD_INFO.items())
+    return SimDevice(session, {name: partial(str, value) for name, value in told.items()}, {}, dict.fromkeys(told, 0))
 
 
 def tacho_of(session: Session, motor: Motor, port: str, kind: str) -> Tacho:

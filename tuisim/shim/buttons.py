@@ -2,20 +2,118 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import select
+import stat
+import struct
 import types
-from collections.abc import Callable, MutableSequence
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
-from tuisim.core.profile import MS
+from tuisim.core.profile import MS, NS_PER_S
 from tuisim.protocol import BUTTONS
-from tuisim.shim.method_globals import rebind
+from tuisim.shim.files.entries import DeviceFile, OpenFile, refuse_ioctl
 from tuisim.shim.session import Session
 from tuisim.shim.waits import Wait, waits_for
 
 POLL_NS = 10 * MS
 """Interval at which a waiting thread polls the buttons."""
+DEVICE_PATH = "/dev/input/event0"
+DEVICE_PATHS = (DEVICE_PATH, "/dev/input/by-path/platform-gpio_keys-event")
+"""All paths of the device file."""
+DEVICE_NAME = "EV3 Brick Buttons"
+EVENT = struct.Struct("@llHHi")
+"""The kernel's `input_event`: seconds, microseconds, type, code, value."""
+EV_KEY = 1
+"""Event type for keys."""
 KEY_CODES = dict(zip(BUTTONS, (103, 108, 105, 106, 28, 14), strict=True))
 """Linux key code of each button."""
+KEY_BYTES = 96
+"""Bytes of the kernel's set of keys, one bit for each."""
+
+
+@dataclass(frozen=True, slots=True)
+class InputEvent:
+    """A press or release of a button."""
+
+    sec: int
+    usec: int
+    type: int
+    code: int
+    value: int
+    """1 for a press, 0 for a release."""
+
+    def timestamp(self) -> float:
+        """Return the simulated time in seconds."""
+        return self.sec + self.usec / 1e6
+
+
+def changes(before: frozenset[str], now: frozenset[str], at_ns: int) -> list[InputEvent]:
+    """Return the events of the buttons that were pressed or released between two looks."""
+    at, within = divmod(at_ns, NS_PER_S)
+    return [
+        InputEvent(at, within // 1000, EV_KEY, KEY_CODES[name], int(name in now))
+        for name in BUTTONS
+        if (name in now) != (name in before)
+    ]
+
+
+class ButtonsFile(DeviceFile):
+    """The device file of the buttons.
+
+    Args:
+        session: Clock and buttons.
+        path: One of the paths of the file.
+    """
+
+    def __init__(self, session: Session, path: str) -> None:
+        super().__init__(path, stat.S_IFCHR | 0o660)
+        self._session = session
+
+    def begin(self, opened: OpenFile) -> None:
+        """Tell of changes from here on."""
+        opened.seen = self._session.pressed
+
+    def read(self, opened: OpenFile, size: int) -> bytes:
+        """Read as many events as fit; blocks until there is one."""
+        if size < EVENT.size:
+            raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
+        self._session.command()
+        self._wait(opened)
+        end = size - size % EVENT.size
+        part, opened.data = opened.data[:end], opened.data[end:]
+        return part
+
+    @waits_for(Wait.BUTTON_EVENT)
+    def _wait(self, opened: OpenFile) -> None:
+        while not self.ready(opened):
+            if not os.get_blocking(opened.fd):
+                raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+            self._session.spend(POLL_NS)
+
+    def ready(self, opened: OpenFile) -> int:
+        """Return whether there are events."""
+        now, before = self._session.pressed, opened.seen
+        if now is not before:
+            assert isinstance(before, frozenset)
+            for event in changes(before, now, self._session.now):
+                opened.data += EVENT.pack(event.sec, event.usec, event.type, event.code, event.value)
+                opened.data += EVENT.pack(event.sec, event.usec, 0, 0, 0)
+            opened.seen = now
+        return select.POLLIN if opened.data else 0
+
+    def ioctl(self, request: int) -> bytes:
+        """Return the pressed keys or the name of the device."""
+        size = request >> 16 & 0x3FFF
+        match request & 0xFFFF:
+            case 0x4518:
+                pressed = read_pressed(self._session)
+                return sum(1 << KEY_CODES[name] for name in pressed).to_bytes(max(size, KEY_BYTES), "little")[:size]
+            case 0x4506:
+                return DEVICE_NAME.encode().ljust(size, b"\0")[:size]
+        raise refuse_ioctl(self.path, request, "EVIOCGKEY tells which buttons are pressed")
 
 
 def read_pressed(session: Session) -> list[str]:
@@ -26,20 +124,8 @@ def read_pressed(session: Session) -> list[str]:
 
 
 def patch_button_module(session: Session, module: types.ModuleType) -> None:
-    """Patch `ev3dev2.button` after its import: its device file, and waiting by polling every `POLL_NS`."""
+    """Patch `ev3dev2.button` after its import: waiting by polling every `POLL_NS`."""
     button: Any = module
-
-    def ioctl(_file: object, _request: int, state: MutableSequence[int]) -> int:
-        pressed = read_pressed(session)
-        bits = sum(1 << KEY_CODES[name] for name in pressed)
-        for index, byte in enumerate(bits.to_bytes(len(state), "little")):
-            state[index] = byte
-        return 0
-
-    def open_device(path: str, _mode: str, _buffering: int) -> str:
-        return path
-
-    rebind(button.ButtonEVIO, open=open_device, fcntl=types.SimpleNamespace(ioctl=ioctl))
     button.ButtonEVIO._wait = _polling_wait(session)
 
 

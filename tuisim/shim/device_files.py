@@ -1,9 +1,13 @@
-"""Simulated device folders: named attributes, which the library reads and writes as text."""
+"""Simulated devices: named attributes, which programs read and write as text.
+
+One table of devices, `Brick`, is behind everything that reaches them: `shim.files` shows it as the tree of
+`/sys/class` to any code, and `shim.library` is a shorter way to the same attributes for the library.
+"""
 
 from __future__ import annotations
 
 import errno
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import partial, wraps
 from typing import Any
 
@@ -47,6 +51,8 @@ class SimDevice:
         writers: Functions that accept the written text, by attribute.
         costs: Cost of a read in ns, by attribute, if it differs from the default.
         number_writers: Functions that accept a written integer, by attribute.
+        notifying: Attributes that wake up who polls their files.
+        temporary: Attributes whose files exist only while their readers raise no ENOENT.
     """
 
     def __init__(
@@ -56,8 +62,13 @@ class SimDevice:
         writers: Mapping[str, Writer],
         costs: Mapping[str, int] | None = None,
         number_writers: Mapping[str, NumberWriter] | None = None,
+        notifying: Collection[str] = (),
+        temporary: Collection[str] = (),
     ) -> None:
         self.session = session
+        self.notifying, self._temporary = notifying, temporary
+        self.commands = 0
+        """Number of commands that were written to its file: who polls it sees each."""
         self.readers = dict(readers)
         self.writers = _Writers(writers, self.readers)
         """Setters from text, by attribute; one that cannot be set raises the driver's OSError."""
@@ -67,6 +78,19 @@ class SimDevice:
             self.writers[name] = partial(_write_whole, write_number)
         self._costs = dict(costs or {})
         self._common_cost = session.sim.spec.profile.attribute_read_ns
+
+    def attributes(self) -> list[str]:
+        """Return the names of the attributes that exist at present."""
+        return [name for name in {**self.readers, **self.writers} if self.has(name)]
+
+    def has(self, name: str) -> bool:
+        """Return whether an attribute exists at present."""
+        if name in self._temporary:
+            try:
+                self.readers[name]()
+            except OSError:
+                return False
+        return name in self.readers or name in self.writers
 
     @waits_for(Wait.READING)
     def read(self, name: str) -> object:
@@ -102,15 +126,24 @@ def _write_whole(write: NumberWriter, text: str) -> None:
     write(number)
 
 
-class Brick:
-    """All devices, by path, such as `/sys/class/tacho-motor/motor0`."""
+CLASSES_FOLDER = "/sys/class"
+"""The folder of the classes of devices."""
 
-    def __init__(self) -> None:
+
+class Brick:
+    """All devices, by path, such as `/sys/class/tacho-motor/motor0`.
+
+    Args:
+        classes: Names of the classes of devices; a class may be without a device.
+    """
+
+    def __init__(self, classes: Iterable[str]) -> None:
+        self.classes = tuple(classes)
         self.by_path: dict[str, SimDevice] = {}
 
     def add(self, class_name: str, name: str, device: SimDevice) -> None:
         """Add a device."""
-        self.by_path[f"/sys/class/{class_name}/{name}"] = device
+        self.by_path[f"{CLASSES_FOLDER}/{class_name}/{name}"] = device
 
     def names(self, class_path: str) -> Iterator[str]:
         """Yield the names of the devices of one class, like a listing of its folder."""

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import errno
 import mmap
-import types
-from functools import cache, wraps
+import os
+import stat
+import struct
+from functools import cached_property, wraps
 from typing import Any
 
 from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, display_row
 from tuisim.runs.records import Stream
+from tuisim.shim.files.entries import DeviceFile, OpenFile, refuse_ioctl
 from tuisim.shim.fonts import plain_font
 from tuisim.shim.session import Session
 
@@ -20,7 +24,18 @@ WHITE, DARK_BELOW = 255, 128
 TRUE_COLOR = 2
 """The kernel's visual type for red, green and blue pixels."""
 NO_FILE = -1
-"""Replaces the descriptor of the device file."""
+"""The descriptor of memory without a file."""
+DISPLAY_PATH = "/dev/fb0"
+FIXED_INFO = struct.pack(
+    "@16s L 4I 3H I L I I 3H", b"st7586", 0, LINE_BYTES * DISPLAY_HEIGHT, 0, 0, TRUE_COLOR, 0, 0, 0, LINE_BYTES,
+    0, 0, 0, 0, 0, 0,
+)  # fmt: skip
+"""The kernel's `fb_fix_screeninfo`."""
+VARIABLE_INFO = struct.pack(
+    "@8I 3I 3I 3I 3I 20I", DISPLAY_WIDTH, DISPLAY_HEIGHT, DISPLAY_WIDTH, DISPLAY_HEIGHT, 0, 0, BITS_A_PIXEL, 0,
+    16, 8, 0, 8, 8, 0, 0, 8, 0, 0, 0, 0, *[0] * 20,
+)  # fmt: skip
+"""The kernel's `fb_var_screeninfo`: sizes, then offset, length and order of the bits of red, green, blue, alpha."""
 
 
 class Screen:
@@ -53,8 +68,25 @@ class FrameBuffer(mmap.mmap):
         super().__setitem__(slice(None), bytes([WHITE]) * len(self))
 
     def __setitem__(self, key: Any, value: Any) -> None:
-        """Write bytes and display them. Charges the time of an update on the brick."""
+        """Write bytes and display them."""
         super().__setitem__(key, value)
+        self._update()
+
+    def write(self, data: Any) -> int:
+        """Write bytes at the position and display them."""
+        size = super().write(data)
+        self._update()
+        return size
+
+    def flush(self, *_part: int) -> None:
+        """Display what was written in other ways, such as through a `memoryview`."""
+        self._update()
+
+    def close(self) -> None:
+        """Do nothing: every mapping of the display is this one, and another may be in use."""
+
+    def _update(self) -> None:
+        """Display the memory. Charges the time of an update on the brick."""
         # Counted even if it costs nothing.
         self.session.command()
         self.session.charge(self.session.sim.spec.profile.display_update_ns)
@@ -62,6 +94,50 @@ class FrameBuffer(mmap.mmap):
         if pixels != self.pixels:
             self.pixels, self.row = pixels, display_row(picture_of(pixels))
         self.screen.show(self.row, Stream.DISPLAY)
+
+
+class DisplayFile(DeviceFile):
+    """The device file of the display's memory."""
+
+    def __init__(self, session: Session, screen: Screen) -> None:
+        super().__init__(DISPLAY_PATH, stat.S_IFCHR | 0o660)
+        self._session, self._screen = session, screen
+
+    @cached_property
+    def _memory(self) -> FrameBuffer:
+        return FrameBuffer(self._session, self._screen)
+
+    def read(self, opened: OpenFile, size: int) -> bytes:
+        """Read pixels."""
+        end = len(self._memory) if size < 0 else opened.at + size
+        part = self._memory[opened.at : end]
+        opened.at += len(part)
+        return part
+
+    def write(self, opened: OpenFile, data: bytes) -> int:
+        """Write pixels, and display them."""
+        room = len(self._memory) - opened.at
+        if data and room <= 0:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        part = data[:room]
+        self._memory[opened.at : opened.at + len(part)] = part
+        opened.at += len(part)
+        return len(part)
+
+    def ioctl(self, request: int) -> bytes:
+        """Return what the kernel tells about the display."""
+        match request:
+            case 0x4600:
+                return VARIABLE_INFO
+            case 0x4602:
+                return FIXED_INFO
+        raise refuse_ioctl(self.path, request, "a program may ask for the screen's size and format, and write pixels")
+
+    def mapping(self, length: int) -> Any:
+        """Return the memory."""
+        if length > len(self._memory):
+            raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
+        return self._memory
 
 
 def picture_of(pixels: bytes) -> bytes:
@@ -75,45 +151,17 @@ def picture_of(pixels: bytes) -> bytes:
     return grey.point([WHITE if level < DARK_BELOW else 0 for level in range(256)], "1").tobytes()
 
 
-def patch_display_module(session: Session, module: types.ModuleType, screen: Screen) -> None:
-    """Patch `ev3dev2.display` after its import: a frame buffer without a device file."""
-    display: Any = module
-    memory = display.FbMem
+def draw_with_the_bricks_font(screen_class: Any) -> None:
+    """Draw text without a named font in the default font of the brick's Pillow.
 
-    def fixed_info(_fbfid: int) -> Any:
-        size = LINE_BYTES * DISPLAY_HEIGHT
-        return memory.FixScreenInfo(id_name=b"st7586", smem_len=size, visual=TRUE_COLOR, line_length=LINE_BYTES)
-
-    def variable_info(_fbfid: int) -> Any:
-        info = memory.VarScreenInfo(
-            xres=DISPLAY_WIDTH,
-            yres=DISPLAY_HEIGHT,
-            xres_virtual=DISPLAY_WIDTH,
-            yres_virtual=DISPLAY_HEIGHT,
-            bits_per_pixel=BITS_A_PIXEL,
-        )
-        for color, offset in (("red", 16), ("green", 8), ("blue", 0)):
-            setattr(info, color, memory.VarScreenInfo.FbBitField(offset, 8, 0))
-        return info
-
-    @cache
-    def buffer() -> FrameBuffer:
-        return FrameBuffer(session, screen)
-
-    memory._open_fbdev = staticmethod(lambda _fbdev=None: NO_FILE)
-    memory._get_fix_info = staticmethod(fixed_info)
-    memory._get_var_info = staticmethod(variable_info)
-    memory._map_fb_memory = staticmethod(lambda _fbfid, _fix_info: buffer())
-    _use_the_bricks_font(display)
-
-
-def _use_the_bricks_font(display: Any) -> None:
-    """Draw text without a named font in the default font of the brick's Pillow."""
-    make = display.Display.__init__
+    Args:
+        screen_class: A class of the library, with the Pillow object that draws in `draw`.
+    """
+    make = screen_class.__init__
 
     @wraps(make)
     def __init__(self: Any, *args: Any, **kwargs: Any) -> None:  # noqa: N807
         make(self, *args, **kwargs)
         self.draw.font = plain_font()
 
-    display.Display.__init__ = __init__
+    screen_class.__init__ = __init__

@@ -6,25 +6,37 @@ import importlib.machinery
 import sys
 import types
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from functools import partial
+from types import MappingProxyType
 
 from tuisim.shim.brick import build_brick, ports_hint
-from tuisim.shim.buttons import patch_button_module
+from tuisim.shim.buttons import DEVICE_PATHS, ButtonsFile, patch_button_module
 from tuisim.shim.console import Terminal, patch_console_module
-from tuisim.shim.display import Screen, patch_display_module
+from tuisim.shim.display import DisplayFile, Screen, draw_with_the_bricks_font
 from tuisim.shim.evdev.devices import evdev_modules
+from tuisim.shim.files.entries import TextFile
+from tuisim.shim.files.open_files import OpenFiles
+from tuisim.shim.files.patches import FilePatches
+from tuisim.shim.files.tree import DeviceTree
 from tuisim.shim.fonts import patch_fonts_module, quiet_pillow
 from tuisim.shim.leds import patch_led_module
 from tuisim.shim.library import connect, patch_motor_module, patch_sensor_module
+from tuisim.shim.older_library import MissingLibrary, finish_core, surroundings
 from tuisim.shim.robolab import glue_module, patch_lego_module
 from tuisim.shim.session import Session
 from tuisim.shim.shell.commands import Shell
 from tuisim.shim.shell.processes import Replace, System, finish_asyncio
 from tuisim.shim.sound import Mixer, patch_sound_module
 from tuisim.shim.unsupported.modules import HardwareFinder
-from tuisim.shim.unsupported.parts import PROCESSES, REFUSED, refuse_classes
+from tuisim.shim.unsupported.parts import OTHER_BOARDS, PROCESSES, REFUSED, refuse_board, refuse_classes
 
 Finish = Callable[[types.ModuleType], None]
+Around = Callable[[], AbstractContextManager[None]]
+
+
+CACHES = {"/tmp/current_platform": "ev3\n"}
+"""Files in which libraries keep what they found out about the brick: they shall not look at this computer instead."""
 
 
 class FinishingFinder:
@@ -33,10 +45,13 @@ class FinishingFinder:
     Args:
         finishers: Functions by module name.
         is_own: Whether a file belongs to the program: such a module may have any name.
+        around: Contexts in which to import, by module name.
     """
 
-    def __init__(self, finishers: Mapping[str, Finish], is_own: Callable[[str], bool]) -> None:
-        self._finishers, self._is_own = finishers, is_own
+    def __init__(
+        self, finishers: Mapping[str, Finish], is_own: Callable[[str], bool], around: Mapping[str, Around]
+    ) -> None:
+        self._finishers, self._is_own, self._around = finishers, is_own, around
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: types.ModuleType | None = None
@@ -51,28 +66,40 @@ class FinishingFinder:
         load = spec.loader.exec_module
 
         def load_and_finish(module: types.ModuleType) -> None:
-            load(module)
+            with self._around.get(fullname, nullcontext)():
+                load(module)
             finish(module)
 
         spec.loader.exec_module = load_and_finish  # type: ignore[method-assign]
         return spec
 
 
-def finish_imports(finishers: Mapping[str, Finish], is_own: Callable[[str], bool]) -> None:
-    """Call functions on modules, by name, right after their import; at once if already imported."""
+def finish_imports(
+    finishers: Mapping[str, Finish], is_own: Callable[[str], bool], around: Mapping[str, Around] = MappingProxyType({})
+) -> None:
+    """Call functions on modules, by name, right after their import; at once if already imported.
+
+    Args:
+        finishers, is_own, around: As for `FinishingFinder`.
+    """
     for name, finish in finishers.items():
         if (there := sys.modules.get(name)) is not None:
             finish(there)
-    sys.meta_path.insert(0, FinishingFinder(finishers, is_own))
+    sys.meta_path.insert(0, FinishingFinder(finishers, is_own, around))
 
 
 def install(
-    session: Session, more_finishers: Mapping[str, Finish], replace: Replace, is_own: Callable[[str], bool]
+    session: Session,
+    files: OpenFiles,
+    more_finishers: Mapping[str, Finish],
+    replace: Replace,
+    is_own: Callable[[str], bool],
 ) -> None:
-    """Prepare the program's `import ev3dev2`.
+    """Prepare the program's `import ev3dev2`, and show it the brick's files.
 
     Args:
         session: Clock and simulation.
+        files: Remembers the device files that the program opens.
         more_finishers: Functions for other modules, by name.
         replace: Replaces a function of a module.
         is_own: Whether a file belongs to the program.
@@ -82,24 +109,39 @@ def install(
     terminal, mixer = Terminal(session, screen), Mixer()
     system = System(session, Shell(session, terminal, mixer))
     system.patch_os(replace)
+    tree = DeviceTree(
+        brick,
+        (
+            DisplayFile(session, screen),
+            *(ButtonsFile(session, path) for path in DEVICE_PATHS),
+            *(TextFile(path, text) for path, text in CACHES.items()),
+        ),
+    )
+    patches = FilePatches(tree, files, replace)
+    patches.apply()
     finishers: dict[str, Finish] = {
+        "ev3dev.core": lambda module: finish_core(session, module, partial(ports_hint, session)),
+        "ev3dev.fonts": patch_fonts_module,
+        **dict.fromkeys(OTHER_BOARDS, refuse_board),
         "ev3dev2.button": lambda module: patch_button_module(session, module),
         "ev3dev2.console": lambda module: patch_console_module(module, terminal),
-        "ev3dev2.display": lambda module: patch_display_module(session, module, screen),
+        "ev3dev2.display": lambda module: draw_with_the_bricks_font(vars(module)["Display"]),
         "ev3dev2.fonts": patch_fonts_module,
-        "ev3dev2.led": lambda module: patch_led_module(session, module, brick),
+        "ev3dev2.led": lambda module: patch_led_module(session, module),
         "ev3dev2.motor": lambda module: patch_motor_module(session, module, brick),
         "ev3dev2.sensor": lambda module: patch_sensor_module(session, module, brick),
         "ev3dev2.sensor.lego": lambda module: patch_lego_module(session, module, brick, colors),
         "ev3dev2.sound": lambda module: patch_sound_module(session, module, mixer),
         "PIL": quiet_pillow,
+        "glob": patches.finish_glob,
         "subprocess": system.finish_subprocess,
         "asyncio.base_events": finish_asyncio,
         **dict.fromkeys(REFUSED, refuse_classes),
         **PROCESSES,
         **more_finishers,
     }
-    finish_imports(finishers, is_own)
+    finish_imports(finishers, is_own, dict.fromkeys(("ev3dev.core", "ev3dev.fonts"), surroundings))
+    sys.meta_path.append(MissingLibrary())
     sys.meta_path.append(HardwareFinder())
     connect(brick, partial(ports_hint, session))
     sys.modules["ev3dev2_glue"] = glue_module(session)

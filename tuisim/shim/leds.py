@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import _thread
 import errno
-import os
-import stat
 import types
 from collections.abc import Callable
 from functools import wraps
@@ -18,7 +16,7 @@ from typing import Any
 from tuisim.core.profile import MS, NS_PER_S
 from tuisim.runs.brick_state import LED_NAMES, led_row
 from tuisim.runs.records import Stream
-from tuisim.shim.device_files import Brick, SimDevice, refuse
+from tuisim.shim.device_files import SimDevice, refuse
 from tuisim.shim.method_globals import rebind
 from tuisim.shim.session import Session
 
@@ -86,6 +84,7 @@ class Light:
                 "delay_on": lambda value: self._set_delay("delay_on", value),
                 "delay_off": lambda value: self._set_delay("delay_off", value),
             },
+            temporary=self._delays_ms,
         )
 
     def _triggers(self) -> str:
@@ -158,8 +157,8 @@ class Light:
             lit = not lit
 
 
-def patch_led_module(session: Session, module: types.ModuleType, brick: Brick) -> None:
-    """Patch `ev3dev2.led` after its import: its files, its threads, and waiting for their end."""
+def patch_led_module(session: Session, module: types.ModuleType) -> None:
+    """Patch `ev3dev2.led` after its import: its threads, and waiting for their end."""
     led: Any = module
     numbers = count(1)
     running: dict[int, int] = {}
@@ -190,14 +189,13 @@ def patch_led_module(session: Session, module: types.ModuleType, brick: Brick) -
         # An animation that ended with an error has not reset these.
         self.animate_thread_id, self.animate_thread_stop = None, False
 
-    rebind(led.Led, os=_files_of(brick))
     rebind(led.Leds, _thread=types.SimpleNamespace(start_new_thread=start_new_thread))
     led.Leds.animate_stop = animate_stop
     if session.sim.spec.profile.mend_library:
-        _mend_trigger(led.Led)
+        mend_trigger(led.Led)
 
 
-def _mend_trigger(led_class: Any) -> None:
+def mend_trigger(led_class: Any) -> None:
     """Fix reading an LED's trigger: the library takes the one match that it found for two."""
 
     @wraps(led_class.trigger.fget)
@@ -205,15 +203,3 @@ def _mend_trigger(led_class: Any) -> None:
         return str(self.get_attr_from_set(None, "trigger"))
 
     led_class.trigger = led_class.trigger.getter(get_trigger)
-
-
-def _files_of(brick: Brick) -> types.SimpleNamespace:
-    """Return the parts of `os` that the library uses to check for the temporary attributes of an LED."""
-
-    def exists(path: str) -> bool:
-        folder, _, name = path.rpartition("/")
-        return name in brick.by_path[folder].readers
-
-    mode = stat.S_IFREG | stat.S_IRUSR | stat.S_IWUSR | stat.S_IRGRP | stat.S_IWGRP
-    status = os.stat_result((mode, *[0] * 9))
-    return types.SimpleNamespace(path=types.SimpleNamespace(exists=exists), stat=lambda _path: status)

@@ -1,4 +1,7 @@
-"""Connects the genuine library to the simulated devices: replaces its kernel access."""
+"""A shorter way from the genuine library to the devices, past their files, and how it waits for a motor.
+
+Attributes are read and written hundreds of times in a simulated second; everything else goes through the files.
+"""
 
 from __future__ import annotations
 
@@ -15,28 +18,6 @@ from tuisim.shim.device_files import Brick, free_of_charge
 from tuisim.shim.session import Session
 from tuisim.shim.unsupported.devices import other_sensors_note, refused_device
 from tuisim.shim.waits import Wait, waits_for
-
-
-class OpenAttribute:
-    """An attribute as an open file, for the few places where the library needs one."""
-
-    def __init__(self, brick: Brick, path: str, name: str) -> None:
-        self._device, self._name = brick.by_path[path], name
-
-    def seek(self, _position: int) -> None:
-        """Do nothing: every read starts at the beginning."""
-
-    def flush(self) -> None:
-        """Do nothing: writes take effect at once."""
-
-    def read(self, _size: int = -1) -> bytes:
-        """Return the attribute's value."""
-        value = self._device.read(self._name)
-        return value if isinstance(value, bytes) else str(value).encode()
-
-    def write(self, text: bytes | str) -> None:
-        """Set the attribute."""
-        self._device.write(self._name, text if isinstance(text, str) else text.decode())
 
 
 class Patience:
@@ -69,7 +50,7 @@ class MotorPoll:
     def __init__(self, session: Session, patience: Patience) -> None:
         self._session, self._patience = session, patience
 
-    def register(self, _file: OpenAttribute, _events: int = 0) -> None:
+    def register(self, _file: object, _events: int = 0) -> None:
         """Do nothing: any motor that changes ends the wait, and the library checks its own motor again."""
 
     @waits_for(Wait.MOTOR)
@@ -92,7 +73,6 @@ def connect(brick: Brick, hint: Callable[[str], str]) -> None:
     """
     import ev3dev2
 
-    ev3dev2.get_current_platform = lambda: "ev3"
     ev3dev2.list_device_names = _in_place_of(ev3dev2.list_device_names, _device_lister(brick))
     _patch_device(ev3dev2.Device, brick)
     _patch_look_up(ev3dev2, hint)
@@ -175,7 +155,6 @@ def _patch_device(device_class: Any, brick: Brick) -> None:
     ):
         for name in names:
             setattr(device_class, name, _in_place_of(getattr(device_class, name), replacement))
-    device_class._attribute_file_open = lambda self, name: OpenAttribute(brick, self._path, name)
 
 
 def _set_directly(motor_class: Any, brick: Brick) -> None:

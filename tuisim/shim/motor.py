@@ -71,7 +71,7 @@ class Tacho(ABC):
             "polarity": lambda: self._polarity,
         }
         writers |= {"stop_action": self._set_stop_action, "polarity": self._set_polarity, "command": self._take_command}
-        return SimDevice(self._session, common | readers, writers, None, numbers)
+        return SimDevice(self._session, common | readers, writers, None, numbers, notifying=("state",))
 
     def _take_command(self, text: str) -> None:
         self._command(text)

@@ -15,7 +15,7 @@ from tuisim.runtime.session import Session
 from tuisim.runtime.stack import PACKAGE_FOLDER
 from tuisim.shim.waits import Wait, wait_of
 
-_LIBRARY = os.sep + "ev3dev2" + os.sep
+_LIBRARIES = tuple(os.sep + name + os.sep for name in ("ev3dev2", "ev3dev"))
 _ADVANCING = (Session._pass.__code__, Session.advance.__code__)
 
 
@@ -40,7 +40,7 @@ def waiting_note(session: Session, task: ScheduledThread, frame: types.FrameType
 def _frames(frame: types.FrameType | None) -> Iterator[types.FrameType]:
     while frame is not None:
         file = frame.f_code.co_filename
-        if file.startswith(PACKAGE_FOLDER) or _LIBRARY in file or _is_library(file):
+        if file.startswith(PACKAGE_FOLDER) or any(name in file for name in _LIBRARIES) or _is_library(file):
             yield frame
             frame = frame.f_back
             continue

@@ -14,6 +14,8 @@ from tuisim.core.profile import NS_PER_S
 from tuisim.runtime.control import THREADS
 from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.session import Session
+from tuisim.shim.files.entries import OpenFile
+from tuisim.shim.files.open_files import OpenFiles
 from tuisim.shim.unsupported.modules import refuse_bluetooth
 from tuisim.shim.waits import Wait, waits_for
 
@@ -30,29 +32,35 @@ _SELECTORS = {
     "DevpollSelector": "devpoll",
 }
 """Selector classes, and the class of `select` that each is based on."""
+_ALL_EVENTS = select.POLLIN | select.POLLPRI | select.POLLOUT
+"""What `register` asks for by default."""
+_SELECTED = (select.POLLIN, select.POLLOUT, select.POLLPRI)
+"""The event that each list of files waits for in `select.select`."""
 _READS = ("_accept", "recv", "recv_into", "recvfrom", "recvfrom_into", "recvmsg", "recvmsg_into")
 _WRITES = ("send", "sendto", "sendmsg")
 
 
 class FileWaits:
-    """Polls real files without blocking, and waits on the simulated clock.
+    """Polls real files without blocking, and the brick's, and waits on the simulated clock.
 
     Args:
         session: The run.
+        devices: The device files that the program has open.
     """
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
+    def __init__(self, session: Session, devices: OpenFiles) -> None:
+        self._session, self.devices = session, devices
         self._select = select.select
         self._classes = {name: getattr(select, name, None) for name in _SELECTORS.values()}
 
     @waits_for(Wait.FILES)
-    def until_found(self, look: Callable[[], Found], timeout_ns: int | None) -> Found:
+    def until_found(self, look: Callable[[], Found], timeout_ns: int | None, devices: bool = False) -> Found:
         """Poll until something is found or the timeout is over; return the last result.
 
         Args:
             look: Polls without blocking; returns something falsy if nothing is ready.
             timeout_ns: Longest simulated time to wait; at most 0 polls once, None waits indefinitely.
+            devices: Whether device files are among those polled: a tick may change them.
         """
         session = self._session
         found = look()
@@ -63,6 +71,9 @@ class FileWaits:
         until = None if timeout_ns is None else session.now + timeout_ns
         while not found and (until is None or session.now < until):
             rest = POLL_NS if until is None else until - session.now
+            if devices:
+                to_tick = session.sim.due_ns(session.sim.tick + 1) - session.now
+                rest = to_tick if until is None else min(rest, to_tick)
             session.spend(min(rest, POLL_NS) if session.flags & THREADS else rest)
             found = look()
         return found
@@ -74,6 +85,8 @@ class FileWaits:
         real = self._select
 
         def simulated(readers: Any, writers: Any, others: Any, timeout: Any = None) -> Any:
+            if self.devices.by_fd and any(map(self.devices.opened, (*readers, *writers, *others))):
+                return self._select_devices(readers, writers, others, timeout)
             # The real function validates the arguments.
             found = real(readers, writers, others, 0 if timeout is None or timeout >= 0 else timeout)
             if any(found) or timeout == 0:
@@ -93,6 +106,26 @@ class FileWaits:
         if self._classes["epoll"] is not None:
             module.epoll = _epoll_class(self, self._classes["epoll"])
 
+    def _select_devices(self, readers: Any, writers: Any, others: Any, timeout: Any) -> Any:
+        """Do what `select.select` does if device files are among the files."""
+        groups = [list(group) for group in (readers, writers, others)]
+
+        def look() -> tuple[Any, ...]:
+            real = [[one for one in group if self.devices.opened(one) is None] for group in groups]
+            found = self._select(real[0], real[1], real[2], 0)
+            ready = tuple(
+                [one for one in group if one in there or self._is_ready(one, events)]
+                for group, there, events in zip(groups, found, _SELECTED, strict=True)
+            )
+            return ready if any(ready) else ()
+
+        limit = None if timeout is None else _nanoseconds(timeout, NS_PER_S)
+        return self.until_found(look, limit, devices=True) or ([], [], [])
+
+    def _is_ready(self, file: Any, events: int) -> bool:
+        opened = self.devices.opened(file)
+        return opened is not None and bool(opened.file.ready(opened) & events)
+
     # selectors
 
     def finish_selectors(self, module: types.ModuleType) -> None:
@@ -104,13 +137,19 @@ class FileWaits:
             if found is None:
                 continue
             if name in _SELECTORS:
-                found._selector_cls = self._classes[_SELECTORS[name]]
+                found._selector_cls = self._selector_class(_SELECTORS[name])
             found.select = self._selector_select(found.select)
+
+    def _selector_class(self, name: str) -> Any:
+        """Return what a selector polls with; it waits itself."""
+        real: Any = self._classes[name]
+        return staticmethod(lambda: _AtOnce(self, real(), "poll", 1)) if name in ("poll", "epoll") else real
 
     def _selector_select(self, look: Callable[[Any, float], Any]) -> Callable[..., Any]:
         @wraps(look)
         def select_simulated(selector: Any, timeout: float | None = None) -> Any:
-            return self.until_found(lambda: look(selector, 0), _nanoseconds(timeout, NS_PER_S))
+            limit = _nanoseconds(timeout, NS_PER_S)
+            return self.until_found(lambda: look(selector, 0), limit, _polls_devices(selector))
 
         return select_simulated
 
@@ -175,6 +214,10 @@ class FileWaits:
         return connect
 
 
+def _descriptor(file: Any) -> int:
+    return file if isinstance(file, int) else int(file.fileno())
+
+
 def _pending_error(socket: Any) -> int:
     import socket as module
 
@@ -203,15 +246,62 @@ class _Polling:
 
     def __init__(self, waits: FileWaits, real: Any, method: str, per_unit: int) -> None:
         self._waits, self._real, self._method, self._per_unit = waits, real, method, per_unit
+        self._polled: dict[int, tuple[OpenFile, int]] = {}
+        """The device files, and the events that are asked for, by descriptor."""
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._real, name)
+
+    @property
+    def has_devices(self) -> bool:
+        """Whether device files are among those polled."""
+        return bool(self._polled)
+
+    def register(self, file: Any, *events: int) -> None:
+        """Add a file."""
+        opened = self._waits.devices.opened(file)
+        if opened is None:
+            self._real.register(file, *events)
+        else:
+            self._polled[_descriptor(file)] = opened, events[0] if events else _ALL_EVENTS
+
+    def modify(self, file: Any, events: int) -> None:
+        """Change what is asked for of a file."""
+        if _descriptor(file) not in self._polled:
+            self._real.modify(file, events)
+        else:
+            self.register(file, events)
+
+    def unregister(self, file: Any) -> None:
+        """Remove a file."""
+        if self._polled.pop(_descriptor(file), None) is None:
+            self._real.unregister(file)
 
     def poll(self, timeout: Any = None, *more: Any) -> Any:
         """Return the events; blocks in simulated time."""
         # Negative means without limit, as in the real one.
         limit = None if timeout is None or timeout < 0 else _nanoseconds(timeout, self._per_unit)
-        return self._waits.until_found(lambda: getattr(self._real, self._method)(0, *more), limit)
+        return self._waits.until_found(lambda: self._look(*more), limit, bool(self._polled))
+
+    def _look(self, *more: Any) -> Any:
+        found = getattr(self._real, self._method)(0, *more)
+        for fd, (opened, wanted) in self._polled.items():
+            if ready := opened.file.ready(opened) & (wanted | select.POLLERR):
+                found.append((fd, ready))
+        return found
+
+
+class _AtOnce(_Polling):
+    """The same without waiting."""
+
+    def poll(self, timeout: Any = None, *more: Any) -> Any:
+        """Return the events that there are."""
+        return self._look(*more)
+
+
+def _polls_devices(selector: Any) -> bool:
+    poll = getattr(selector, "_selector", None)
+    return isinstance(poll, _Polling) and poll.has_devices
 
 
 def _epoll_class(waits: FileWaits, real: Any) -> type:

@@ -12,36 +12,23 @@ from typing import Any, NoReturn
 
 from tuisim.core.profile import NS_PER_S
 from tuisim.errors import NotSimulated
-from tuisim.protocol import BUTTONS
-from tuisim.shim.buttons import KEY_CODES, POLL_NS, read_pressed
+from tuisim.shim.buttons import (
+    DEVICE_NAME,
+    DEVICE_PATH,
+    DEVICE_PATHS,
+    EV_KEY,
+    KEY_CODES,
+    POLL_NS,
+    InputEvent,
+    changes,
+    read_pressed,
+)
 from tuisim.shim.evdev.codes import codes_module
 from tuisim.shim.session import Session
 from tuisim.shim.waits import Wait, waits_for
 
-DEVICE_PATH = "/dev/input/event0"
-BY_PATH = "/dev/input/by-path/platform-gpio_keys-event"
-"""The same device, by the name that the library opens."""
-DEVICE_NAME = "EV3 Brick Buttons"
-EV_KEY = 1
-"""Event type for keys."""
 _INSTEAD = "to drive by hand, use the brick's buttons or RemoteControlledTank"
 ONLY_BUTTONS = f"Gamepads are not simulated: evdev.list_devices() has the brick's buttons only ({_INSTEAD})."
-
-
-@dataclass(frozen=True, slots=True)
-class InputEvent:
-    """A press or release of a button."""
-
-    sec: int
-    usec: int
-    type: int
-    code: int
-    value: int
-    """1 for a press, 0 for a release."""
-
-    def timestamp(self) -> float:
-        """Return the simulated time in seconds."""
-        return self.sec + self.usec / 1e6
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +87,7 @@ class InputDevice:
 
     def __init__(self, session: Session, dev: object) -> None:
         path = os.fspath(dev) if isinstance(dev, os.PathLike) else dev
-        if path not in (DEVICE_PATH, BY_PATH):
+        if path not in DEVICE_PATHS:
             raise NotSimulated(f"evdev.InputDevice({path!r}): gamepads and keyboards are not simulated", _INSTEAD)
         self._session = session
         self._seen, self._events = session.pressed, list[InputEvent]()
@@ -122,12 +109,7 @@ class InputDevice:
         """Return what has happened since the last call."""
         now, before = self._session.pressed, self._seen
         self._seen = now
-        at, within = divmod(self._session.now, NS_PER_S)
-        return [
-            InputEvent(at, within // 1000, EV_KEY, KEY_CODES[name], int(name in now))
-            for name in BUTTONS
-            if (name in now) != (name in before)
-        ]
+        return changes(before, now, self._session.now)
 
     def read_one(self) -> InputEvent | None:
         """Return the next event; None if there is none. Charges the cost of a read.
@@ -237,7 +219,7 @@ def evdev_modules(session: Session) -> dict[str, types.ModuleType]:
 
     def is_device(fn: object) -> bool:
         """Return whether a path is that of an input device."""
-        return fn in (DEVICE_PATH, BY_PATH)
+        return fn in DEVICE_PATHS
 
     events = {kind.__name__: kind for kind in (InputEvent, SynEvent, KeyEvent, RelEvent, AbsEvent)}
     parts: dict[str, dict[str, Any]] = {

@@ -130,10 +130,12 @@ class Shell:
                     yield NEEDS_INPUT
                 flow = streams.given
             result = self._result(Use(call.words[1:], flow, folder, in_shell), call.words[0])
+            if call.file and not result.status:
+                result = _written(result, call.file)
             if result.errors:
                 sink = streams.output if call.joined else _nowhere if call.silent_errors else streams.errors
                 _write_error(result.errors, sink, result.status)
-            flow, heard = Flow() if call.silent else result.output, (*heard, *result.heard)
+            flow, heard = Flow() if call.silent or call.file else result.output, (*heard, *result.heard)
         if flow.data:
             streams.output(flow.data)
         streams.sound = flow.sound or streams.sound
@@ -152,6 +154,16 @@ class Shell:
                 NOT_THERE, errors=f"{name}: not found (return code 127): the simulated brick has only {there}"
             )
         return command(self, use)
+
+
+def _written(result: Result, file: str) -> Result:
+    """Write a command's output to a device file; return what that makes of its result."""
+    try:
+        with open(file, "wb", 0) as device:
+            device.write(result.output.data)
+    except OSError as error:
+        return Result(FAILED, errors=f"sh: cannot write {file}: {error.strerror}")
+    return result
 
 
 def _write_error(text: str, sink: Sink, status: int) -> None:
@@ -270,6 +282,20 @@ def _echo(_shell: Shell, use: Use) -> Result:
     return Result(output=Flow((text + end).encode("utf-8", "surrogateescape")))
 
 
+def _cat(_shell: Shell, use: Use) -> Result:
+    data, errors = b"", []
+    for word in _sorted_out("cat", use.words)[1] or ["-"]:
+        if word == "-":
+            data += use.given.data
+            continue
+        try:
+            with open(os.path.join(use.folder, word), "rb") as file:
+                data += file.read()
+        except OSError as error:
+            errors.append(f"cat: {word}: {error.strerror}")
+    return Result(FAILED if errors else 0, Flow(data), "\n".join(errors))
+
+
 _ESCAPES = {"n": "\n", "t": "\t", "\\": "\\", "a": "\a", "b": "\b", "e": "\x1b", "r": "\r", "c": "\0c", "v": "\v"}
 
 
@@ -314,6 +340,7 @@ def _aplay(_shell: Shell, use: Use) -> Result:
 
 _OPTIONS = {
     "espeak": ("a:s:v:p:g:k:l:b:f:w:mqxXz", ["stdin", "stdout"]),
+    "cat": ("u", []),
     "aplay": ("D:qt:c:f:r:d:s:MNvi", ["quiet"]),
 }
 """Options of the commands that read standard input by default, in `getopt` format."""
@@ -341,6 +368,6 @@ def _reads(words: Sequence[str]) -> bool:
 
 COMMANDS: Mapping[str, Callable[[Shell, Use], Result]] = {
     "setfont": _setfont, "clear": _clear, "beep": _beep, "echo": _echo, "espeak": _espeak, "aplay": _aplay,
-    "amixer": _amixer, "stty": _stty,
+    "amixer": _amixer, "stty": _stty, "cat": _cat,
 }  # fmt: skip
 """The commands of the brick, by name."""

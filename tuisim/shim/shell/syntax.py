@@ -16,7 +16,12 @@ _PARTS = re.compile(
     |(?P<joint>&&|\|\||[;&|\n])""",
     re.VERBOSE | re.DOTALL,
 )
-_REDIRECTION = re.compile(r"(?P<stream>[12]?)>>?[ \t]*(?:/dev/null(?=[\s;&|]|$)|(?P<joined>&[12]))|<[ \t]*/dev/null")
+_REDIRECTION = re.compile(
+    r"""(?P<stream>[12]?)>>?[ \t]*
+        (?:/dev/null(?=[\s;&|]|$)|(?P<joined>&[12])|(?P<file>/(?:sys|dev)/[^\s;&|<>()'"\\`$]+))
+    |<[ \t]*/dev/null""",
+    re.VERBOSE,
+)
 _UNKNOWN = {"$": "variables", "`": "commands in words", "(": "groups", ")": "groups", "<": "files", ">": "files"}
 """Meaning of characters in a real shell that the brick's shell does not support."""
 
@@ -40,6 +45,8 @@ class Call:
     """Whether standard error is discarded."""
     joined: bool = False
     """Whether standard error is redirected to standard output."""
+    file: str = ""
+    """The device file that standard output is written to; empty for none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,16 +134,21 @@ def _complaint(rest: str) -> NotUnderstood:
 
 def _call(words: list[str], redirected: list[re.Match[str]]) -> Call:
     call = {"silent": False, "silent_errors": False, "joined": False}
+    file = ""
     for one in redirected:
         if one[0].startswith("<"):
             continue
         if one["joined"] == "&1" and one["stream"] == "2":
             # In order: `2>&1 >/dev/null` keeps standard error where the output went before.
             call["joined"], call["silent_errors"] = not call["silent"], call["silent"]
-        elif one["joined"]:
+        elif one["file"] and one["stream"] != "2":
+            file, call["silent"] = one["file"], False
+        elif one["joined"] or one["file"]:
             raise NotUnderstood(f"{one[0]!r}: only 2>&1 and {NULL_FILE} are simulated")
         else:
             call["silent_errors" if one["stream"] == "2" else "silent"] = True
             if one["stream"] == "2":
                 call["joined"] = False
-    return Call(tuple(words), **call)
+            else:
+                file = ""
+    return Call(tuple(words), file=file, **call)

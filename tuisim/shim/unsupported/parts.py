@@ -20,6 +20,15 @@ REFUSED: Mapping[str, Mapping[str, str]] = {
         "RobotWebServer": "a program has no network; for driving by hand use RemoteControlledTank or the buttons",
         "WebControlledTank": "a program has no network; for driving by hand use RemoteControlledTank or the buttons",
     },
+    "ev3dev.GyroBalancer": {
+        "GyroBalancer": "it balances on two wheels, and this robot cannot fall; to drive, use LargeMotor",
+    },
+    "ev3dev.virtualterminal": {"VirtualTerminal": "to write on the screen, use ev3dev.ev3.Screen"},
+    "ev3dev.webserver": {
+        "RobotWebServer": "a program has no network; for driving by hand use the buttons",
+        "TankWebHandler": "a program has no network; for driving by hand use the buttons",
+        "WebControlledTank": "a program has no network; for driving by hand use the buttons",
+    },
     "multiprocessing.shared_memory": {"SharedMemory": _THREADS},
 }
 """Classes that cannot be instantiated and their alternatives, by module."""
@@ -83,6 +92,15 @@ PROCESSES = {
     "multiprocessing.process": refuse_process,
 }
 """Functions that refuse the parts of a module that would start processes on this computer."""
+
+
+OTHER_BOARDS = ("ev3dev.brickpi", "ev3dev.brickpi3", "ev3dev.pistorms")
+"""Modules of the older library for boards that are no EV3."""
+
+
+def refuse_board(module: types.ModuleType) -> NoReturn:
+    """Refuse a module for another board."""
+    raise NotSimulated(f"{module.__name__} is not part of the simulated brick: it is an EV3", "import ev3dev.ev3")
 
 
 def refuse_classes(module: types.ModuleType) -> None:

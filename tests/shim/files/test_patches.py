@@ -1,0 +1,66 @@
+"""The device files, through everything that reaches files: tables of checks, each run as one program in the child."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.shim.checking import Table, differences
+from tests.shim.conftest import RunOn
+from tests.shim.files.table_files import PATHS, READS, WAITS
+
+TABLES: dict[str, tuple[Table, str]] = {
+    "paths": (PATHS, "default"),
+    "reads and writes": (READS, "default"),
+    "waits": (WAITS, "plain"),
+}
+"""By name: table, robot."""
+
+
+@pytest.mark.parametrize(("table", "robot"), TABLES.values(), ids=TABLES)
+def test_table(run_on: RunOn, table: Table, robot: str) -> None:
+    done = run_on(table.program, robot, presses=table.presses)
+    assert "\n".join(differences(table, done.lines)) == ""
+
+
+READINGS = """
+import time
+from ev3dev2.motor import LargeMotor
+from ev3dev2.sensor.lego import ColorSensor, GyroSensor, UltrasonicSensor
+motor, parts = LargeMotor('outB'), [ColorSensor('in2'), UltrasonicSensor(), GyroSensor()]
+
+def cost(call):
+    start = time.monotonic_ns()
+    call()
+    return time.monotonic_ns() - start
+
+for device, name in [(motor, 'position'), (motor, 'state'), *((part, 'value0') for part in parts)]:
+    with open(f'{device._path}/{name}') as file:
+        print(cost(lambda: device.get_attr_string(None, name)) == cost(file.read) > 1_000_000)
+"""
+
+
+@pytest.mark.parametrize("profile", ["robolab", "ev3"])
+def test_reading_a_file_costs_what_the_library_costs(run_on: RunOn, profile: str) -> None:
+    assert run_on(READINGS, "default", profile=profile).lines == ["True"] * 5
+
+
+IN_THE_SHELL = """
+import os, subprocess
+led = '/sys/class/leds/led0:red:brick-status/'
+print(os.popen('cat /sys/class/tacho-motor/motor0/driver_name').read())
+print(os.system(f'echo 100 > {led}brightness'), open(led + 'brightness').read())
+print(subprocess.run(f'echo 1 > {led}max_brightness', shell=True, capture_output=True, text=True).stderr)
+print(subprocess.run(['cat', led + 'no'], capture_output=True, text=True).stderr)
+print(subprocess.check_output('echo hi | cat', shell=True))
+"""
+
+
+def test_the_shell_reads_and_writes_the_same_files(run_on: RunOn) -> None:
+    lines = [line for line in run_on(IN_THE_SHELL).lines if line]
+    assert lines == [
+        "lego-ev3-l-motor",
+        "0 100",
+        "sh: cannot write /sys/class/leds/led0:red:brick-status/max_brightness: Permission denied",
+        "cat: /sys/class/leds/led0:red:brick-status/no: No such file or directory",
+        "b'hi\\n'",
+    ]

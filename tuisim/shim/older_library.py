@@ -1,0 +1,95 @@
+"""What the older library, `python-ev3dev` 1.x, needs besides the device files: it reads and writes those itself."""
+
+from __future__ import annotations
+
+import importlib.machinery
+import os
+import sys
+import types
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import wraps
+from typing import Any
+
+from tuisim.shim.display import draw_with_the_bricks_font
+from tuisim.shim.leds import mend_trigger
+from tuisim.shim.session import Session
+from tuisim.shim.unsupported.devices import refused_device
+
+NAME = "ev3dev"
+INSTALL = "pip install 'tuisim[ev3dev]'"
+
+
+class MissingLibrary:
+    """Finds the library only to say how to get it; the last of the finders, so that it is not installed."""
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None = None, target: types.ModuleType | None = None
+    ) -> importlib.machinery.ModuleSpec | None:
+        """Raise for the library; None for other modules."""
+        if fullname == NAME:
+            raise ModuleNotFoundError(f"No module named {NAME!r}: {INSTALL} installs it", name=NAME)
+        return None
+
+
+@contextmanager
+def surroundings() -> Iterator[None]:
+    """While its modules are imported: what Python and its packages have changed since the library was written."""
+    missing = "pkg_resources" not in sys.modules
+    if missing:
+        sys.modules["pkg_resources"] = _resources()
+    try:
+        with warnings.catch_warnings():
+            # Of patterns that are no raw strings.
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        if missing:
+            del sys.modules["pkg_resources"]
+
+
+def _resources() -> types.ModuleType:
+    """Return what the library uses of `pkg_resources`, which later versions of setuptools do not have."""
+    module = types.ModuleType("pkg_resources")
+
+    def folder(package: str) -> str:
+        return os.path.dirname(str(sys.modules[package].__file__))
+
+    vars(module).update(
+        resource_listdir=lambda package, _name: os.listdir(folder(package)),
+        resource_filename=lambda package, name: os.path.join(folder(package), name),
+    )
+    return module
+
+
+def finish_core(session: Session, module: types.ModuleType, hint: Callable[[str], str]) -> None:
+    """Patch `ev3dev.core` after its import: the screen's font, and what it says about a missing device.
+
+    Args:
+        session: The run.
+        module: The module.
+        hint: Returns what to add to the error about a missing device of a class.
+    """
+    core: Any = module
+    draw_with_the_bricks_font(core.Screen)
+    if session.sim.spec.profile.mend_library:
+        mend_trigger(core.Led)
+
+    def explained(access: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(access)
+        def call(self: Any, *args: Any) -> Any:
+            try:
+                return access(self, *args)
+            except Exception as error:  # the library raises this very class for a device that is not connected
+                class_name = getattr(self, "SYSTEM_CLASS_NAME", "")
+                if not self.connected and (refused := refused_device(self, class_name, type(error))):
+                    raise refused from None
+                if not self.connected and (addition := hint(class_name)):
+                    error.args = (f"{error}. {addition}",)
+                raise
+
+        return call
+
+    device = core.Device
+    device._get_attribute, device._set_attribute = explained(device._get_attribute), explained(device._set_attribute)
