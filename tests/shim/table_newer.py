@@ -70,7 +70,8 @@ def drive(call, *words, **more):
         ),
         Check(
             "ServoMotor(OUTPUT_B)",
-            "NotSimulated: ev3dev2.motor.ServoMotor: a servo motor (servo-motor) is not simulated (use a MediumMotor: on_to_position() turns it to an angle)",
+            "NotSimulated: ev3dev2.motor.ServoMotor: a servo motor (servo-motor) is not simulated "
+            "(use a MediumMotor: on_to_position() turns it to an angle)",
         ),
         Check("MotorSet({OUTPUT_B: LargeMotor, OUTPUT_C: LargeMotor}).off()", "None"),
     ),
