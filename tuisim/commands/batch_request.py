@@ -153,7 +153,7 @@ def _subjects(arguments: Arguments, file: BatchFile, goals: GoalsFile | None) ->
     check_arguments(arguments.programs, arguments)
     world = file.world
     if world is None and goals is not None:
-        world = WorldFile(goals.path, goals.settings, goals.program)
+        world = WorldFile(goals.path, goals.settings, goals.program, is_task=True)
     elif world is not None and goals is not None and world.program is None:
         world = replace(world, program=goals.program)
     # A notebook stands for all of its cells.

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines, table
-from tuisim.config.command_line import AS_JSON, argument, command, option
+from tuisim.config.command_line import AS_JSON, Value, argument, command, option
 from tuisim.core.profile import MS, PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec
-from tuisim.errors import counted, listed
+from tuisim.errors import ConfigError, counted, listed
 
 if TYPE_CHECKING:
     from tuisim.config.mats import Background, Taken
@@ -115,11 +115,27 @@ def _size(one: Taken) -> str:
 # Robots and obstacles
 
 
-@command(argument("robot", "[NAME|FILE]", lambda: names_of("robot"), required=False), AS_JSON)
-def robots(robot: str | None, as_json: bool) -> int:
-    """List the robots, or print one in TOML as a starting point for your own."""
+@command(
+    argument("robot", "[NAME|FILE]", lambda: names_of("robot"), required=False),
+    option("--from", "program", metavar="PROGRAM", type=Value(names=lambda: names_of("programs")),
+           help="Print the robot that a program for a real brick talks about, with the lines that say so."),
+    option("--out", metavar="FILE", type=Value(), help="Write it to a robot file for -r instead."),
+    AS_JSON,
+)  # fmt: skip
+def robots(robot: str | None, program: str | None, out: str | None, as_json: bool) -> int:
+    """List the robots, or print one in TOML as a starting point for your own.
+
+    Raises:
+        ConfigError: there is no such robot or program, or the file cannot be written.
+    """
     from tuisim.config.robots import ROBOTS, load_robot, robot_file
 
+    if program is not None:
+        if robot is not None:
+            raise ConfigError(f"is given together with {robot}", "name one", key="--from")
+        return _robot_from(program, out, as_json=as_json)
+    if out is not None:
+        raise ConfigError("needs a program", "tuisim robots --from PROGRAM --out FILE", key="--out")
     chosen = None if robot is None else load_robot(robot)
     if as_json:
         echo_json([asdict(one) for one in ([chosen] if chosen else ROBOTS.values())])
@@ -128,6 +144,24 @@ def robots(robot: str | None, as_json: bool) -> int:
     else:
         heads = ("NAME", "WHEELS", "WEIGHT", "COLOUR SENSORS x, y, diameter", "PORTS")
         echo_lines(table(heads, list(map(_robot_row, ROBOTS.values()))))
+    return 0
+
+
+def _robot_from(program: str, out: str | None, *, as_json: bool) -> int:
+    """Print or write the robot that a program talks about."""
+    from tuisim.config.program_file import find_program, read_program
+    from tuisim.config.program_robot.report import USUAL, robot_file_of, save_robot_of
+    from tuisim.config.program_settings import facts_of
+
+    source = read_program(find_program(program))
+    built = facts_of(source.program).robot
+    if as_json:
+        echo_json([asdict(built.choice.spec if built else USUAL)])
+    elif out is not None:
+        save_robot_of(program, built, Path(out))
+        echo_error(f"{out}: the robot of {program}; `tuisim run {program} -r {out}` takes it")
+    else:
+        echo_lines("\n".join(robot_file_of(program, built)))
     return 0
 
 

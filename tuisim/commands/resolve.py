@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import ARGUMENTS_FOLLOW, Arguments
 from tuisim.config.options import OF_THE_APP, RobotChoice, Settings, settings_of
 from tuisim.config.program_file import ProgramSource, find_program, read_program
+from tuisim.config.program_settings import program_settings
 from tuisim.config.robots import choose_robot
 from tuisim.config.user_config import Section, UserConfig
 from tuisim.config.worlds import WorldFile, load_world, means_world
@@ -45,6 +47,10 @@ class Prepared:
     """Its name in a table; empty for the program's name."""
     from_config: tuple[str, ...] = ()
     """What the user's `config.toml` decides about the run, in words."""
+    from_program: Mapping[str, Any] = field(default_factory=dict)
+    """What the source of the program decides, by field of `Settings`."""
+    note: str = ""
+    """The same in words."""
 
 
 def check_arguments(words: Sequence[str], arguments: Arguments) -> None:
@@ -107,13 +113,20 @@ def _from_config(
 
 
 def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Arguments, config: UserConfig) -> Prepared:
-    in_world = world.settings if world else {}
-    settings = settings_of(_defaults(world, config), file.options, in_world, arguments.settings)
+    layers = [*([world.settings] if world else []), arguments.settings]
+    said = partial(program_settings, file, *layers, in_world=world is not None, of_task=_decides_robot(world))
+    found = said(below=_defaults(world, config))
+    settings = found.settings
     prelude = settings.preload or file.program.prelude
     program = replace(file.program, prelude=prelude, arguments=settings.arguments)
     spec = _spec(settings)
-    said = _from_config(spec, world, config, file.options, arguments.settings)
-    return Prepared(program, settings, spec, world, from_config=said)
+    changed = _from_config(spec, world, config, said().layer, file.options, arguments.settings)
+    return Prepared(program, settings, spec, world, from_config=changed, from_program=found.layer, note=found.note)
+
+
+def _decides_robot(world: WorldFile | None) -> bool:
+    """Return whether a world is that of a task, whose robot is the same for every program."""
+    return world is not None and world.is_task and bool(world.settings)
 
 
 def _spec(settings: Settings) -> RunSpec:

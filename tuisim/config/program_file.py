@@ -28,6 +28,10 @@ _MAGIC = re.compile(r"(?P<comment>#\s*)?%%?(?P<name>sim_magic\w*)(?P<words>.*)")
 _READS_ANY_NAME = {"eval", "exec", "globals", "vars"}
 """Functions that may use names that do not appear in the program."""
 
+LIBRARIES = ("ev3dev2", "ev3dev")
+"""The packages with which programs for a brick begin: they need no prelude."""
+_IMPORT = re.compile(rf"^\s*(from|import)\s+({'|'.join(LIBRARIES)})\b", re.MULTILINE)
+
 _DOCSTRING = re.compile(r"[rRuU]?(\"\"\"|'''|\"|')")
 
 
@@ -51,6 +55,8 @@ class ProgramSource:
     program: Program
     options: Mapping[str, Any] = field(default_factory=dict)
     """Options of the magic line, by field of `Settings`; file names are resolved from the program's folder."""
+    has_magic: bool = False
+    """Whether it has a magic line, or is the cell of a notebook."""
 
 
 class ProgramFile(NamedTuple):
@@ -141,17 +147,17 @@ def prelude_for(text: str) -> str:
     It is `none` if the program imports the library, or uses no name of a prelude.
     """
     try:
-        if _imports_ev3dev2(ast.parse(text)):
+        if _imports_library(ast.parse(text)):
             return "none"
-        used, defined = _global_names(text)
+        used, defined = global_names(text)
     # Errors of the program are reported when it runs; here a search must do.
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return "none" if re.search(r"^\s*(from|import)\s+ev3dev2\b", text, re.MULTILINE) else "preloaded"
-    _, ready = _global_names(PRELUDE_TEXTS["preloaded"])
+        return "none" if _IMPORT.search(text) else "preloaded"
+    _, ready = global_names(PRELUDE_TEXTS["preloaded"])
     return "preloaded" if (used - defined) & (ready | _READS_ANY_NAME) else "none"
 
 
-def _global_names(text: str) -> tuple[set[str], set[str]]:
+def global_names(text: str) -> tuple[set[str], set[str]]:
     """Return the global names that a text uses, and those that it defines."""
     used: set[str] = set()
     defined: set[str] = set()
@@ -169,12 +175,12 @@ def _global_names(text: str) -> tuple[set[str], set[str]]:
     return used, defined
 
 
-def _imports_ev3dev2(tree: ast.AST) -> bool:
+def _imports_library(tree: ast.AST) -> bool:
     for node in ast.walk(tree):
         match node:
-            case ast.Import(names=names) if any(alias.name.split(".")[0] == "ev3dev2" for alias in names):
+            case ast.Import(names=names) if any(alias.name.split(".")[0] in LIBRARIES for alias in names):
                 return True
-            case ast.ImportFrom(module=str(module), level=0) if module.split(".")[0] == "ev3dev2":
+            case ast.ImportFrom(module=str(module), level=0) if module.split(".")[0] in LIBRARIES:
                 return True
     return False
 
@@ -193,7 +199,7 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
         lines[magic.line - 1] = f"# {lines[magic.line - 1].strip()}"
         text = "\n".join(lines) + ("\n" if text.endswith(("\n", "\r")) else "")
     prelude = str(magic.options.get("preload", magic.prelude))
-    return ProgramSource(Program(name, text, prelude, path), magic.options)
+    return ProgramSource(Program(name, text, prelude, path), magic.options, has_magic=True)
 
 
 def find_program(word: str) -> Path:

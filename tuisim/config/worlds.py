@@ -128,6 +128,8 @@ class WorldFile:
     """The program to run in it: a path, or the name of an example."""
     files: tuple[Path, ...] = ()
     """The file itself, and the files that it refers to."""
+    is_task: bool = False
+    """Whether it has goals: then its robot is the same for every program."""
 
 
 def means_world(word: str) -> bool:
@@ -193,10 +195,12 @@ def world_from_table(data: object, path: Path, mats: str | None = None, above: t
         words = enumerate(world["arguments"], start=1)
         found["arguments"] = tuple(_argument(word, at.at(f"arguments[{number}]")) for number, word in words)
     program = _program(world["program"], path.parent, resolve) if "program" in world else None
+    is_task = "goal" in world
     if "world" not in world:
-        return WorldFile(path, found, program, (path, *referred))
+        return WorldFile(path, found, program, (path, *referred), is_task)
     base = _base(world["world"], at.at("world"), resolve, mats, (*above, path))
-    return WorldFile(path, {**base.settings, **found}, program or base.program, (path, *referred, *base.files))
+    every = (path, *referred, *base.files)
+    return WorldFile(path, {**base.settings, **found}, program or base.program, every, is_task or base.is_task)
 
 
 def _base(word: str, at: Location, resolve: Resolver, mats: str | None, above: tuple[Path, ...]) -> WorldFile:

@@ -113,7 +113,8 @@ def notebook_programs(path: Path) -> list[NotebookProgram]:
                 body = "\n" * (text.count("\n", 0, at) + 1) + text[at:].partition("\n")[2]
                 prelude = str(said.get("preload", PRELUDES[words.magic["name"]]))
                 options = {**persistent, **said}
-                source = ProgramSource(Program(f"{path.name}#{number}", body, prelude, module_folder=folder), options)
+                cell = Program(f"{path.name}#{number}", body, prelude, module_folder=folder)
+                source = ProgramSource(cell, options, has_magic=True)
                 found.append(NotebookProgram(number, title, source, words.unknown, tuple(notes)))
                 notes.clear()
             elif words.unknown:

@@ -1,0 +1,297 @@
+"""Builds the robot of a program: the default robot with the parts changed that the program asks for."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from tuisim.config.options import RobotChoice
+from tuisim.config.program_robot.library import Kind
+from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
+from tuisim.config.program_robot.places import NewSensors, places_for
+from tuisim.config.program_robot.wheels import Wheels, wheels_of
+from tuisim.core.spec import (
+    INPUT_PORTS,
+    ColorSensorSpec,
+    GyroSpec,
+    InfraredSpec,
+    MotorSpec,
+    RobotSpec,
+    SensorSpec,
+    TouchSpec,
+    UltrasonicSpec,
+)
+from tuisim.errors import RobotError
+
+KINDS: Mapping[type, Kind] = {
+    ColorSensorSpec: Kind.COLOR,
+    UltrasonicSpec: Kind.ULTRASONIC,
+    GyroSpec: Kind.GYRO,
+    TouchSpec: Kind.TOUCH,
+    InfraredSpec: Kind.INFRARED,
+}
+"""The kind of each sensor, by the class of its spec."""
+_USUAL_PORTS = {Kind.TOUCH: "in1", Kind.INFRARED: "in4", Kind.GYRO: "in4", Kind.ULTRASONIC: "in1", Kind.COLOR: "in3"}
+_MAX_NAME = 80
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A part of the robot that differs from the default one, or that a line of the program asks for."""
+
+    what: str
+    """In words, such as `medium motor on outA`."""
+    path: str
+    """Its key in a robot file."""
+    where: Where | None = None
+    """The line of the program that asks for it; None if another part takes its place."""
+    changes: bool = True
+    """Whether it differs from the default robot."""
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltRobot:
+    """A robot that was built for a program."""
+
+    choice: RobotChoice
+    parts: tuple[Part, ...]
+    doubts: tuple[str, ...] = ()
+    """Where the program can be read in another way: what was taken, in words."""
+
+
+def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot | None:
+    """Return the robot that a program talks about; None if the usual one has everything on its ports.
+
+    Args:
+        name: What the program is called.
+        usual: The robot that is changed.
+    """
+    builder = _Builder(mentions, usual)
+    changes = {**builder.motors(), **builder.sensors()}
+    if all(getattr(usual, key) == value for key, value in changes.items()):
+        return None
+    shown = "".join(letter if letter.isprintable() else "?" for letter in name)[:_MAX_NAME]
+    try:
+        spec = replace(usual, name=f"Robot of {shown}", **changes)
+    except RobotError:
+        # What a program says may be impossible, such as a wheel of 0 mm: the run then says what is missing.
+        return None
+    own_places = {sensor.name for sensor in spec.color_sensors} > {sensor.name for sensor in usual.color_sensors}
+    return BuiltRobot(RobotChoice(spec, own_places=own_places), tuple(builder.parts), tuple(builder.doubts))
+
+
+@dataclass(slots=True)
+class _Builder:
+    mentions: Mentions
+    usual: RobotSpec
+    parts: list[Part] = field(default_factory=list)
+    doubts: list[str] = field(default_factory=list)
+
+    # Motors
+
+    def motors(self) -> dict[str, Any]:
+        """Return the fields of the robot that are about motors and wheels."""
+        kinds = self._kinds([*self._of_pairs(), *(one for one in self.mentions.devices if one.kind.is_motor)])
+        where = {one.port: one.where for one in (*self.mentions.devices, *self._of_pairs()) if one.port}
+        wheels = wheels_of(self.mentions, kinds, self.usual)
+        left, right = (kinds.get(port, Kind.LARGE) for port in (wheels.left, wheels.right))
+        changes: dict[str, Any] = {"left_port": wheels.left, "right_port": wheels.right}
+        changes |= {"left_motor": _motor_kind(left), "right_motor": _motor_kind(right)}
+        changes |= self._sizes(wheels.pair)
+        further = [port for port in sorted(kinds) if port not in (wheels.left, wheels.right)]
+        further_kinds = {port: kinds[port] for port in further}
+        self._free_motors(further_kinds, (wheels.left, wheels.right))
+        changes["extra_motors"] = tuple(MotorSpec(port, _motor_kind(kind)) for port, kind in further_kinds.items())
+        self._tell_wheels(wheels, changes)
+        for port, kind in further_kinds.items():
+            named = Kind.LARGE if kind is Kind.MOTOR else kind
+            self.parts.append(Part(f"{named} on {port}", f"motors.{port}", where.get(port) or self._first(kind)))
+        if wheels.doubt:
+            self.doubts.append(wheels.doubt)
+        return changes
+
+    def _of_pairs(self) -> list[Mention]:
+        return [
+            Mention(pair.kind, port, pair.where) for pair in self.mentions.pairs for port in (pair.left, pair.right)
+        ]
+
+    def _first(self, kind: Kind) -> Where | None:
+        return next((one.where for one in self.mentions.devices if one.kind is kind), None)
+
+    def _free_motors(self, kinds: dict[str, Kind], wheels: tuple[str, str]) -> None:
+        """Add the motors that the program makes without saying the port, on free ports."""
+        unknown = sum(one.kind is Kind.MEDIUM and not one.port and not one.is_any for one in self.mentions.devices)
+        has_any = any(one.kind is Kind.MEDIUM and one.is_any for one in self.mentions.devices)
+        medium = Kind.MEDIUM in kinds.values()
+        missing = unknown + (1 if has_any and not medium and not unknown else 0)
+        for port in ("outA", "outD", "outB", "outC"):
+            if missing and port not in kinds and port not in wheels:
+                kinds[port] = Kind.MEDIUM
+                missing -= 1
+
+    def _sizes(self, pair: Pair | None) -> dict[str, float]:
+        """Return what MoveDifferential says about the wheels, if it differs from those of the usual robot."""
+        found: dict[str, float] = {}
+        if pair and pair.wheel_mm and pair.wheel_mm[0] != self.usual.wheel_diameter_mm:
+            found["wheel_diameter_mm"], found["wheel_width_mm"] = pair.wheel_mm
+        if pair and pair.spacing_mm is not None and pair.spacing_mm != self.usual.wheel_spacing_mm:
+            found["wheel_spacing_mm"] = pair.spacing_mm
+        return found
+
+    def _tell_wheels(self, wheels: Wheels, changes: Mapping[str, Any]) -> None:
+        moved = (wheels.left, wheels.right) != (self.usual.left_port, self.usual.right_port)
+        kinds = [changes["left_motor"], changes["right_motor"]]
+        medium = " (medium motors)" if kinds == ["medium"] * 2 else ""
+        what = f"wheels on {wheels.left} (left) and {wheels.right}{medium}"
+        self.parts.append(Part(what, "left_port", wheels.where, moved or bool(medium)))
+        if "wheel_diameter_mm" in changes:
+            what = f"wheels of {changes['wheel_diameter_mm']:g} mm"
+            self.parts.append(Part(what, "wheel_diameter_mm", wheels.where))
+        if "wheel_spacing_mm" in changes:
+            what = f"{changes['wheel_spacing_mm']:g} mm apart"
+            self.parts.append(Part(what, "wheel_spacing_mm", wheels.where))
+
+    def _kinds(self, mentions: Iterable[Mention]) -> dict[str, Kind]:
+        """Return the kind of device on each port that is named; of several the one that is named most often."""
+        votes: dict[str, Counter[Kind]] = {}
+        for one in mentions:
+            if one.port:
+                votes.setdefault(one.port, Counter())[one.kind] += 0 if one.kind in (Kind.MOTOR, Kind.SENSOR) else 1
+        found = {}
+        for port, count in votes.items():
+            (kind, _), *others = count.most_common()
+            found[port] = kind
+            said = [other for other, number in others if number]
+            if said:
+                self.doubts.append(f"{port} is taken for a {kind}, not a {said[0]}")
+        return found
+
+    # Sensors
+
+    def sensors(self) -> dict[str, Any]:
+        """Return the fields of the robot that are about sensors."""
+        mentions = [one for one in self.mentions.devices if not one.kind.is_motor]
+        kinds = self._kinds(mentions)
+        usual = {sensor.port: sensor for sensor in self.usual.sensors}
+        by_port = {
+            port: next(one for one in mentions if one.port == port and one.kind is kinds[port]) for port in kinds
+        }
+        placed: dict[str, SensorSpec] = {}
+        for port, kind in kinds.items():
+            if port in usual and kind in (KINDS[type(usual[port])], Kind.SENSOR):
+                placed[port] = usual[port]
+        waiting = {port: one for port, one in by_port.items() if port not in placed and one.kind is not Kind.SENSOR}
+        wanted = [*waiting.items(), *self._without_port(mentions, kinds, placed, {*placed, *waiting})]
+        left = [sensor for sensor in self.usual.sensors if sensor not in placed.values()]
+        new = NewSensors()
+        for port, mention in wanted:
+            alike = [sensor for sensor in left if KINDS[type(sensor)] is mention.kind]
+            if alike:
+                chosen = new.likeliest(alike, mention)
+                left.remove(chosen)
+                placed[port] = _on_port(chosen, port)
+            else:
+                new.add(port, mention)
+        placed |= places_for(new, placed, self.usual, self.doubts)
+        self._stay(left, placed)
+        self._tell_sensors(placed, by_port, mentions)
+        return _fields(placed, self.usual)
+
+    def _without_port(
+        self, mentions: list[Mention], kinds: Mapping[str, Kind], placed: Mapping[str, SensorSpec], taken: set[str]
+    ) -> list[tuple[str, Mention]]:
+        """Return the sensors that a program makes without saying the port, with ports for them."""
+        found: list[tuple[str, Mention]] = []
+        for kind in dict.fromkeys(one.kind for one in mentions if not one.port and one.kind is not Kind.SENSOR):
+            of_kind = [one for one in mentions if one.kind is kind and not one.port]
+            unknown = [one for one in of_kind if not one.is_any]
+            needed = unknown or ([] if kind in kinds.values() else of_kind[:1])
+            usual = [
+                sensor.port
+                for sensor in self.usual.sensors
+                if KINDS[type(sensor)] is kind and sensor not in placed.values()
+            ]
+            for one in needed:
+                ports = [*usual, _USUAL_PORTS[kind], *reversed(INPUT_PORTS)]
+                if port := next((port for port in ports if port not in taken), ""):
+                    taken.add(port)
+                    found.append((port, one))
+                else:
+                    self.doubts.append(f"no port is free for the {kind}")
+        return found
+
+    def _stay(self, left: list[SensorSpec], placed: dict[str, SensorSpec]) -> None:
+        """Keep the usual sensors that the program does not name where a port is free for them."""
+        moving = []
+        for sensor in left:
+            if sensor.port in placed:
+                moving.append(sensor)
+            else:
+                placed[sensor.port] = sensor
+        for sensor in moving:
+            if port := next((port for port in INPUT_PORTS if port not in placed), ""):
+                placed[port] = _on_port(sensor, port)
+
+    def _tell_sensors(
+        self, placed: Mapping[str, SensorSpec], by_port: Mapping[str, Mention], mentions: Iterable[Mention]
+    ) -> None:
+        usual = {sensor.port: sensor for sensor in self.usual.sensors}
+        first = {one.kind: one.where for one in reversed([*mentions])}
+        for port, sensor in sorted(placed.items()):
+            kind = KINDS[type(sensor)]
+            where = by_port[port].where if port in by_port else first.get(kind) if usual.get(port) != sensor else None
+            if where or usual.get(port) != sensor:
+                self.parts.append(Part(f"{kind} on {port}", _path(sensor), where, usual.get(port) != sensor))
+        names = {sensor.name for sensor in placed.values()}
+        for sensor in self.usual.sensors:
+            if sensor.name not in names:
+                self.parts.append(Part(f"no {_called(sensor)}", _path(sensor)))
+
+
+def _called(sensor: SensorSpec) -> str:
+    kind = KINDS[type(sensor)]
+    return f"{sensor.name} {kind}" if kind is Kind.COLOR else str(kind)
+
+
+def _path(sensor: SensorSpec) -> str:
+    match sensor:
+        case ColorSensorSpec():
+            return f"color_sensors.{sensor.name}"
+        case TouchSpec():
+            return f"touch_sensors.{sensor.name}"
+        case UltrasonicSpec() if sensor.name != UltrasonicSpec().name:
+            return f"ultrasonics.{sensor.name}"
+        case InfraredSpec() if sensor.name != InfraredSpec().name:
+            return f"infrareds.{sensor.name}"
+    return sensor.name
+
+
+def _motor_kind(kind: Kind) -> str:
+    return "medium" if kind is Kind.MEDIUM else "large"
+
+
+def _on_port(sensor: Any, port: str) -> SensorSpec:
+    moved: SensorSpec = replace(sensor, port=port)
+    return moved
+
+
+def _fields(placed: Mapping[str, SensorSpec], usual: RobotSpec) -> dict[str, Any]:
+    """Return the sensors as fields of a robot, those of the usual robot first and in its order."""
+    order = [sensor.name for sensor in usual.sensors]
+    sensors = sorted(placed.values(), key=lambda one: order.index(one.name) if one.name in order else len(order))
+    colors = [one for one in sensors if isinstance(one, ColorSensorSpec)]
+    ultrasonics = [one for one in sensors if isinstance(one, UltrasonicSpec)]
+    infrareds = [one for one in sensors if isinstance(one, InfraredSpec)]
+    front = next((one for one in ultrasonics if one.name == UltrasonicSpec().name), None)
+    infrared = next((one for one in infrareds if one.name == InfraredSpec().name), None)
+    return {
+        "color_sensors": tuple(colors),
+        "ultrasonic": front,
+        "gyro": next((one for one in sensors if isinstance(one, GyroSpec)), None),
+        "extra_ultrasonics": tuple(one for one in ultrasonics if one is not front),
+        "touch_sensors": tuple(one for one in sensors if isinstance(one, TouchSpec)),
+        "infrared": infrared,
+        "extra_infrareds": tuple(one for one in infrareds if one is not infrared),
+    }

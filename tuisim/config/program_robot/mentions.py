@@ -1,0 +1,403 @@
+"""The devices that a program makes: their kinds and ports, and what it says about them."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+from tuisim.config.program_robot import library
+from tuisim.config.program_robot.calls import Call, argument_node, argument_of
+from tuisim.config.program_robot.evaluation import Evaluation
+from tuisim.config.program_robot.library import Kind, PairClass
+from tuisim.config.program_robot.reach import reachable, skipped
+from tuisim.config.program_robot.scopes import FUNCTIONS, Function, Parameter, Scope, scope_of
+from tuisim.config.program_robot.source import Module
+from tuisim.config.program_robot.values import (
+    LibraryClass,
+    OwnClass,
+    OwnFunction,
+    Parent,
+    Table,
+    Value,
+)
+
+_ROUNDS = 3
+"""How often the calls are looked up: each time more is known about what is called."""
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """A line of a program."""
+
+    file: str
+    line: int
+
+    def __str__(self) -> str:
+        return f"{self.file}, line {self.line}"
+
+
+@dataclass(frozen=True, slots=True)
+class Mention:
+    """A device that a program makes."""
+
+    kind: Kind
+    port: str
+    """Its short name, such as `outA`; empty if the program does not say it."""
+    where: Where
+    names: tuple[str, ...] = ()
+    """What the program calls it, the nearest name first."""
+    owner: Scope | None = None
+    """The class in which it is made."""
+    is_any: bool = False
+    """Whether the program takes any device of the kind; else its port is not known."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Two motors that a program drives together."""
+
+    left: str
+    right: str
+    """Their ports."""
+    kind: Kind
+    rank: int
+    """The higher, the likelier these are the wheels."""
+    where: Where
+    class_name: str
+    wheel_mm: tuple[float, float] | None = None
+    """Diameter and width."""
+    spacing_mm: float | None = None
+    names: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Mentions:
+    """Everything that a program says about its robot."""
+
+    devices: tuple[Mention, ...] = ()
+    pairs: tuple[Pair, ...] = ()
+
+
+def mentions_in(modules: dict[str, Module]) -> Mentions:
+    """Return what a program says about its robot."""
+    scopes = {name: scope_of(module) for name, module in modules.items()}
+    return _Reader(scopes).read()
+
+
+@dataclass(slots=True)
+class _Reader:
+    modules: dict[str, Scope]
+    scopes: list[Scope] = field(init=False)
+    evaluation: Evaluation = field(init=False)
+    made: list[tuple[str, Call]] = field(init=False, default_factory=list)
+    """Each class of the library with a call that makes one of it."""
+    hints: dict[ast.AST, list[str]] = field(init=False, default_factory=dict)
+
+    def read(self) -> Mentions:
+        self.scopes = reachable(self.modules)
+        calls = [Call(node, scope) for scope in self.scopes for node in _calls_in(scope)]
+        options = _options(calls)
+        self.evaluation = Evaluation(self.modules, options)
+        for _ in range(_ROUNDS):
+            found: dict[Function, list[Call]] = {}
+            self.made = []
+            for call in calls:
+                self._sort(call, found)
+            if found == self.evaluation.calls:
+                break
+            self.evaluation = Evaluation(self.modules, options, found)
+        for scope in self.scopes:
+            self._note_names(scope)
+        devices: list[Mention] = []
+        pairs: list[Pair] = []
+        for name, call in self.made:
+            if name in library.PAIRS:
+                pairs += self._pairs(name, call)
+                devices += self._needs(name, call)
+            elif name == library.MOTOR_SET:
+                devices += self._motor_set(call)
+            elif name in library.DEVICES:
+                devices += self._devices(name, call)
+        return Mentions(tuple(devices), tuple(pairs))
+
+    # Calls
+
+    def _sort(self, call: Call, found: dict[Function, list[Call]]) -> None:
+        """Note what a call calls: a function of the program, or a class of the library."""
+        match call.node.func:
+            case ast.Attribute(value=base, attr="__init__"):
+                for value in self.evaluation.values(base, call.scope):
+                    self._sort_init(value, call, found)
+                return
+        for value in self.evaluation.values(call.node.func, call.scope):
+            match value:
+                case LibraryClass(name=name):
+                    self.made.append((name, call))
+                case OwnClass(scope=scope):
+                    self._sort_class(scope, call, found)
+                case OwnFunction(node=node, is_bound=is_bound):
+                    found.setdefault(node, []).append(replace(call, is_bound=is_bound))
+
+    def _sort_init(self, value: Value, call: Call, found: dict[Function, list[Call]]) -> None:
+        """Note a call of `super().__init__` or `Base.__init__`."""
+        match value:
+            case Parent(of=scope):
+                for base in self.evaluation.bases(scope):
+                    if isinstance(base, LibraryClass):
+                        self.made.append((base.name, call))
+                    elif isinstance(base, OwnClass):
+                        self._sort_class(base.scope, call, found)
+            case LibraryClass() | OwnClass() if call.node.args:
+                node = ast.copy_location(ast.Call(call.node.func, call.node.args[1:], call.node.keywords), call.node)
+                rest = Call(node, call.scope)
+                if isinstance(value, LibraryClass):
+                    self.made.append((value.name, rest))
+                else:
+                    self._sort_class(value.scope, rest, found)
+
+    def _sort_class(self, scope: Scope, call: Call, found: dict[Function, list[Call]]) -> None:
+        match self.evaluation.method(scope, "__init__"):
+            case OwnFunction(node=node):
+                found.setdefault(node, []).append(replace(call, is_bound=True))
+            case LibraryClass(name=name):
+                self.made.append((name, call))
+
+    # Names
+
+    def _note_names(self, scope: Scope) -> None:
+        for node in scope.body:
+            match node:
+                case ast.Assign(targets=targets, value=value):
+                    for target in targets:
+                        self._note(target, value)
+                case (
+                    ast.AnnAssign(target=target, value=ast.expr() as value) | ast.NamedExpr(target=target, value=value)
+                ):
+                    self._note(target, value)
+                case ast.Dict(keys=keys, values=values):
+                    for key, value in zip(keys, values, strict=True):
+                        if isinstance(key, ast.Constant) and isinstance(key.value, str):
+                            self._hint(value, key.value)
+                case ast.keyword(arg=str(name), value=value):
+                    self._hint(value, name)
+                case ast.Return(value=ast.expr() as value) if isinstance(scope.node, FUNCTIONS):
+                    self._hint(value, scope.node.name)
+        for function, calls in self.evaluation.calls.items():
+            for call in calls:
+                if call.scope is scope:
+                    names = [argument.arg for argument in function.args.args][1 if call.is_bound else 0 :]
+                    for name, value in zip(names, call.node.args, strict=False):
+                        self._hint(value, name)
+
+    def _note(self, target: ast.expr, value: ast.expr) -> None:
+        match target, value:
+            case (ast.Tuple(elts=targets) | ast.List(elts=targets), ast.Tuple(elts=values) | ast.List(elts=values)):
+                for one, inside in zip(targets, values, strict=False):
+                    self._note(one, inside)
+            case ((ast.Name(id=name) | ast.Attribute(attr=name)), _):
+                self._hint(value, name)
+
+    def _hint(self, value: ast.expr, name: str) -> None:
+        if name not in (known := self.hints.setdefault(value, [])):
+            known.append(name)
+        match value:
+            case ast.IfExp(body=one, orelse=other):
+                self._hint(one, name)
+                self._hint(other, name)
+            case ast.BoolOp(values=parts):
+                for part in parts:
+                    self._hint(part, name)
+
+    # Devices
+
+    def _devices(self, name: str, call: Call) -> Iterator[Mention]:
+        kind, where = library.DEVICES[name], _where(call)
+        driver = argument_of(call, "driver_name", None, self.evaluation)
+        if driver:
+            told = [library.kind_of_driver(one) for one in self._flat(driver)]
+            if not told or told[0] is None:
+                return
+            kind = told[0]
+        elif kind is Kind.SENSOR:
+            kind = self._kind_by_mode(call) or kind
+        names = tuple(self.hints.get(call.node, ()))
+        owner = call.scope.owner
+        ports = [("", names)] if name in library.WITHOUT_PORT else list(self._ports(call, "address", 0, names))
+        if not ports:
+            yield Mention(kind, "", where, names, owner, is_any=self._takes_any(call))
+        for port, called in dict(ports).items():
+            if port and port.startswith("out") != kind.is_motor:
+                continue
+            yield Mention(kind, port, where, called, owner, is_any=not port)
+
+    def _takes_any(self, call: Call) -> bool:
+        node = argument_node(call, "address", 0)
+        return node is None or (isinstance(node, ast.Constant) and node.value is None)
+
+    def _ports(self, call: Call, name: str, at: int, names: tuple[str, ...]) -> Iterator[tuple[str, tuple[str, ...]]]:
+        """Yield the ports that an argument can be, each with what the program calls the device."""
+        node = argument_node(call, name, at)
+        if node is None:
+            given: Iterable[Value] = argument_of(call, name, at, self.evaluation) or ()
+            yield from ((port, names) for value in given if (port := library.port_of(value)))
+            return
+        own = _names_in(node)
+        parameters = [
+            one for one in call.scope.names.get(node.id, ()) if isinstance(one, Parameter)
+        ] if isinstance(node, ast.Name) else []  # fmt: skip
+        if parameters:
+            for value, via in self.evaluation.arguments(parameters[0]):
+                if port := library.port_of(value):
+                    said = self._said_in(via, parameters[0]) if via else ()
+                    yield port, (*names, *own, *said)
+            return
+        for value in self.evaluation.values(node, call.scope):
+            if port := library.port_of(value):
+                yield port, (*names, *own)
+
+    def _said_in(self, call: Call, parameter: Parameter) -> tuple[str, ...]:
+        names = [argument.arg for argument in parameter.function.args.args]
+        name = parameter.argument.arg
+        at = names.index(name) - (1 if call.is_bound else 0) if name in names else None
+        node = argument_node(call, name, at)
+        return (*self.hints.get(call.node, ()), *(_names_in(node) if node is not None else ()))
+
+    def _flat(self, values: Sequence[Value]) -> Iterator[Value]:
+        for value in values:
+            if isinstance(value, Table):
+                for item in value.items:
+                    yield from self.evaluation.values(item, value.scope)
+            else:
+                yield value
+
+    def _kind_by_mode(self, call: Call) -> Kind | None:
+        """Return the kind of a sensor whose mode the program sets."""
+        names = self.hints.get(call.node, ())
+        for scope in self.scopes:
+            for node in scope.body:
+                match node:
+                    case ast.Assign(
+                        targets=[ast.Attribute(value=ast.Name(id=name) | ast.Attribute(attr=name), attr="mode")],
+                        value=mode,
+                    ) if name in names:
+                        for value in self.evaluation.values(mode, scope):
+                            if kind := library.kind_of_mode(value):
+                                return kind
+        return None
+
+    def _motor_set(self, call: Call) -> Iterator[Mention]:
+        owner, where = call.scope.owner, _where(call)
+        for table in argument_of(call, "motor_specs", 0, self.evaluation) or ():
+            if isinstance(table, Table) and isinstance(table.node, ast.Dict):
+                for key, item in zip(table.keys, table.items, strict=True):
+                    ports = self.evaluation.values(key, table.scope) if key is not None else ()
+                    kinds = [kind for one in self.evaluation.values(item, table.scope) if (kind := _motor_of(one))]
+                    for port in map(library.port_of, ports):
+                        if port and kinds:
+                            names = _names_in(key) if key is not None else ()
+                            yield Mention(kinds[0], port, where, names, owner)
+
+    # Pairs
+
+    def _pairs(self, name: str, call: Call) -> Iterator[Pair]:
+        known, names = library.PAIRS[name], tuple(self.hints.get(call.node, ()))
+        # The ports of a balancing robot come last.
+        at = (10, 11) if known.usual[0] else (0, 1)
+        left = [port for port, _ in self._ports(call, known.left, at[0], names)]
+        right = [port for port, _ in self._ports(call, known.right, at[1], names)]
+        left = left or ([known.usual[0]] if known.usual[0] else [])
+        right = right or ([known.usual[1]] if known.usual[1] else [])
+        if len(left) != len(right):
+            left, right = left[:1], right[:1]
+        spacings = [
+            float(value)
+            for value in argument_of(call, library.DISTANCE, 3, self.evaluation) or ()
+            if isinstance(value, int | float)
+        ] if known.rank == 3 else []  # fmt: skip
+        for one, other in dict.fromkeys(zip(left, right, strict=True)):
+            if one != other and one.startswith("out") and other.startswith("out"):
+                yield Pair(
+                    one, other, self._motor_kind(name, known, call), known.rank, _where(call), name,
+                    self._wheel(call) if known.rank == 3 else None, spacings[0] if spacings else None, names,
+                )  # fmt: skip
+
+    def _motor_kind(self, name: str, known: PairClass, call: Call) -> Kind:
+        given = argument_of(call, library.MOTOR_CLASS, library.MOTOR_CLASS_AT.get(name), self.evaluation)
+        return next((kind for value in given or () if (kind := _motor_of(value))), known.kind)
+
+    def _wheel(self, call: Call) -> tuple[float, float] | None:
+        for value in argument_of(call, library.WHEEL_CLASS, 2, self.evaluation) or ():
+            if found := self._size_of(value, ()):
+                return found
+        return None
+
+    def _size_of(self, wheel: Value, seen: tuple[Value, ...]) -> tuple[float, float] | None:
+        match wheel:
+            case LibraryClass(name=name):
+                return library.WHEELS.get(name)
+            case OwnClass(scope=scope) if wheel not in seen:
+                for name, call in self.made:
+                    if name == library.WHEEL and call.scope.owner is scope:
+                        sizes = [
+                            [one for one in argument_of(call, key, at, self.evaluation) or () if _is_number(one)]
+                            for at, key in enumerate(("diameter_mm", "width_mm"))
+                        ]
+                        if all(sizes):
+                            return float(str(sizes[0][0])), float(str(sizes[1][0]))
+                for base in self.evaluation.bases(scope):
+                    if found := self._size_of(base, (*seen, wheel)):
+                        return found
+        return None
+
+    def _needs(self, name: str, call: Call) -> Iterator[Mention]:
+        for kind in library.PAIRS[name].needs:
+            yield Mention(kind, "", _where(call), is_any=True)
+
+
+def _calls_in(scope: Scope) -> list[ast.Call]:
+    left_out = skipped(scope)
+    return [node for node in scope.body if isinstance(node, ast.Call) and node not in left_out]
+
+
+def _where(call: Call) -> Where:
+    return Where(call.scope.module.file, call.node.lineno)
+
+
+def _motor_of(value: Value) -> Kind | None:
+    """Return the kind of motor that a class of the library is for."""
+    kind = library.DEVICES.get(value.name) if isinstance(value, LibraryClass) else None
+    return kind if kind and kind.is_motor else None
+
+
+def _is_number(value: Value) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _names_in(node: ast.AST) -> tuple[str, ...]:
+    """Return the names in an expression, such as that of the constant for a port."""
+    found = []
+    for inner in ast.walk(node):
+        match inner:
+            case ast.Name(id=name) | ast.Attribute(attr=name) | ast.Constant(value=str(name)):
+                if name not in library.CONSTANTS and not library.port_of(name):
+                    found.append(name)
+    return tuple(found)
+
+
+def _options(calls: Sequence[Call]) -> dict[str, list[tuple[ast.expr, Scope]]]:
+    """Return the defaults of the options that a program gives to argparse."""
+    found: dict[str, list[tuple[ast.expr, Scope]]] = {}
+    for call in calls:
+        match call.node.func:
+            case ast.Attribute(attr="add_argument"):
+                default = argument_node(call, "default", None)
+                flags = [one.value for one in call.node.args if isinstance(one, ast.Constant)]
+                named = argument_node(call, "dest", None)
+                words = [str(flag) for flag in flags]
+                name = max(words, key=lambda word: (word.startswith("--"), len(word)), default="")
+                if isinstance(named, ast.Constant):
+                    name = str(named.value)
+                if name and default is not None:
+                    found.setdefault(name.lstrip("-").replace("-", "_"), []).append((default, call.scope))
+    return found

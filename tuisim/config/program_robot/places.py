@@ -1,0 +1,142 @@
+"""Where on a robot its further sensors sit, and what they are called."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from tuisim.config.program_robot.library import Kind
+from tuisim.config.program_robot.mentions import Mention
+from tuisim.config.program_robot.words import Side, side_of
+from tuisim.core.spec import ColorSensorSpec, GyroSpec, InfraredSpec, RobotSpec, SensorSpec, TouchSpec, UltrasonicSpec
+
+_BUMPER_MM = 60.0
+"""How far a bumper is ahead of the axle, before the front of the robot; and its width."""
+_LOOKS: Mapping[Side, tuple[float, float, float]] = {
+    Side.FRONT: (0.0, 20.0, 0.0),
+    Side.LEFT: (-60.0, 0.0, 90.0),
+    Side.RIGHT: (60.0, 0.0, -90.0),
+    Side.BACK: (0.0, -100.0, 180.0),
+    Side.MIDDLE: (0.0, 20.0, 0.0),
+}
+"""x, y and direction of a sensor that looks to a side."""
+_DOWN: Mapping[Side, tuple[float, float]] = {
+    Side.MIDDLE: (0.0, 30.0),
+    Side.FRONT: (0.0, 60.0),
+    Side.LEFT: (-50.0, 30.0),
+    Side.RIGHT: (50.0, 30.0),
+    Side.BACK: (0.0, -60.0),
+}
+"""x and y of a colour sensor."""
+
+
+@dataclass(slots=True)
+class NewSensors:
+    """The sensors that the usual robot does not have, by port."""
+
+    by_port: dict[str, Mention] = field(default_factory=dict)
+
+    def add(self, port: str, mention: Mention) -> None:
+        """Add a sensor."""
+        self.by_port[port] = mention
+
+    @staticmethod
+    def likeliest(sensors: list[SensorSpec], mention: Mention) -> SensorSpec:
+        """Return the one of some sensors that a program means, by its name for it."""
+        side = side_of(mention.names)
+        return next((sensor for sensor in sensors if sensor.name == side), sensors[0])
+
+
+def places_for(
+    new: NewSensors, placed: Mapping[str, SensorSpec], usual: RobotSpec, doubts: list[str]
+) -> dict[str, SensorSpec]:
+    """Return new sensors by port, at places and with names that no other sensor has."""
+    found: dict[str, SensorSpec] = {}
+    for kind, make in _MAKERS.items():
+        mentions = {port: one for port, one in sorted(new.by_port.items()) if one.kind is kind}
+        known = [*placed.values(), *found.values()]
+        names = {sensor.name for sensor in known}
+        if kind is Kind.GYRO:
+            mounted = any(isinstance(sensor, GyroSpec) for sensor in known)
+            for port in list(mentions)[0 if mounted else 1 :]:
+                doubts.append(f"a robot has one gyro: that on {port} is not built")
+                del mentions[port]
+        sides = _sides(mentions, first_free=not any(isinstance(sensor, _SPECS[kind]) for sensor in known), kind=kind)
+        for port, side in sides.items():
+            sensor = make(port, side, names, usual)
+            names.add(sensor.name)
+            found[port] = sensor
+    return found
+
+
+_SPECS: Mapping[Kind, type] = {
+    Kind.COLOR: ColorSensorSpec,
+    Kind.ULTRASONIC: UltrasonicSpec,
+    Kind.GYRO: GyroSpec,
+    Kind.TOUCH: TouchSpec,
+    Kind.INFRARED: InfraredSpec,
+}
+_ORDERS: Mapping[Kind, tuple[Side, ...]] = {
+    Kind.COLOR: (Side.MIDDLE, Side.FRONT, Side.LEFT, Side.RIGHT),
+    Kind.ULTRASONIC: (Side.FRONT, Side.RIGHT, Side.LEFT, Side.BACK),
+    Kind.INFRARED: (Side.FRONT, Side.RIGHT, Side.LEFT, Side.BACK),
+    Kind.TOUCH: (Side.LEFT, Side.RIGHT, Side.BACK, Side.FRONT),
+    Kind.GYRO: (Side.MIDDLE,),
+}
+"""The sides of sensors of which no name says the side, in turn."""
+
+
+def _sides(mentions: Mapping[str, Mention], *, first_free: bool, kind: Kind) -> dict[str, Side]:
+    """Return the side of each sensor: that of its name, else the next one that is free."""
+    found = {port: side_of(mention.names) for port, mention in mentions.items()}
+    if kind is Kind.TOUCH and first_free and len(found) == 1 and Side.NONE in found.values():
+        return dict.fromkeys(found, Side.FRONT)
+    taken = {*found.values()} | (set() if first_free or kind in (Kind.TOUCH, Kind.COLOR) else {Side.FRONT})
+    for port, side in found.items():
+        if side is Side.NONE or [*found.values()].count(side) > 1:
+            free = [one for one in _ORDERS[kind] if one not in taken]
+            found[port] = free[0] if free else _ORDERS[kind][-1]
+            taken.add(found[port])
+    return found
+
+
+def _name(base: str, side: Side, names: set[str]) -> str:
+    """Return a name that is free: the base, else with its side, else with a number."""
+    choices = [base, f"{base}_{side}", *(f"{base}{number}" for number in range(2, 6))]
+    return next(name for name in choices if name not in names)
+
+
+def _color(port: str, side: Side, names: set[str], _usual: RobotSpec) -> SensorSpec:
+    x_mm, y_mm = _DOWN[side]
+    name = side.value if side.value not in names else _name("color", side, names)
+    return ColorSensorSpec(name, port, x_mm, y_mm)
+
+
+def _ultrasonic(port: str, side: Side, names: set[str], _usual: RobotSpec) -> SensorSpec:
+    x_mm, y_mm, angle_deg = _LOOKS[side]
+    return UltrasonicSpec(_name("ultrasonic", side, names), port, x_mm, y_mm, angle_deg)
+
+
+def _infrared(port: str, side: Side, names: set[str], _usual: RobotSpec) -> SensorSpec:
+    x_mm, y_mm, angle_deg = _LOOKS[side]
+    return InfraredSpec(_name("infrared", side, names), port, x_mm, y_mm, angle_deg)
+
+
+def _touch(port: str, side: Side, names: set[str], usual: RobotSpec) -> SensorSpec:
+    x_mm = {Side.LEFT: -50.0, Side.RIGHT: 50.0}.get(side, 0.0)
+    y_mm = usual.back_mm - 15.0 if side is Side.BACK else _BUMPER_MM
+    return TouchSpec(_name("touch", side, names), port, x_mm, y_mm, _BUMPER_MM)
+
+
+def _gyro(port: str, _side: Side, names: set[str], _usual: RobotSpec) -> SensorSpec:
+    return GyroSpec(_name("gyro", Side.NONE, names), port)
+
+
+_MAKERS: Mapping[Kind, Callable[[str, Side, set[str], RobotSpec], Any]] = {
+    Kind.COLOR: _color,
+    Kind.ULTRASONIC: _ultrasonic,
+    Kind.GYRO: _gyro,
+    Kind.TOUCH: _touch,
+    Kind.INFRARED: _infrared,
+}

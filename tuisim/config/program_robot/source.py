@@ -1,0 +1,101 @@
+"""A program's own modules: its text and the files beside it that it imports, as syntax trees."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from tuisim.config.files import read_bytes
+from tuisim.config.program_file import LIBRARIES
+from tuisim.errors import ConfigError
+from tuisim.source import Program, decode_source
+
+MAX_MODULES = 100
+MAX_MODULE_BYTES = 1 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class Module:
+    """One file of a program."""
+
+    name: str
+    """As it is imported, with dots; empty for the program itself."""
+    file: str
+    """What messages call it."""
+    tree: ast.Module
+    is_package: bool = False
+
+    def absolute(self, name: str | None, level: int) -> str:
+        """Return the name of a module that this one imports, maybe relatively."""
+        if not level:
+            return name or ""
+        parts = self.name.split(".") if self.name else []
+        kept = parts[: len(parts) - level + (1 if self.is_package else 0)]
+        return ".".join([*kept, *([name] if name else [])])
+
+
+def parsed(text: str) -> ast.Module | None:
+    """Return the syntax tree of a text; None if it is not Python."""
+    try:
+        return ast.parse(text)
+    # What is wrong with the program is said when it runs.
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+
+
+def read_modules(program: Program) -> dict[str, Module]:
+    """Return a program and its own modules by name, the program first; empty if it is not Python."""
+    tree = parsed(program.text)
+    if tree is None:
+        return {}
+    folder = Path(program.module_folder or Path(program.path).parent)
+    found = {"": Module("", program.name, tree)}
+    waiting = [found[""]]
+    while waiting and len(found) < MAX_MODULES:
+        module = waiting.pop()
+        for name in _imported(module):
+            if name in found or name.split(".")[0] in LIBRARIES:
+                continue
+            if (read := _read(folder, name)) is not None:
+                found[name] = read
+                waiting.append(read)
+    return found
+
+
+def _imported(module: Module) -> Iterator[str]:
+    """Yield the names that may be modules in the imports of a module, packages before what is in them."""
+    for node in ast.walk(module.tree):
+        match node:
+            case ast.Import(names=names):
+                for alias in names:
+                    parts = alias.name.split(".")
+                    yield from (".".join(parts[:end]) for end in range(1, len(parts) + 1))
+            case ast.ImportFrom(module=name, level=level, names=names):
+                base = module.absolute(name, level)
+                parts = base.split(".") if base else []
+                yield from (".".join(parts[:end]) for end in range(1, len(parts) + 1))
+                yield from (f"{base}.{alias.name}" if base else alias.name for alias in names)
+
+
+def _read(folder: Path, name: str) -> Module | None:
+    """Return a module of a folder; None if there is none, or it cannot be read."""
+    if not all(part.isidentifier() for part in name.split(".")):
+        return None
+    place = folder.joinpath(*name.split("."))
+    for path, is_package in ((place / "__init__.py", True), (place.with_suffix(".py"), False)):
+        try:
+            data = read_bytes(path, MAX_MODULE_BYTES, ConfigError)
+            text, _ = decode_source(data[:MAX_MODULE_BYTES], str(path))
+        except ConfigError:
+            continue
+        tree = parsed(text)
+        return Module(name, str(path.relative_to(folder)), tree, is_package) if tree else None
+    # A folder without __init__.py is a package, too.
+    return Module(name, name, ast.Module([], []), is_package=True) if place.is_dir() else None
+
+
+def imports_library(modules: dict[str, Module]) -> bool:
+    """Return whether a program imports a library for a brick, in itself or in its own modules."""
+    return any(name.split(".")[0] in LIBRARIES for module in modules.values() for name in _imported(module))

@@ -1,0 +1,106 @@
+"""Which motors of a program drive the wheels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+from tuisim.config.program_robot.library import Kind
+from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
+from tuisim.config.program_robot.words import Side, means_tool, side_of
+from tuisim.core.spec import OUTPUT_PORTS, RobotSpec
+
+_USUAL = (("outB", "outC"), ("outA", "outD"), ("outA", "outB"), ("outC", "outD"), ("outA", "outC"), ("outB", "outD"))
+"""Pairs of ports, those that robots have most often first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wheels:
+    """The motors that drive the wheels."""
+
+    left: str
+    right: str
+    """Their ports."""
+    where: Where | None = None
+    """What says so; None if nothing does."""
+    pair: Pair | None = None
+    doubt: str = ""
+    """Which other reading there is, in words; empty for none."""
+
+
+def wheels_of(mentions: Mentions, kinds: Mapping[str, Kind], usual: RobotSpec) -> Wheels:
+    """Return the motors that drive the wheels.
+
+    Args:
+        kinds: The motors that the program names, by port.
+        usual: The robot whose wheels stay where nothing says otherwise.
+    """
+    return _of_pairs(mentions.pairs) or _of_single(mentions.devices, kinds) or _left_over(kinds, usual)
+
+
+def _of_pairs(pairs: Sequence[Pair]) -> Wheels | None:
+    if not pairs:
+        return None
+    likely = sorted(pairs, key=lambda pair: (means_tool(pair.names), -pair.rank, pair.kind is Kind.MEDIUM))
+    chosen = likely[0]
+    others = [pair for pair in likely if {pair.left, pair.right} != {chosen.left, chosen.right}]
+    doubt = f"{others[0].class_name} on {others[0].left} and {others[0].right} is taken for no wheels" if others else ""
+    return Wheels(chosen.left, chosen.right, chosen.where, chosen, doubt)
+
+
+def _of_single(devices: Sequence[Mention], kinds: Mapping[str, Kind]) -> Wheels | None:
+    """Return two motors that are made one by one, and that names, a class or their number show to be the wheels."""
+    by_port: dict[str, Mention] = {}
+    for device in devices:
+        if device.kind.is_motor and device.port:
+            by_port.setdefault(device.port, device)
+    large = [one for port, one in by_port.items() if kinds[port] is not Kind.MEDIUM]
+    wheels = [one for one in large if not means_tool(one.names)]
+    for motors in (wheels, [*by_port.values()] if not large else []):
+        for of_class in (True, False):
+            if found := _by_side(motors, of_class=of_class):
+                return found
+    owners = [[one for one in wheels if one.owner is owner] for owner in {one.owner for one in wheels} if owner]
+    for held in [*(held for held in owners if len(held) == 2), wheels]:
+        if len(held) >= 2:
+            return _in_order(held)
+    return None
+
+
+def _by_side(motors: Sequence[Mention], *, of_class: bool) -> Wheels | None:
+    for one in motors:
+        for other in motors:
+            if of_class and one.owner is not other.owner:
+                continue
+            if side_of(one.names) is Side.LEFT and side_of(other.names) is Side.RIGHT:
+                return Wheels(one.port, other.port, one.where)
+    return None
+
+
+def _in_order(motors: Sequence[Mention]) -> Wheels:
+    """Return the usual two of some motors, the left one first unless a name says otherwise."""
+    by_port = {one.port: one for one in motors}
+    left, right = next(pair for pair in _USUAL if by_port.keys() >= set(pair))
+    if side_of(by_port[left].names) is Side.RIGHT or side_of(by_port[right].names) is Side.LEFT:
+        left, right = right, left
+    rest = ", ".join(port for port in by_port if port not in (left, right))
+    doubt = f"of the large motors, those on {left} and {right} are taken for the wheels, not {rest}" if rest else ""
+    return Wheels(left, right, by_port[left].where, doubt=doubt)
+
+
+def _left_over(kinds: Mapping[str, Kind], usual: RobotSpec) -> Wheels:
+    """Return the usual wheels, on other ports if the program needs theirs."""
+    stay = [port for port in (usual.left_port, usual.right_port) if kinds.get(port, Kind.LARGE) is not Kind.MEDIUM]
+    free = [*stay, *(port for port in OUTPUT_PORTS if port not in kinds and port not in stay)]
+    if len(free) >= 2:
+        left = usual.left_port if usual.left_port in free else _other(free, usual.right_port)
+        right = usual.right_port if usual.right_port in free else _other(free, left)
+        return Wheels(left, right)
+    alike = [pair for pair in _USUAL if kinds.get(pair[0]) is kinds.get(pair[1]) is not None]
+    left, right = (alike or [pair for pair in _USUAL if kinds.keys() >= set(pair)] or list(combinations(kinds, 2)))[0]
+    return Wheels(left, right, doubt=f"no two ports are free for wheels: the motors on {left} and {right} drive them")
+
+
+def _other(ports: Iterable[str], taken: str) -> str:
+    return next(port for port in ports if port != taken)

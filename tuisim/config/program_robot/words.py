@@ -1,0 +1,62 @@
+"""What the names in a program tell about a part of the robot, in the languages that students write in."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from enum import StrEnum
+
+_PART = re.compile(r"[A-Z]?[a-zà-ÿ]+|[A-Z]+(?![a-zà-ÿ])|\d+")
+
+
+class Side(StrEnum):
+    """Where on the robot a part is."""
+
+    LEFT = "left"
+    RIGHT = "right"
+    FRONT = "front"
+    BACK = "back"
+    MIDDLE = "middle"
+    NONE = ""
+    """Nothing says it."""
+
+
+_SIDES = {
+    Side.LEFT: "left l lft lm ml links linker linke linkes gauche izquierda izquierdo izq esquerda esquerdo sinistra "
+    "sinistro sx lewy lewa levy vanster venstre",
+    Side.RIGHT: "right r rgt rm mr rechts rechter rechte rechtes droite droit derecha derecho der direita direito "
+    "destra destro dx prawy prawa pravy hoger hoyre",
+    Side.FRONT: "front forward ahead vorne vorn avant delante frente voor",
+    Side.BACK: "back rear behind hinten heck arriere atras achter",
+    Side.MIDDLE: "middle mid center centre mitte milieu centro",
+}
+_SIDE_OF = {word: side for side, words in _SIDES.items() for word in words.split()}
+_LONG = {side.value: side for side in (Side.LEFT, Side.RIGHT)}
+
+_TOOL_WORDS = (
+    "arm arms claw grip gripper grabber grab hand lift lifter lever crane fork forklift tool attachment attach head "
+    "neck turret tilt shoot shooter cannon greifer kran hub pince bras garra tail flag hook catapult elbow wrist "
+    "base elevator steer steering lenkung medium extra top"
+)
+_TOOLS = frozenset(_TOOL_WORDS.split())
+
+
+def _parts(name: str) -> list[str]:
+    return [part.lower() for part in _PART.findall(name)]
+
+
+def side_of(names: Iterable[str]) -> Side:
+    """Return the side that one of some names says, the first first."""
+    for name in names:
+        for part in _parts(name):
+            if part in _SIDE_OF:
+                return _SIDE_OF[part]
+            for word, side in _LONG.items():
+                if word in part and part != "bright":
+                    return side
+    return Side.NONE
+
+
+def means_tool(names: Iterable[str]) -> bool:
+    """Return whether names say that a motor moves something else than a wheel."""
+    return any(part in _TOOLS for name in names for part in _parts(name))

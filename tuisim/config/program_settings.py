@@ -1,0 +1,110 @@
+"""The settings of a run of a program: what options and files say, and what its source says where they do not.
+
+Every host that runs a program gets its settings here. A program for a real brick, which imports its library itself,
+says which robot it needs; if nothing marks it as one of the course's, it runs by the rules of the brick. What its
+source says stands below everything that somebody has chosen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from tuisim.config.options import Settings, settings_of
+from tuisim.config.program_file import ProgramSource
+from tuisim.config.program_robot.assembly import BuiltRobot, build_robot
+from tuisim.config.program_robot.course import uses_course_names
+from tuisim.config.program_robot.mentions import mentions_in
+from tuisim.config.program_robot.report import USUAL, in_words
+from tuisim.config.program_robot.source import imports_library, read_modules
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.source import Program
+
+BRICK_PROFILE = "ev3"
+"""The profile of programs that are for a real brick."""
+_NO_PRELUDE = "none"
+
+
+@dataclass(frozen=True, slots=True)
+class SourceFacts:
+    """What the source of a program says about its run."""
+
+    for_brick: bool = False
+    """Whether it imports a library for a brick, in itself or in its own modules."""
+    of_course: bool = False
+    """Whether it uses names that only the course has."""
+    robot: BuiltRobot | None = None
+    """The robot that it needs; None if the default one does."""
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramSettings:
+    """The settings of a run of a program."""
+
+    settings: Settings
+    layer: Mapping[str, Any] = field(default_factory=dict)
+    """What the source of the program decides, by field of `Settings`; below all else."""
+    note: str = ""
+    """What the source decided, and how to change it, in one line; empty for nothing."""
+
+
+def facts_of(program: Program) -> SourceFacts:
+    """Return what the source of a program says; nothing if it is not Python, or too deeply nested to be read."""
+    try:
+        modules = read_modules(program)
+        if not modules or not imports_library(modules):
+            return SourceFacts()
+        robot = build_robot(mentions_in(modules), program.name, USUAL)
+        return SourceFacts(True, uses_course_names(modules, program.text), robot)
+    except RecursionError:
+        return SourceFacts()
+
+
+def program_settings(
+    source: ProgramSource,
+    *above: Mapping[str, Any],
+    below: Mapping[str, Any] | None = None,
+    in_world: bool = False,
+    of_task: bool = False,
+) -> ProgramSettings:
+    """Return the settings of a program.
+
+    Args:
+        source: The program with the options of its magic line.
+        above: What takes precedence over them, such as a world file and the command line, by field of `Settings`.
+        below: What they take precedence over: the user's defaults.
+        in_world: Whether a world file, goals or a lesson say where it runs: then these decide the profile.
+        of_task: Whether a task with a world of its own says so: then it also decides the robot.
+    """
+    layers = (below or {}, source.options, *above)
+    chosen = settings_of(*layers)
+    prelude = chosen.preload or source.program.prelude
+    facts = facts_of(source.program) if prelude == _NO_PRELUDE else SourceFacts()
+    said = {key for layer in layers for key, value in layer.items() if value is not None}
+    marked = source.has_magic or in_world
+    layer: dict[str, Any] = {}
+    if facts.robot and "robot" not in said and not of_task:
+        layer["robot"] = facts.robot.choice
+    on_mat = any("background" in one for one in above)
+    if facts.for_brick and not facts.of_course and not marked and not on_mat and "profile" not in said:
+        layer["profile"] = BRICK_PROFILE
+    settings = settings_of(layer, *layers)
+    if settings.profile == BRICK_PROFILE and not marked and said.isdisjoint({"background", "x_mm", "y_mm"}):
+        layer |= {"x_mm": FIELD_WIDTH_MM / 2, "y_mm": FIELD_HEIGHT_MM / 2}
+        settings = settings_of(layer, *layers)
+    return ProgramSettings(settings, layer, note_of(source.program, facts, layer))
+
+
+def note_of(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) -> str:
+    """Return what the source of a program decided, and how to change it, in one line; empty for nothing."""
+    name = program.path or program.name
+    if facts.robot and "robot" in layer:
+        built = f"{program.name} runs on a robot built from it: {in_words(facts.robot)}"
+        doubts = "".join(f"; {doubt}" for doubt in facts.robot.doubts)
+        profile = f"; by the rules of a brick (profile {BRICK_PROFILE})" if "profile" in layer else ""
+        other = ", --profile" if profile else ""
+        return f"{built}{doubts}{profile}. -r{other} to change it; `tuisim robots --from {name}` shows the robot"
+    if "profile" in layer:
+        return f"{program.name} runs by the rules of a brick (profile {BRICK_PROFILE}). --profile to change it"
+    return ""
