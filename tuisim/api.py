@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.config.build import build_run_spec
-from tuisim.config.options import APP, OPTIONS, Option, settings_of
+from tuisim.config.options import APP, OPTIONS, Option
 from tuisim.config.program_file import ProgramSource, find_program, program_of_text, read_program
+from tuisim.config.program_settings import program_settings
 from tuisim.errors import ConfigError, nearest
 from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S, RunOptions, start_run
 from tuisim.runs.records import Stream
@@ -30,6 +31,8 @@ class SimulatedRun:
 
     stored: StoredRun
     """The run in the run store."""
+    note: str = ""
+    """What the source of the program has decided about robot and profile, in words; empty for nothing."""
 
     @property
     def state(self) -> str:
@@ -139,7 +142,8 @@ def simulate(
     """
     _check_timeout(timeout_s)
     source = _source(program)
-    settings = settings_of(source.options, choices_of(choices))
+    found = program_settings(source, choices_of(choices))
+    settings = found.settings
     prelude = settings.preload or source.program.prelude
     started = replace(source.program, prelude=prelude, arguments=tuple(arguments))
     store = RunStore()
@@ -149,7 +153,7 @@ def simulate(
         handle.wait()
     finally:
         handle.close()
-    return SimulatedRun(handle.stored())
+    return SimulatedRun(handle.stored(), found.decided.note)
 
 
 def experiment(
@@ -207,7 +211,8 @@ def experiment(
     subjects = []
     for one in [program] if isinstance(program, str | Path) else program:
         source = _source(one)
-        settings = settings_of(source.options, task.settings if task else {}, given)
+        world, of_task = task.settings if task else {}, bool(task and task.settings)
+        settings = program_settings(source, world, given, in_world=of_task, of_task=of_task).settings
         prelude = settings.preload or source.program.prelude
         started = replace(source.program, prelude=prelude, arguments=tuple(arguments))
         subjects.append(Subject(started, settings, frozenset(given)))

@@ -36,13 +36,13 @@ from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
 from tuisim.app.setup import next_run as plans
-from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import GOOD_ENDS, AppState, RunPhase, Situation, end_words
 from tuisim.app.speech import Voice
 from tuisim.app.terminal.pacer import Pacer
 from tuisim.app.terminal.picture_mode import PictureMode, choose_colors, picture_mode_for
 from tuisim.app.workspace import Workspace
 from tuisim.config.options import AUTO, DEFAULT_FPS, Settings
+from tuisim.config.program_settings import Decided
 from tuisim.config.user_config import FILE, UserConfig, load_config
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError, TuisimError
@@ -116,13 +116,8 @@ class AppSettings:
     """One of `PIXELS`."""
     from_config: tuple[str, ...] = ()
     """What `config.toml` decides about the run, in words."""
-
-
-def _first_next_run(settings: AppSettings) -> NextRun:
-    if settings.settings is not None:
-        return plans.plan_of(settings.settings)
-    arguments = settings.program.arguments if settings.program else ()
-    return plans.with_arguments(plans.plan_of_run(settings.spec), arguments)
+    decided: Decided = field(default_factory=Decided)
+    """What the source of the program decides about it."""
 
 
 class LabApp(PanelMessages):
@@ -145,7 +140,8 @@ class LabApp(PanelMessages):
         self.settings = settings
         self._config_problems = self._take_config(load_config())
         self.pixels = settings.pixels
-        self.run_controller = RunController(settings.program, _first_next_run(settings), settings.speed)
+        first = plans.first_plan(settings.spec, settings.settings, settings.decided, settings.program)
+        self.run_controller = RunController(settings.program, first, settings.speed)
         self.panel_area = PanelArea(settings.panels_on, settings.panels_off)
         self.key_footer = KeyFooter()
         self.pacer = Pacer(settings.fps)
@@ -208,6 +204,8 @@ class LabApp(PanelMessages):
             self.complain(error)
         if self.settings.from_config:
             self.say(f"From {FILE}: {', '.join(self.settings.from_config)}")
+        if self.settings.decided.note:
+            self.say(self.settings.decided.note)
 
     # Lifecycle
 

@@ -17,6 +17,7 @@ from tuisim.app.snapshot import end_label
 from tuisim.config.files import means_file
 from tuisim.config.folders import user_path
 from tuisim.config.options import Settings
+from tuisim.config.program_settings import free_fields
 from tuisim.errors import LogError, TuisimError
 from tuisim.runs.handle import program_again
 from tuisim.runs.standstill import standstill_words
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from tuisim.app.render.mat import Pixels
     from tuisim.app.run_controller import RunController
     from tuisim.app.services import AppServices
+    from tuisim.config.program_file import ProgramSource
     from tuisim.core.spec import RunSpec
     from tuisim.goals.files import GoalsFile
     from tuisim.runs.run_folder import StoredRun
@@ -84,7 +86,7 @@ class Loader:
             if self.world_file is not None:
                 self._read_world(self.world_file)
             if program and program.path:
-                self._note_program(*_read_program(program.path))
+                self._note_program(*_parts(_read_program(program.path)))
         except TuisimError:
             # It was read a moment ago and is invalid now: the next check reports that.
             pass
@@ -189,14 +191,22 @@ class Loader:
             self._app.complain(error)
 
     def _open_program(self, path: str) -> None:
-        program, said = _read_program(path)
+        source = _read_program(path)
+        program, said = _parts(source)
         plan, before = plans.with_choices(self._run_controller.next_run, said), self._run_controller.program
+        plan, note = plans.following(plan, source)
         if before is not None and before.path != program.path:
             plan = plans.with_arguments(plan, ())
         self._note_program(program, said)
         self._load(plan, program)
         self._apply_app_settings({}, said)
         self._app.say(f"{program.name} is open: {{run}} runs it")
+        self._tell(note)
+
+    def _tell(self, note: str) -> None:
+        """Show what the source of a program has decided, if anything."""
+        if note:
+            self._app.say(note)
 
     def _note_program(self, program: Program | None, said: Mapping[str, Any]) -> None:
         self._magic_settings, self._file_prelude = said, program.prelude if program else ""
@@ -205,10 +215,9 @@ class Loader:
         before = self.world_file, self._world_settings, self._world_refers
         try:
             named, goals = self._read_world(Path(path))
-            program, magic = _read_program(named) if named else (self._run_controller.program, {})
-            # A world file replaces everything: earlier choices do not show through.
-            fresh = plans.with_choices(plans.plan_of(Settings()), magic)
-            plan = plans.with_choices(fresh, self._world_settings)
+            source = _read_program(named) if named else None
+            program, magic = _parts(source) if source else (self._run_controller.program, {})
+            plan, note = _in_world(source, magic, self._world_settings, is_task=goals is not None)
         except TuisimError:
             self.world_file, self._world_settings, self._world_refers = before
             raise
@@ -217,6 +226,7 @@ class Loader:
         self._goals.open(goals)
         self._follow()
         self._app.say(f"{Path(path).name} is open" + (": {run} runs its program" if named else ""))
+        self._tell(note)
 
     def open_task(self, program_path: str, world: Mapping[str, Any], goals: GoalsFile) -> None:
         """Open a program in a world, given as settings, that is in no world file, with goals. Not during a run.
@@ -224,14 +234,15 @@ class Loader:
         Raises:
             TuisimError: program or world are wrong; nothing has changed.
         """
-        program, magic = _read_program(program_path)
-        fresh = plans.with_choices(plans.plan_of(Settings()), magic)
-        plan = plans.with_choices(fresh, world)
+        source = _read_program(program_path)
+        program, magic = _parts(source)
+        plan, note = _in_world(source, magic, world, is_task=True)
         self.world_file, self._world_settings, self._world_refers = None, {}, ()
         self._note_program(program, magic)
         self._load(plan, program)
         self._goals.open(goals, shows=False)
         self._follow()
+        self._tell(note)
 
     def _read_world(self, path: Path) -> tuple[str | None, GoalsFile | None]:
         """Read a world file and remember its settings. Return the path of its program, and its goals, if any."""
@@ -345,7 +356,7 @@ class Loader:
         plan = self._run_controller.next_run
         program = self._run_controller.program
         if program and program.path and Path(program.path) == path:
-            self._apply_program(*_read_program(program.path))
+            self._apply_program(_read_program(program.path))
             return True
         if path == self.world_file:
             before = self._world_settings
@@ -381,8 +392,7 @@ class Loader:
         """
         from tuisim.config.program_file import program_of_text
 
-        file = program_of_text(text, Path(path) if path else None, name)
-        self._apply_program(file.program, file.options)
+        self._apply_program(program_of_text(text, Path(path) if path else None, name))
 
     def open_new(self, text: str, name: str) -> None:
         """Open a new program without a file and without a magic line. Not during a run."""
@@ -391,15 +401,18 @@ class Loader:
         file = program_of_text(text, None, name)
         self._note_program(file.program, file.options)
         self._run_controller.program = file.program
-        self._loaded()
+        plan, _ = plans.following(self._run_controller.next_run, file)
+        self.set_next_run(plan)
 
-    def _apply_program(self, new: Program, said: Mapping[str, Any]) -> None:
-        """Apply another text of the open program, with the changes in its magic line."""
+    def _apply_program(self, source: ProgramSource) -> None:
+        """Apply another text of the open program, with the changes in its magic line, and in the robot it needs."""
+        new, said = _parts(source)
         program = self._run_controller.program
         as_said = new.prelude if new.prelude != self._file_prelude or program is None else program.prelude
         folder = program.module_folder if program and not new.path else ""
         before = self._magic_settings
-        self._apply_changed(_differences(before, said), replace(new, prelude=as_said, module_folder=folder))
+        applied = replace(new, prelude=as_said, module_folder=folder)
+        self._apply_changed(_differences(before, said), applied, replace(source, program=applied))
         self._note_program(new, said)
         self._apply_app_settings(before, said)
 
@@ -412,22 +425,40 @@ class Loader:
         if now.get("speed") is not None and now["speed"] != before.get("speed"):
             self._run_controller.set_speed(now["speed"])
 
-    def _apply_changed(self, differences: Mapping[str, Any], program: Program | None) -> None:
+    def _apply_changed(
+        self, differences: Mapping[str, Any], program: Program | None, source: ProgramSource | None = None
+    ) -> None:
         """Apply changed settings of a file; unchanged ones keep what the user has set since."""
-        plan = plans.with_choices(self._run_controller.next_run, differences)
+        plan, note = plans.with_choices(self._run_controller.next_run, differences), ""
+        if source is not None:
+            plan, note = plans.following(plan, source)
         if differences.keys() & {"background", *plans.POSE_FIELDS}:
             self._load(plan, program)
         else:
             self._run_controller.program = program
             self.set_next_run(plan)
+        self._tell(note)
 
 
-def _read_program(path: str) -> tuple[Program, Mapping[str, Any]]:
-    """Read a program. Return it with the settings of its magic line."""
+def _read_program(path: str) -> ProgramSource:
     from tuisim.config.program_file import read_program
 
-    file = read_program(user_path(path))
-    return file.program, file.options
+    return read_program(user_path(path))
+
+
+def _parts(source: ProgramSource) -> tuple[Program, Mapping[str, Any]]:
+    """Return a program with the settings of its magic line."""
+    return source.program, source.options
+
+
+def _in_world(
+    source: ProgramSource | None, magic: Mapping[str, Any], world: Mapping[str, Any], *, is_task: bool
+) -> tuple[NextRun, str]:
+    """Return the plan of a program in a world, which replaces all earlier choices, and what the program decides."""
+    of_task = is_task and bool(world)
+    free = free_fields((magic, world), (world,), in_world=bool(world) or not is_task, of_task=of_task)
+    plan = plans.with_choices(plans.with_choices(plans.plan_of(Settings(), free), magic), world)
+    return plans.following(plan, source) if source else (plan, "")
 
 
 def _settings_in(program: Program | None) -> Mapping[str, Any]:

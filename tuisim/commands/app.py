@@ -120,6 +120,7 @@ def open_app(**given: Any) -> int:
         welcomes=opened.is_empty,
         autorun=settings.autorun,
         from_config=prepared.from_config,
+        decided=prepared.decided,
         **_of_the_app(settings),
     )
     with _drawing_on_stdout():
@@ -152,13 +153,15 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
     from tuisim.app.app import AppSettings, run_app
     from tuisim.app.lesson import goals_of
     from tuisim.config.build import build_run_spec
-    from tuisim.config.options import settings_of
     from tuisim.config.program_file import read_program
+    from tuisim.config.program_settings import program_settings
     from tuisim.config.user_config import Section, load_config
     from tuisim.lessons.progress import prepare_program
 
     source = read_program(prepare_program(lesson))
-    settings = settings_of(load_config().layer(Section.APP), source.options, lesson.settings)
+    of_user, of_lesson = load_config().layer(Section.APP), bool(lesson.settings)
+    found = program_settings(source, lesson.settings, below=of_user, in_world=of_lesson, of_task=of_lesson)
+    settings = found.settings
     app_settings = AppSettings(
         spec=build_run_spec(settings),
         settings=settings,
@@ -168,6 +171,7 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
         lessons_folder=folder,
         panels_on=frozenset(settings.panels_on) | {"lesson", "code"},
         panels_off=frozenset(settings.panels_off),
+        decided=found.decided,
         **_of_the_app(settings),
     )
     with _drawing_on_stdout():

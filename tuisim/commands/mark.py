@@ -23,6 +23,7 @@ from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import Arguments, Value, argument, command, option
 from tuisim.config.options import APP, PANEL, settings_of
+from tuisim.config.program_settings import program_settings
 from tuisim.config.shared_options import shared_options
 from tuisim.errors import ConfigError, ExportError, counted, listed, printable
 from tuisim.goals.files import GoalsFile, load_goals
@@ -194,7 +195,7 @@ def _entries(found: Found, task: GoalsFile, arguments: Arguments) -> tuple[list[
         spec = shared
         if student.source and not task.settings:
             try:
-                spec = build_run_spec(settings_of(student.source.options, arguments.settings))
+                spec = build_run_spec(program_settings(student.source, arguments.settings).settings)
             except ConfigError as error:
                 student = replace(student, source=None, problem=printable(str(error)))
         if student.source:

@@ -20,7 +20,7 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import ARGUMENTS_FOLLOW, Arguments
 from tuisim.config.options import OF_THE_APP, RobotChoice, Settings, settings_of
 from tuisim.config.program_file import ProgramSource, find_program, read_program
-from tuisim.config.program_settings import program_settings
+from tuisim.config.program_settings import Decided, free_fields, program_settings
 from tuisim.config.robots import choose_robot
 from tuisim.config.user_config import Section, UserConfig
 from tuisim.config.worlds import WorldFile, load_world, means_world
@@ -47,10 +47,8 @@ class Prepared:
     """Its name in a table; empty for the program's name."""
     from_config: tuple[str, ...] = ()
     """What the user's `config.toml` decides about the run, in words."""
-    from_program: Mapping[str, Any] = field(default_factory=dict)
-    """What the source of the program decides, by field of `Settings`."""
-    note: str = ""
-    """The same in words."""
+    decided: Decided = field(default_factory=Decided)
+    """What the source of the program decides."""
 
 
 def check_arguments(words: Sequence[str], arguments: Arguments) -> None:
@@ -89,10 +87,13 @@ def _prepared(word: str | None, world: WorldFile | None, arguments: Arguments, c
         if "arguments" in arguments.settings:
             named = world.path if world else arguments.world
             raise ConfigError(f"{named} names no program to pass arguments to", key=ARGUMENTS_FOLLOW)
-        settings = settings_of(_defaults(world, config), in_world, arguments.settings)
+        above = (in_world, arguments.settings)
+        layers = (_defaults(world, config), *above)
+        settings = settings_of(*layers)
         spec = _spec(settings)
         said = _from_config(spec, world, config, arguments.settings)
-        return Prepared(None, settings, spec, world, from_config=said)
+        free = free_fields(layers, above, in_world=world is not None, of_task=_decides_robot(world))
+        return Prepared(None, settings, spec, world, from_config=said, decided=Decided(free=free))
     return _of_source(read_program(find_program(word)), world, arguments, config)
 
 
@@ -120,8 +121,8 @@ def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Argument
     prelude = settings.preload or file.program.prelude
     program = replace(file.program, prelude=prelude, arguments=settings.arguments)
     spec = _spec(settings)
-    changed = _from_config(spec, world, config, said().layer, file.options, arguments.settings)
-    return Prepared(program, settings, spec, world, from_config=changed, from_program=found.layer, note=found.note)
+    changed = _from_config(spec, world, config, said().decided.layer, file.options, arguments.settings)
+    return Prepared(program, settings, spec, world, from_config=changed, decided=found.decided)
 
 
 def _decides_robot(world: WorldFile | None) -> bool:

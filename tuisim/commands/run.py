@@ -141,8 +141,9 @@ def run(**given: Any) -> int:
     prepared = prepare_runs(arguments.programs, arguments, config=load_config().checked().only(Section.SIMULATION))
     for said in dict.fromkeys(one.from_config for one in prepared if isinstance(one, Prepared) and one.from_config):
         echo_error(f"note: from {FILE}: {', '.join(said)}")
-    for note in dict.fromkeys(one.note for one in prepared if isinstance(one, Prepared) and one.note):
-        echo_error(f"note: {note}")
+    for note in dict.fromkeys(one.decided.note for one in prepared if isinstance(one, Prepared)):
+        if note:
+            echo_error(f"note: {note}")
     check_breaks(arguments.breaks, arguments.watches, [one for one in prepared if isinstance(one, Prepared)])
     telemetry = arguments.telemetry
     check_targets(target for target in (*arguments.export, telemetry) if target is not None)

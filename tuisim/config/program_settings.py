@@ -7,17 +7,19 @@ source says stands below everything that somebody has chosen.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import shlex
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from tuisim.config.options import Settings, settings_of
+from tuisim.config.options import RobotChoice, Settings, settings_of
 from tuisim.config.program_file import ProgramSource
 from tuisim.config.program_robot.assembly import BuiltRobot, build_robot
 from tuisim.config.program_robot.course import uses_course_names
 from tuisim.config.program_robot.mentions import mentions_in
 from tuisim.config.program_robot.report import USUAL, in_words
 from tuisim.config.program_robot.source import imports_library, read_modules
+from tuisim.core.profile import PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.source import Program
 
@@ -38,15 +40,30 @@ class SourceFacts:
     """The robot that it needs; None if the default one does."""
 
 
+PROGRAM_FIELDS = ("robot", "profile", "x_mm", "y_mm")
+"""The fields of `Settings` that the source of a program may decide."""
+
+
+@dataclass(frozen=True, slots=True)
+class Decided:
+    """What the source of a program decides."""
+
+    layer: Mapping[str, Any] = field(default_factory=dict)
+    """By field of `Settings`; below everything that somebody has chosen."""
+    note: str = ""
+    """The same in one line, and how to change it; empty for nothing."""
+    robot: RobotChoice | None = None
+    """The robot that the program needs, even if another one was chosen; None for the default one."""
+    free: frozenset[str] = frozenset()
+    """Which of `PROGRAM_FIELDS` nobody has chosen."""
+
+
 @dataclass(frozen=True, slots=True)
 class ProgramSettings:
     """The settings of a run of a program."""
 
     settings: Settings
-    layer: Mapping[str, Any] = field(default_factory=dict)
-    """What the source of the program decides, by field of `Settings`; below all else."""
-    note: str = ""
-    """What the source decided, and how to change it, in one line; empty for nothing."""
+    decided: Decided
 
 
 def facts_of(program: Program) -> SourceFacts:
@@ -78,33 +95,57 @@ def program_settings(
         of_task: Whether a task with a world of its own says so: then it also decides the robot.
     """
     layers = (below or {}, source.options, *above)
-    chosen = settings_of(*layers)
-    prelude = chosen.preload or source.program.prelude
-    facts = facts_of(source.program) if prelude == _NO_PRELUDE else SourceFacts()
+    free = free_fields(layers, above, in_world=in_world, of_task=of_task)
+    decided = decide(source, settings_of(*layers), free)
+    return ProgramSettings(settings_of(decided.layer, *layers), decided)
+
+
+def free_fields(
+    layers: Iterable[Mapping[str, Any]], above: Iterable[Mapping[str, Any]], *, in_world: bool, of_task: bool
+) -> frozenset[str]:
+    """Return which of `PROGRAM_FIELDS` nobody has chosen, for the arguments of `program_settings`."""
     said = {key for layer in layers for key, value in layer.items() if value is not None}
-    marked = source.has_magic or in_world
+    free = set(PROGRAM_FIELDS) - said
+    if of_task:
+        free.discard("robot")
+    if in_world or any("background" in layer for layer in above):
+        free.discard("profile")
+    if in_world or said & {"background", "x_mm", "y_mm"}:
+        free -= {"x_mm", "y_mm"}
+    return frozenset(free)
+
+
+def decide(source: ProgramSource, settings: Settings, free: Collection[str]) -> Decided:
+    """Return what the source of a program decides.
+
+    Args:
+        source: The program.
+        settings: What is chosen.
+        free: The fields that are not.
+    """
+    prelude = settings.preload or source.program.prelude
+    facts = facts_of(source.program) if prelude == _NO_PRELUDE else SourceFacts()
     layer: dict[str, Any] = {}
-    if facts.robot and "robot" not in said and not of_task:
+    if facts.robot and "robot" in free:
         layer["robot"] = facts.robot.choice
-    on_mat = any("background" in one for one in above)
-    if facts.for_brick and not facts.of_course and not marked and not on_mat and "profile" not in said:
+    if facts.for_brick and not facts.of_course and not source.has_magic and "profile" in free:
         layer["profile"] = BRICK_PROFILE
-    settings = settings_of(layer, *layers)
-    if settings.profile == BRICK_PROFILE and not marked and said.isdisjoint({"background", "x_mm", "y_mm"}):
+    profile = layer.get("profile", settings.profile)
+    if profile in (BRICK_PROFILE, PROFILES[BRICK_PROFILE]) and not source.has_magic and {"x_mm", "y_mm"} <= {*free}:
         layer |= {"x_mm": FIELD_WIDTH_MM / 2, "y_mm": FIELD_HEIGHT_MM / 2}
-        settings = settings_of(layer, *layers)
-    return ProgramSettings(settings, layer, note_of(source.program, facts, layer))
+    needed = facts.robot.choice if facts.robot else None
+    return Decided(layer, _note(source.program, facts, layer), needed, frozenset(free))
 
 
-def note_of(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) -> str:
+def _note(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) -> str:
     """Return what the source of a program decided, and how to change it, in one line; empty for nothing."""
-    name = program.path or program.name
     if facts.robot and "robot" in layer:
         built = f"{program.name} runs on a robot built from it: {in_words(facts.robot)}"
         doubts = "".join(f"; {doubt}" for doubt in facts.robot.doubts)
         profile = f"; by the rules of a brick (profile {BRICK_PROFILE})" if "profile" in layer else ""
-        other = ", --profile" if profile else ""
-        return f"{built}{doubts}{profile}. -r{other} to change it; `tuisim robots --from {name}` shows the robot"
+        options = "-r or --profile" if profile else "-r"
+        shown = f"; `tuisim robots --from {shlex.quote(program.path)}` shows the robot" if program.path else ""
+        return f"{built}{doubts}{profile}. {options} to change it{shown}"
     if "profile" in layer:
         return f"{program.name} runs by the rules of a brick (profile {BRICK_PROFILE}). --profile to change it"
     return ""

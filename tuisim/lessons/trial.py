@@ -10,6 +10,7 @@ from tuisim.batch.task import Result, Task
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import settings_of
 from tuisim.config.program_file import parse_program
+from tuisim.config.program_settings import program_settings
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.lessons.spec import Lesson, Run, Step
 from tuisim.runs.handle import RunOptions
@@ -52,7 +53,9 @@ def task_of(lesson: Lesson, text: str, seed: int, index: int = 0) -> Task:
         ConfigError: its magic line, or the world, is wrong.
     """
     source = parse_program(text, f"{lesson.name}.py")
-    spec = build_run_spec(settings_of(source.options, lesson.settings, {"seed": seed}))
+    of_lesson = bool(lesson.settings)
+    found = program_settings(source, lesson.settings, {"seed": seed}, in_world=of_lesson, of_task=of_lesson)
+    spec = build_run_spec(found.settings)
     return Task(index, source.program, spec, RunOptions(time_limit_s=TIME_LIMIT_S), lesson.goals)
 
 

@@ -230,6 +230,8 @@ class Lab:
     def _checked(self, words: MagicWords, text: str | None, prelude: str) -> _Plan:
         from tuisim.config.build import build_run_spec
         from tuisim.config.options import settings_of
+        from tuisim.config.program_file import ProgramSource
+        from tuisim.config.program_settings import program_settings
         from tuisim.config.robots import choose_robot
         from tuisim.notebook.magic_line import persistent_after
         from tuisim.runs.run_folder import field_files
@@ -239,12 +241,18 @@ class Lab:
             for note in choose_robot(robot, "-r").notes:
                 print(f"tuisim: note: {note}", file=sys.stderr)
         persistent = persistent_after(self._persistent, words.settings)
-        settings = settings_of(persistent, words.settings)
-        spec = build_run_spec(settings)
         program = self._program
         if text is not None:
             # The first line is that of the magic, so that line numbers are those of the cell.
-            program = Program("cell", "\n" + text, settings.preload or prelude)
+            preload = str(words.settings.get("preload", prelude))
+            program = Program("cell", "\n" + text, preload)
+        settings = settings_of(persistent, words.settings)
+        if program is not None:
+            found = program_settings(ProgramSource(program, has_magic=True), persistent, words.settings)
+            settings = found.settings
+            if text is not None and found.decided.note:
+                print(f"tuisim: note: {found.decided.note}", file=sys.stderr)
+        spec = build_run_spec(settings)
         return _Plan(persistent, settings, spec, field_files(spec), program)
 
     def _listener(self, collaborative: bool) -> Listener:

@@ -6,18 +6,21 @@ one mat or preset do not outlast it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from tuisim.config.build import build_run_spec, settings_from
 from tuisim.config.obstacles import load_obstacles
 from tuisim.config.options import RobotChoice, Settings, settings_of
 from tuisim.config.profiles import load_profile
-from tuisim.config.robots import choose_robot
+from tuisim.config.program_file import ProgramSource
+from tuisim.config.program_settings import BRICK_PROFILE, Decided, decide
+from tuisim.config.robots import DEFAULT_ROBOT, choose_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec
 from tuisim.errors import BackgroundError
+from tuisim.source import Program
 
 POSE_FIELDS = ("x_mm", "y_mm", "heading_deg")
 WORLD_FIELDS = (
@@ -44,6 +47,15 @@ class NextRun:
     """By field of `Settings`: the name or file that robot, obstacles and profile came from, if known."""
     robot: RobotChoice
     """The robot as it was chosen, before any edit."""
+    from_program: Mapping[str, Any] = field(default_factory=dict)
+    """What the source of the program has decided, or may decide, by field of `Settings`: nobody has chosen it."""
+    program_robot: RobotChoice | None = None
+    """The robot that the program needs; None for the default one."""
+
+    @property
+    def free(self) -> frozenset[str]:
+        """The fields that still follow the program: they are as it has left them."""
+        return frozenset(key for key, value in self.from_program.items() if getattr(self.settings, key) == value)
 
     @property
     def robot_is_edited(self) -> bool:
@@ -57,15 +69,34 @@ class NextRun:
         return self.settings.robot
 
 
-def plan_of(settings: Settings) -> NextRun:
+def plan_of(settings: Settings, free: Iterable[str] = ()) -> NextRun:
     """Return the plan for settings.
+
+    Args:
+        settings: The choices.
+        free: The fields that nobody has chosen, and that follow the program.
 
     Raises:
         ConfigError: they name something that does not exist, or an invalid file.
     """
     world, words = _resolved({field: getattr(settings, field) for field in WORLD_FIELDS})
     settings = replace(settings, **world)
-    return NextRun(settings, build_run_spec(settings), words, world["robot"])
+    following = {key: getattr(settings, key) for key in free}
+    return NextRun(settings, build_run_spec(settings), words, world["robot"], following)
+
+
+def first_plan(spec: RunSpec, settings: Settings | None, decided: Decided, program: Program | None) -> NextRun:
+    """Return the plan with which the app begins.
+
+    Args:
+        spec: Of the run.
+        settings: What it was built from; None if that is not known, as for a stored run.
+        decided: What the source of the program has decided of them.
+        program: Its program.
+    """
+    if settings is None:
+        return with_arguments(plan_of_run(spec), program.arguments if program else ())
+    return replace(plan_of(settings, decided.free), program_robot=decided.robot)
 
 
 def plan_of_spec(spec: RunSpec) -> NextRun:
@@ -85,9 +116,9 @@ def plan_of_run(spec: RunSpec) -> NextRun:
 def _resolved(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
     """Return robot, obstacles and profile as objects, and the words that named them."""
     found, words = dict(choices), {}
-    for field, load in (("robot", choose_robot), ("obstacles", load_obstacles), ("profile", load_profile)):
-        if isinstance(word := found.get(field), str):
-            found[field], words[field] = load(word), word
+    for key, load in (("robot", choose_robot), ("obstacles", load_obstacles), ("profile", load_profile)):
+        if isinstance(word := found.get(key), str):
+            found[key], words[key] = load(word), word
     return found, words
 
 
@@ -112,7 +143,39 @@ def with_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
     elif said.keys() & set(POSE_FIELDS):
         said = {**dict.fromkeys(POSE_FIELDS), **said}
     kept = {field: word for field, word in plan.words.items() if field not in said}
-    return replace(_built(plan, **said), words=kept | words, robot=said.get("robot", plan.robot))
+    following = {key: value for key, value in plan.from_program.items() if key not in choices}
+    built = _built(plan, **said)
+    return replace(built, words=kept | words, robot=said.get("robot", plan.robot), from_program=following)
+
+
+def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, str]:
+    """Return the plan with what the source of a program decides, where nobody has chosen; and that in words, if new.
+
+    Raises:
+        ConfigError: the mat is missing.
+    """
+    free, usual, settings = plan.free, Settings(), plan.settings
+    on_mat = settings.background != usual.background
+    if on_mat:
+        free -= {"x_mm", "y_mm"}
+    # On a mat that was chosen, a program is taken to be the course's, unless it has been known not to be.
+    guessed = free if not on_mat or plan.spec.profile.name == BRICK_PROFILE else free - {"profile"}
+    decided = decide(source, replace(settings, **{key: getattr(usual, key) for key in free}), guessed)
+    layer, words = _resolved({key: decided.layer.get(key, getattr(usual, key)) for key in free})
+    changed = {key: value for key, value in layer.items() if getattr(settings, key) != value}
+    kept = {key: word for key, word in plan.words.items() if key not in changed}
+    named = {key: word for key, word in words.items() if key in changed}
+    found = replace(_built(plan, **changed) if changed else plan, words=kept | named, from_program=layer)
+    found = replace(found, robot=changed.get("robot", plan.robot), program_robot=decided.robot)
+    return found, decided.note if changed.keys() & {"robot", "profile"} else ""
+
+
+def with_program_robot(plan: NextRun) -> NextRun:
+    """Return the plan with the robot that the program needs, which follows the program from now on."""
+    chosen = plan.program_robot or choose_robot(DEFAULT_ROBOT)
+    words = {key: word for key, word in plan.words.items() if key != "robot"}
+    following = {**plan.from_program, "robot": chosen}
+    return replace(_built(plan, robot=chosen), words=words, robot=chosen, from_program=following)
 
 
 def with_mat(plan: NextRun, name: str) -> NextRun:
