@@ -143,7 +143,8 @@ def ports_hint(session: Session, class_name: str) -> str:
     ports = OUTPUT_PORTS if class_name == MOTOR_CLASS else INPUT_PORTS
     plugged = plugged_in(session.sim.spec.robot)
     parts = [f"{port} {plugged[port].driver_name}" for port in sorted(plugged) if port in ports]
-    return f"This robot has: {', '.join(parts) or 'nothing of the kind'}."
+    there = f"This robot has: {', '.join(parts) or 'nothing of the kind'}."
+    return f"{there} Another robot: -r ROBOT; `tuisim robots --from PROGRAM --out FILE` writes the program's own."
 
 
 def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:

@@ -9,6 +9,7 @@ from typing import Any
 
 from tuisim.config.options import RobotChoice
 from tuisim.config.program_robot.library import Kind
+from tuisim.config.program_robot.mechanics import Mechanics, mechanics_in
 from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.config.program_robot.places import NewSensors, places_for
 from tuisim.config.program_robot.wheels import Wheels, wheels_of
@@ -68,8 +69,8 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
         name: What the program is called.
         usual: The robot that is changed.
     """
-    builder = _Builder(mentions, usual)
-    changes = {**builder.motors(), **builder.sensors()}
+    builder = _Builder(mentions, mechanics_in(mentions), usual)
+    changes = builder.with_presses({**builder.motors(), **builder.sensors()})
     if all(getattr(usual, key) == value for key, value in changes.items()):
         return None
     shown = "".join(letter if letter.isprintable() else "?" for letter in name)[:_MAX_NAME]
@@ -85,6 +86,7 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
 @dataclass(slots=True)
 class _Builder:
     mentions: Mentions
+    mechanics: Mechanics
     usual: RobotSpec
     parts: list[Part] = field(default_factory=list)
     doubts: list[str] = field(default_factory=list)
@@ -103,14 +105,50 @@ class _Builder:
         further = [port for port in sorted(kinds) if port not in (wheels.left, wheels.right)]
         further_kinds = {port: kinds[port] for port in further}
         self._free_motors(further_kinds, (wheels.left, wheels.right))
-        changes["extra_motors"] = tuple(MotorSpec(port, _motor_kind(kind)) for port, kind in further_kinds.items())
         self._tell_wheels(wheels, changes)
-        for port, kind in further_kinds.items():
-            named = Kind.LARGE if kind is Kind.MOTOR else kind
-            self.parts.append(Part(f"{named} on {port}", f"motors.{port}", where.get(port) or self._first(kind)))
+        changes |= self._reversed(wheels)
+        extra = [self._further(port, kind) for port, kind in further_kinds.items()]
+        changes["extra_motors"] = tuple(extra)
+        for motor in extra:
+            stops = "" if motor.low_deg is None else f" with end stops at {motor.low_deg:g}° and {motor.high_deg:g}°"
+            said = where.get(motor.port) or self._first(further_kinds[motor.port])
+            self.parts.append(Part(f"{motor.kind} motor on {motor.port}{stops}", f"motors.{motor.port}", said))
         if wheels.doubt:
             self.doubts.append(wheels.doubt)
         return changes
+
+    def _further(self, port: str, kind: Kind) -> MotorSpec:
+        """Return a motor that drives no wheel, with the end stops that the program relies on."""
+        known = any(one.port == port for one in self.mentions.devices)
+        low_deg, high_deg = self.mechanics.range_of(port if known else "") or (None, None)
+        return MotorSpec(port, _motor_kind(kind), low_deg, high_deg)
+
+    def _reversed(self, wheels: Wheels) -> dict[str, bool]:
+        """Return which wheels the program says to be mounted the other way round."""
+        turned = self.mechanics.reversed
+        sides = [side for side, port in (("left", wheels.left), ("right", wheels.right)) if port in turned]
+        if sides:
+            what = "both wheel motors" if len(sides) == 2 else f"the {sides[0]} wheel's motor"
+            where = turned[wheels.left if "left" in sides else wheels.right]
+            self.parts.append(Part(f"{what} the other way round", f"{sides[0]}_reversed", where))
+        return {f"{side}_reversed": True for side in sides}
+
+    def with_presses(self, changes: dict[str, Any]) -> dict[str, Any]:
+        """Return the changes with the touch sensors that a motor presses at its end."""
+        motors = {motor.port: motor for motor in changes["extra_motors"]}
+        touches = list(changes["touch_sensors"])
+        for press in self.mechanics.presses:
+            motor = motors.get(press.motor or next(iter(motors), ""))
+            at = next((at for at, one in enumerate(touches) if press.touch in ("", one.port)), None)
+            if motor is None or motor.low_deg is None or at is None or touches[at].pressed_by:
+                continue
+            end = "high" if press.stop.forwards else "low"
+            touches[at] = replace(touches[at], pressed_by=motor.port, pressed_at=end)
+            what = f"{Kind.TOUCH} on {touches[at].port} pressed by {motor.port}"
+            path = _path(touches[at])
+            self.parts[:] = [part for part in self.parts if part.path != path]
+            self.parts.append(Part(what, path, press.stop.where))
+        return {**changes, "touch_sensors": tuple(touches)}
 
     def _of_pairs(self) -> list[Mention]:
         return [

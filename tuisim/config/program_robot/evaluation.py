@@ -322,7 +322,7 @@ class Evaluation:
         for value in self.values(node.func, scope):
             match value:
                 case LibraryClass() | OwnClass():
-                    yield Instance(value)
+                    yield Instance(value, node)
                 case OwnFunction():
                     yield from self.returned(value)
 

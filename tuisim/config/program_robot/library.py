@@ -95,6 +95,8 @@ PAIRS: Mapping[str, PairClass] = {
 
 WHEEL_CLASS, DISTANCE = "wheel_class", "wheel_distance_mm"
 """Arguments of `MoveDifferential`, after the ports."""
+POLARITY = "polarity"
+"""Argument of a class that turns the polarity of its motors, after the ports."""
 MOTOR_CLASS = "motor_class"
 MOTOR_CLASS_AT: Mapping[str, int] = {
     "MoveTank": 3, "MoveSteering": 3, "MoveJoystick": 3, "MoveDifferential": 5, "WebControlledTank": 4,

@@ -51,6 +51,8 @@ class Mention:
     """The class in which it is made."""
     is_any: bool = False
     """Whether the program takes any device of the kind; else its port is not known."""
+    call: ast.Call | None = None
+    """What makes it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,14 +71,24 @@ class Pair:
     """Diameter and width."""
     spacing_mm: float | None = None
     names: tuple[str, ...] = ()
+    call: ast.Call | None = None
+    """What makes it."""
+    owner: Scope | None = None
+    """The class in which it is made."""
+    polarity: str = ""
+    """What the program gives for the polarity of its motors, for a class that takes it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Mentions:
-    """Everything that a program says about its robot."""
+    """The devices that a program makes, and what can tell more about them."""
 
     devices: tuple[Mention, ...] = ()
     pairs: tuple[Pair, ...] = ()
+    scopes: Sequence[Scope] = ()
+    """What of the program can run."""
+    evaluation: Evaluation | None = None
+    """What its expressions can be."""
 
 
 def mentions_in(modules: dict[str, Module]) -> Mentions:
@@ -119,7 +131,7 @@ class _Reader:
                 devices += self._motor_set(call)
             elif name in library.DEVICES:
                 devices += self._devices(name, call)
-        return Mentions(tuple(devices), tuple(pairs))
+        return Mentions(tuple(devices), tuple(pairs), self.scopes, self.evaluation)
 
     # Calls
 
@@ -225,11 +237,11 @@ class _Reader:
         owner = call.scope.owner
         ports = [("", names)] if name in library.WITHOUT_PORT else list(self._ports(call, "address", 0, names))
         if not ports:
-            yield Mention(kind, "", where, names, owner, is_any=self._takes_any(call))
+            yield Mention(kind, "", where, names, owner, self._takes_any(call), call.node)
         for port, called in dict(ports).items():
             if port and port.startswith("out") != kind.is_motor:
                 continue
-            yield Mention(kind, port, where, called, owner, is_any=not port)
+            yield Mention(kind, port, where, called, owner, not port, call.node)
 
     def _takes_any(self, call: Call) -> bool:
         node = argument_node(call, "address", 0)
@@ -315,11 +327,13 @@ class _Reader:
             for value in argument_of(call, library.DISTANCE, 3, self.evaluation) or ()
             if isinstance(value, int | float)
         ] if known.rank == 3 else []  # fmt: skip
+        polarities = [str(value) for value in argument_of(call, library.POLARITY, 2, self.evaluation) or ()]
         for one, other in dict.fromkeys(zip(left, right, strict=True)):
             if one != other and one.startswith("out") and other.startswith("out"):
                 yield Pair(
                     one, other, self._motor_kind(name, known, call), known.rank, _where(call), name,
-                    self._wheel(call) if known.rank == 3 else None, spacings[0] if spacings else None, names,
+                    self._wheel(call) if known.rank == 3 else None, spacings[0] if spacings else None, names, call.node,
+                    call.scope.owner, polarities[0] if polarities else "",
                 )  # fmt: skip
 
     def _motor_kind(self, name: str, known: PairClass, call: Call) -> Kind:

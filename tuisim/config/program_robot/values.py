@@ -53,6 +53,8 @@ class Instance:
     """What a call of a class makes."""
 
     of: OwnClass | LibraryClass
+    call: ast.Call | None = None
+    """None for the `self` of a method."""
 
 
 @dataclass(frozen=True, slots=True)
