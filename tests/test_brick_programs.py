@@ -37,7 +37,7 @@ WITH_FILE = [name for name in PROGRAMS if (FOLDER / name / "robot.toml").exists(
 def test_it_does_what_a_brick_does(name: str, robot: str, tmp_path: Path, here: Command) -> None:
     folder = tmp_path / name
     shutil.copytree(FOLDER / name, folder)
-    place = ["-x", 100, "-y", 800] if name in FROM_THE_LEFT else []
+    place = ["-x", 157, "-y", 800] if name in FROM_THE_LEFT else []
     done = here("run", folder / "main.py", *place, *(["-r", folder / robot] if robot else []), "--timeout", 90)
     assert done.returncode == EXIT_CODES.get(name, 0), done.stderr
     assert done.stdout == (folder / "stdout.txt").read_text(encoding="utf-8")
