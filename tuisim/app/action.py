@@ -29,6 +29,9 @@ from tuisim.errors import TuisimError
 ACT = "act"
 """Key of the style metadata that names the action of a clickable word."""
 
+CHARACTERS_A_SECOND = 25
+"""How fast a notice is read."""
+
 KeyWord = tuple[str, str]
 """The display name of a key, and what it does."""
 
@@ -175,8 +178,8 @@ class ActionHost(DOMNode):
         self.action_act(message.action)
 
     def say(self, text: str) -> None:
-        """Show a short notice."""
-        self.app.notify(self.with_keys(text), timeout=3, markup=False)
+        """Show a short notice, as long as it takes to read."""
+        self.app.notify(self.with_keys(text), timeout=max(3, len(text) / CHARACTERS_A_SECOND), markup=False)
 
     def with_keys(self, text: str) -> str:
         """Return a text with the key of each action in place of its id in braces, such as `{run}`."""

@@ -204,8 +204,7 @@ class LabApp(PanelMessages):
             self.complain(error)
         if self.settings.from_config:
             self.say(f"From {FILE}: {', '.join(self.settings.from_config)}")
-        if self.settings.decided.note:
-            self.say(self.settings.decided.note)
+        self.loader.tell(self.settings.decided)
 
     # Lifecycle
 

@@ -17,7 +17,7 @@ from tuisim.app.snapshot import end_label
 from tuisim.config.files import means_file
 from tuisim.config.folders import user_path
 from tuisim.config.options import Settings
-from tuisim.config.program_settings import free_fields
+from tuisim.config.program_settings import Decided, free_fields
 from tuisim.errors import LogError, TuisimError
 from tuisim.runs.handle import program_again
 from tuisim.runs.standstill import standstill_words
@@ -194,19 +194,19 @@ class Loader:
         source = _read_program(path)
         program, said = _parts(source)
         plan, before = plans.with_choices(self._run_controller.next_run, said), self._run_controller.program
-        plan, note = plans.following(plan, source)
+        plan, decided = plans.following(plan, source)
         if before is not None and before.path != program.path:
             plan = plans.with_arguments(plan, ())
         self._note_program(program, said)
         self._load(plan, program)
         self._apply_app_settings({}, said)
         self._app.say(f"{program.name} is open: {{run}} runs it")
-        self._tell(note)
+        self.tell(decided)
 
-    def _tell(self, note: str) -> None:
-        """Show what the source of a program has decided, if anything."""
-        if note:
-            self._app.say(note)
+    def tell(self, decided: Decided) -> None:
+        """Tell what the source of a program has decided, if anything."""
+        if decided.said:
+            self._app.say(f"{decided.said}. {{robot}} and {{profile}} choose others")
 
     def _note_program(self, program: Program | None, said: Mapping[str, Any]) -> None:
         self._magic_settings, self._file_prelude = said, program.prelude if program else ""
@@ -217,7 +217,7 @@ class Loader:
             named, goals = self._read_world(Path(path))
             source = _read_program(named) if named else None
             program, magic = _parts(source) if source else (self._run_controller.program, {})
-            plan, note = _in_world(source, magic, self._world_settings, is_task=goals is not None)
+            plan, decided = _in_world(source, magic, self._world_settings, is_task=goals is not None)
         except TuisimError:
             self.world_file, self._world_settings, self._world_refers = before
             raise
@@ -226,7 +226,7 @@ class Loader:
         self._goals.open(goals)
         self._follow()
         self._app.say(f"{Path(path).name} is open" + (": {run} runs its program" if named else ""))
-        self._tell(note)
+        self.tell(decided)
 
     def open_task(self, program_path: str, world: Mapping[str, Any], goals: GoalsFile) -> None:
         """Open a program in a world, given as settings, that is in no world file, with goals. Not during a run.
@@ -236,13 +236,13 @@ class Loader:
         """
         source = _read_program(program_path)
         program, magic = _parts(source)
-        plan, note = _in_world(source, magic, world, is_task=True)
+        plan, decided = _in_world(source, magic, world, is_task=True)
         self.world_file, self._world_settings, self._world_refers = None, {}, ()
         self._note_program(program, magic)
         self._load(plan, program)
         self._goals.open(goals, shows=False)
         self._follow()
-        self._tell(note)
+        self.tell(decided)
 
     def _read_world(self, path: Path) -> tuple[str | None, GoalsFile | None]:
         """Read a world file and remember its settings. Return the path of its program, and its goals, if any."""
@@ -429,15 +429,15 @@ class Loader:
         self, differences: Mapping[str, Any], program: Program | None, source: ProgramSource | None = None
     ) -> None:
         """Apply changed settings of a file; unchanged ones keep what the user has set since."""
-        plan, note = plans.with_choices(self._run_controller.next_run, differences), ""
+        plan, decided = plans.with_choices(self._run_controller.next_run, differences), Decided()
         if source is not None:
-            plan, note = plans.following(plan, source)
+            plan, decided = plans.following(plan, source)
         if differences.keys() & {"background", *plans.POSE_FIELDS}:
             self._load(plan, program)
         else:
             self._run_controller.program = program
             self.set_next_run(plan)
-        self._tell(note)
+        self.tell(decided)
 
 
 def _read_program(path: str) -> ProgramSource:
@@ -453,12 +453,12 @@ def _parts(source: ProgramSource) -> tuple[Program, Mapping[str, Any]]:
 
 def _in_world(
     source: ProgramSource | None, magic: Mapping[str, Any], world: Mapping[str, Any], *, is_task: bool
-) -> tuple[NextRun, str]:
+) -> tuple[NextRun, Decided]:
     """Return the plan of a program in a world, which replaces all earlier choices, and what the program decides."""
     of_task = is_task and bool(world)
     free = free_fields((magic, world), (world,), in_world=bool(world) or not is_task, of_task=of_task)
     plan = plans.with_choices(plans.with_choices(plans.plan_of(Settings(), free), magic), world)
-    return plans.following(plan, source) if source else (plan, "")
+    return plans.following(plan, source) if source else (plan, Decided())
 
 
 def _settings_in(program: Program | None) -> Mapping[str, Any]:

@@ -166,15 +166,11 @@ def _robot_from(program: str, out: str | None, *, as_json: bool) -> int:
 
 
 def _robot_row(robot: RobotSpec) -> tuple[str, ...]:
+    from tuisim.config.robots import ports_of
+
     wheels = f"{robot.wheel_diameter_mm:g} mm, {robot.wheel_spacing_mm:g} mm apart"
     sensors = [f"{s.name} {s.x_mm:g}, {s.y_mm:g}, {s.diameter_mm}" for s in robot.color_sensors]
-    ports = [
-        (motor.port, wheel if motor.kind == "large" else f"{wheel} ({motor.kind} motor)")
-        for motor, wheel in zip(robot.wheel_motors, ("left wheel", "right wheel"), strict=True)
-    ]
-    ports += [(motor.port, f"{motor.kind} motor") for motor in robot.extra_motors]
-    ports += [(sensor.port, sensor.name) for sensor in robot.sensors]
-    on_ports = ", ".join(f"{port} {name}" for port, name in sorted(ports))
+    on_ports = ", ".join(f"{port} {name}" for port, name in ports_of(robot))
     return robot.name, wheels, f"{robot.weight:g}", "; ".join(sensors), on_ports
 
 

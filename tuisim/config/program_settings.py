@@ -50,12 +50,19 @@ class Decided:
 
     layer: Mapping[str, Any] = field(default_factory=dict)
     """By field of `Settings`; below everything that somebody has chosen."""
-    note: str = ""
-    """The same in one line, and how to change it; empty for nothing."""
+    said: str = ""
+    """The same in one line; empty for nothing."""
+    hint: str = ""
+    """How to change it in the shell."""
     robot: RobotChoice | None = None
     """The robot that the program needs, even if another one was chosen; None for the default one."""
     free: frozenset[str] = frozenset()
     """Which of `PROGRAM_FIELDS` nobody has chosen."""
+
+    @property
+    def note(self) -> str:
+        """What is decided and how to change it, in one line; empty for nothing."""
+        return f"{self.said}. {self.hint}" if self.said else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,18 +141,15 @@ def decide(source: ProgramSource, settings: Settings, free: Collection[str]) -> 
     if profile in (BRICK_PROFILE, PROFILES[BRICK_PROFILE]) and not source.has_magic and {"x_mm", "y_mm"} <= {*free}:
         layer |= {"x_mm": FIELD_WIDTH_MM / 2, "y_mm": FIELD_HEIGHT_MM / 2}
     needed = facts.robot.choice if facts.robot else None
-    return Decided(layer, _note(source.program, facts, layer), needed, frozenset(free))
+    return Decided(layer, *_in_words(source.program, facts, layer), needed, frozenset(free))
 
 
-def _note(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) -> str:
-    """Return what the source of a program decided, and how to change it, in one line; empty for nothing."""
+def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) -> tuple[str, str]:
+    """Return what the source of a program decided, and how to change it; both empty for nothing."""
+    rules = f"by the rules of a brick (profile {BRICK_PROFILE})" if "profile" in layer else ""
     if facts.robot and "robot" in layer:
-        built = f"{program.name} runs on a robot built from it: {in_words(facts.robot)}"
-        doubts = "".join(f"; {doubt}" for doubt in facts.robot.doubts)
-        profile = f"; by the rules of a brick (profile {BRICK_PROFILE})" if "profile" in layer else ""
-        options = "-r or --profile" if profile else "-r"
+        parts = [f"{program.name} runs on a robot built from it: {in_words(facts.robot)}", *facts.robot.doubts]
+        options = "-r or --profile" if rules else "-r"
         shown = f"; `tuisim robots --from {shlex.quote(program.path)}` shows the robot" if program.path else ""
-        return f"{built}{doubts}{profile}. {options} to change it{shown}"
-    if "profile" in layer:
-        return f"{program.name} runs by the rules of a brick (profile {BRICK_PROFILE}). --profile to change it"
-    return ""
+        return "; ".join(filter(None, [*parts, rules])), f"{options} to change it{shown}"
+    return (f"{program.name} runs {rules}", "--profile to change it") if rules else ("", "")

@@ -338,6 +338,17 @@ def shown_keys(keys: Sequence[str]) -> str:
     return ", ".join(names) + (f" and {len(keys) - _KEYS_SHOWN} more" if len(keys) > _KEYS_SHOWN else "")
 
 
+def ports_of(robot: RobotSpec) -> list[tuple[str, str]]:
+    """Return what is on each port of a robot, by port."""
+    found = [
+        (motor.port, wheel if motor.kind == "large" else f"{wheel} ({motor.kind} motor)")
+        for motor, wheel in zip(robot.wheel_motors, ("left wheel", "right wheel"), strict=True)
+    ]
+    found += [(motor.port, f"{motor.kind} motor") for motor in robot.extra_motors]
+    found += [(sensor.port, sensor.name) for sensor in robot.sensors]
+    return sorted(found)
+
+
 def save_robot(spec: RobotSpec, path: Path | str) -> None:
     """Write a robot atomically to a TOML file; `load_robot` returns an equal one. Comments in the file stay.
 

@@ -33,7 +33,7 @@ class Part(StrEnum):
 CONTENTS: Mapping[Part, tuple[str, ...]] = {
     Part.TUTORIAL: ("first-steps", "measuring-bands"),
     Part.HOW_TO: (
-        "writing-programs", "lessons", "stepping", "going-back", "analysing-logs", "exporting-data",
+        "writing-programs", "real-programs", "lessons", "stepping", "going-back", "analysing-logs", "exporting-data",
         "pictures-and-movies", "notebooks", "in-a-browser", "working-over-ssh", "own-mats", "marking", "experiments",
         "when-it-goes-wrong",
     ),

@@ -84,7 +84,7 @@ def choose_mat(workspace: Workspace) -> None:
 
 def choose(workspace: Workspace, what: str) -> None:
     """Ask for a robot, a profile or a set of obstacles, and apply the choice to the plan."""
-    from tuisim.app.dialogs.chooser import obstacle_chooser, profile_chooser, robot_chooser
+    from tuisim.app.dialogs.chooser import OF_PROGRAM, obstacle_chooser, profile_chooser, robot_chooser
 
     chooser, change = {
         "robot": (robot_chooser, plans.with_robot),
@@ -93,7 +93,9 @@ def choose(workspace: Workspace, what: str) -> None:
     }[what]
 
     def chosen(word: str | None) -> None:
-        if word:
+        if word == OF_PROGRAM:
+            workspace.loader.attempt(plans.with_program_robot)
+        elif word:
             workspace.loader.attempt(lambda plan: change(plan, word))
 
     workspace.app.push_screen(chooser(workspace.run_controller.next_run), chosen)

@@ -25,7 +25,7 @@ from tuisim.config.mat_image import decode, read_file
 from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import OBSTACLES, load_obstacles
 from tuisim.config.profiles import load_profile
-from tuisim.config.robots import ROBOTS, load_robot
+from tuisim.config.robots import ROBOTS, load_robot, ports_of
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import TuisimError
@@ -165,11 +165,26 @@ def program_chooser() -> Chooser:
     return Chooser("Programs, worlds and goals", groups, path_hint=hint)
 
 
+OF_PROGRAM = "*program"
+"""What the dialog for robots returns for the robot that was built for the program; no name or path of a robot."""
+
+
 def robot_chooser(plan: NextRun) -> Chooser:
-    """Return the dialog for robots."""
+    """Return the dialog for robots: the one built for the program, with its ports, those known by name, and files."""
+    built = plan.program_robot
+    own = (
+        [(OF_PROGRAM, built.spec.name, ", ".join(f"{port} {name}" for port, name in ports_of(built.spec)))]
+        if built
+        else []
+    )
     presets = [(name, name, _robot_title(name)) for name in ROBOTS]
-    groups = [Group("", presets), files_here([".toml", ".json"], lambda path: load_robot(str(path)))]
-    return Chooser("Robots", groups, plan.words.get("robot", ""), "Path of a robot's .toml or .json file")
+    groups = [
+        Group("Built from the program", own),
+        Group("By name" if own else "", presets),
+        files_here([".toml", ".json"], lambda path: load_robot(str(path))),
+    ]
+    current = OF_PROGRAM if built is not None and plan.robot == built else plan.words.get("robot", "")
+    return Chooser("Robots", groups, current, "Path of a robot's .toml or .json file")
 
 
 def _robot_title(name: str) -> str:

@@ -148,8 +148,8 @@ def with_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
     return replace(built, words=kept | words, robot=said.get("robot", plan.robot), from_program=following)
 
 
-def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, str]:
-    """Return the plan with what the source of a program decides, where nobody has chosen; and that in words, if new.
+def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
+    """Return the plan with what the source of a program decides, where nobody has chosen; and that, if it is new.
 
     Raises:
         ConfigError: the mat is missing.
@@ -167,7 +167,7 @@ def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, str]:
     named = {key: word for key, word in words.items() if key in changed}
     found = replace(_built(plan, **changed) if changed else plan, words=kept | named, from_program=layer)
     found = replace(found, robot=changed.get("robot", plan.robot), program_robot=decided.robot)
-    return found, decided.note if changed.keys() & {"robot", "profile"} else ""
+    return found, decided if changed.keys() & {"robot", "profile"} else Decided()
 
 
 def with_program_robot(plan: NextRun) -> NextRun:
