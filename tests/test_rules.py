@@ -58,8 +58,12 @@ def source(path: Path) -> Source:
     return Source(path)
 
 
+PROGRAMS = frozenset({"brick_programs", "real_programs"})
+"""Folders with programs as other people write them."""
+
+
 def python_files(folder: str) -> list[Path]:
-    return [path for path in sorted((ROOT / folder).rglob("*.py")) if "brick_programs" not in path.parts]
+    return [path for path in sorted((ROOT / folder).rglob("*.py")) if PROGRAMS.isdisjoint(path.parts)]
 
 
 PACKAGE = python_files("tuisim")

@@ -6,7 +6,6 @@ import ast
 import os
 import re
 import shlex
-import symtable
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
@@ -15,9 +14,11 @@ from typing import Any, NamedTuple
 
 from tuisim.config.files import close_beside, read_bytes
 from tuisim.config.folders import programs_folder, user_path
+from tuisim.config.program_robot.course import global_names, uses_course_names
+from tuisim.config.program_robot.source import imports_library, read_modules
 from tuisim.config.shared_options import parse_words
 from tuisim.errors import ConfigError, did_you_mean, nearest, see_page
-from tuisim.source import PRELUDE_TEXTS, PRELUDES, Program, decode_source, source_lines
+from tuisim.source import LIBRARIES, PRELUDE_TEXTS, PRELUDES, Program, decode_source, source_lines
 
 MAX_PROGRAM_BYTES = 4 << 20
 
@@ -28,8 +29,6 @@ _MAGIC = re.compile(r"(?P<comment>#\s*)?%%?(?P<name>sim_magic\w*)(?P<words>.*)")
 _READS_ANY_NAME = {"eval", "exec", "globals", "vars"}
 """Functions that may use names that do not appear in the program."""
 
-LIBRARIES = ("ev3dev2", "ev3dev")
-"""The packages with which programs for a brick begin: they need no prelude."""
 _IMPORT = re.compile(rf"^\s*(from|import)\s+({'|'.join(LIBRARIES)})\b", re.MULTILINE)
 
 _DOCSTRING = re.compile(r"[rRuU]?(\"\"\"|'''|\"|')")
@@ -141,8 +140,8 @@ def find_magic(text: str, name: str) -> Magic | None:
     return None
 
 
-def prelude_for(text: str) -> str:
-    """Return the prelude of a program without a magic line.
+def prelude_for(text: str, path: str = "") -> str:
+    """Return the prelude of a program without a magic line, in a file or none.
 
     It is `none` if the program imports the library, or uses no name of a prelude.
     """
@@ -154,25 +153,14 @@ def prelude_for(text: str) -> str:
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return "none" if _IMPORT.search(text) else "preloaded"
     _, ready = global_names(PRELUDE_TEXTS["preloaded"])
-    return "preloaded" if (used - defined) & (ready | _READS_ANY_NAME) else "none"
-
-
-def global_names(text: str) -> tuple[set[str], set[str]]:
-    """Return the global names that a text uses, and those that it defines."""
-    used: set[str] = set()
-    defined: set[str] = set()
-    tables = [symtable.symtable(text, "", "exec")]
-    while tables:
-        table = tables.pop()
-        tables += table.get_children()
-        for symbol in table.get_symbols():
-            if table.get_type() != "module" and not symbol.is_global():
-                continue
-            if symbol.is_referenced():
-                used.add(symbol.get_name())
-            if symbol.is_assigned() or symbol.is_imported():
-                defined.add(symbol.get_name())
-    return used, defined
+    if not (used - defined) & (ready | _READS_ANY_NAME):
+        return "none"
+    if "import *" in text:
+        # The names may be those of a module of its own, which imports the library.
+        modules = read_modules(Program("", text, path=path))
+        if imports_library(modules) and not uses_course_names(modules, text):
+            return "none"
+    return "preloaded"
 
 
 def _imports_library(tree: ast.AST) -> bool:
@@ -193,7 +181,7 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
     """
     magic = find_magic(text, name)
     if magic is None:
-        return ProgramSource(Program(name, text, prelude_for(text), path))
+        return ProgramSource(Program(name, text, prelude_for(text, path), path))
     if not magic.comment:
         lines = source_lines(text)
         lines[magic.line - 1] = f"# {lines[magic.line - 1].strip()}"

@@ -34,7 +34,8 @@ KINDS: Mapping[type, Kind] = {
     InfraredSpec: Kind.INFRARED,
 }
 """The kind of each sensor, by the class of its spec."""
-_USUAL_PORTS = {Kind.TOUCH: "in1", Kind.INFRARED: "in4", Kind.GYRO: "in4", Kind.ULTRASONIC: "in1", Kind.COLOR: "in3"}
+_USUAL_PORTS = {Kind.TOUCH: "in1", Kind.INFRARED: "in1", Kind.GYRO: "in4", Kind.ULTRASONIC: "in1", Kind.COLOR: "in3"}
+"""Where a sensor goes of which the program does not say the port; the infrared one in place of the ultrasonic one."""
 _MAX_NAME = 80
 
 

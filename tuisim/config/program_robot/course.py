@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import ast
+import symtable
 from collections.abc import Iterator, Mapping
 
-from tuisim.config.program_file import global_names
 from tuisim.config.program_robot.library import COURSE_MODULE
 from tuisim.config.program_robot.source import Module
 from tuisim.source import PRELUDE_TEXTS
@@ -51,3 +51,21 @@ def _defined(tree: ast.Module) -> Iterator[str]:
 
 def _is_star(node: ast.AST) -> bool:
     return isinstance(node, ast.ImportFrom) and any(alias.name == "*" for alias in node.names)
+
+
+def global_names(text: str) -> tuple[set[str], set[str]]:
+    """Return the global names that a text uses, and those that it defines."""
+    used: set[str] = set()
+    defined: set[str] = set()
+    tables = [symtable.symtable(text, "", "exec")]
+    while tables:
+        table = tables.pop()
+        tables += table.get_children()
+        for symbol in table.get_symbols():
+            if table.get_type() != "module" and not symbol.is_global():
+                continue
+            if symbol.is_referenced():
+                used.add(symbol.get_name())
+            if symbol.is_assigned() or symbol.is_imported():
+                defined.add(symbol.get_name())
+    return used, defined

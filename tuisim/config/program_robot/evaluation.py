@@ -7,7 +7,6 @@ import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from tuisim.config.program_file import LIBRARIES
 from tuisim.config.program_robot import library
 from tuisim.config.program_robot.calls import Call, argument_of
 from tuisim.config.program_robot.scopes import FUNCTIONS, Bound, Defined, Function, Imported, Parameter, Scope
@@ -23,6 +22,7 @@ from tuisim.config.program_robot.values import (
     Table,
     Value,
 )
+from tuisim.source import LIBRARIES
 
 MAX_VALUES = 24
 MAX_DEPTH = 40
@@ -101,6 +101,10 @@ class Evaluation:
                 yield Table(ast.Dict([key], [item]), scope)
             case ast.Call():
                 yield from self._called(node, scope)
+
+    def within(self, function: Function, call: Call) -> Evaluation:
+        """Return the expressions of the same program as they are while one call of a function runs."""
+        return Evaluation(self.modules, self.options, {**self.calls, function: [call]})
 
     # Names
 

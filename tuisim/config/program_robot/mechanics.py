@@ -102,10 +102,10 @@ class _Reader:
                 for target in targets:
                     if isinstance(target, ast.Attribute) and target.attr == "polarity":
                         for text in self.evaluation.values(value, scope):
-                            self._turn(self._motors(target.value, scope), text, _where(node, scope))
+                            self._turn(self._known_motors(target.value, scope), text, _where(node, scope))
             case ast.Call(func=ast.Attribute(value=base, attr="set_polarity"), args=[value, *_]):
                 for text in self.evaluation.values(value, scope):
-                    self._turn(self._motors(base, scope), text, _where(node, scope))
+                    self._turn(self._known_motors(base, scope), text, _where(node, scope))
             case ast.Attribute(value=base, attr="is_stalled"):
                 self._stall(base, scope, node)
             case ast.Compare(left=left, comparators=[ast.Attribute(value=base, attr="state")]):
@@ -202,6 +202,12 @@ class _Reader:
             self.found.presses.append(Press(touches[0], moved.pop(), Stop(_where(last, scope), forwards)))
 
     # Devices
+
+    def _known_motors(self, node: ast.expr, scope: Scope) -> list[str]:
+        """Return the ports of the motors that an expression can be; none if it stands for one of several in turn."""
+        calls = [value.call for value in self.evaluation.values(node, scope) if isinstance(value, Instance)]
+        in_turn = any(sum(one.call is call for one in self.mentions.devices) > 1 for call in calls if call)
+        return [] if in_turn else self._motors(node, scope)
 
     def _motors(self, node: ast.expr, scope: Scope) -> list[str]:
         return self._devices(node, scope, Kind.LARGE, Kind.MEDIUM, Kind.MOTOR)

@@ -24,6 +24,8 @@ from tuisim.config.program_robot.values import (
 
 _ROUNDS = 3
 """How often the calls are looked up: each time more is known about what is called."""
+_MAX_WAYS = 40
+"""Functions with more calls than these are read for all of them at once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +107,8 @@ class _Reader:
     made: list[tuple[str, Call]] = field(init=False, default_factory=list)
     """Each class of the library with a call that makes one of it."""
     hints: dict[ast.AST, list[str]] = field(init=False, default_factory=dict)
+    via: Call | None = field(init=False, default=None)
+    """The call of the function that is being read, if it has several."""
 
     def read(self) -> Mentions:
         self.scopes = reachable(self.modules)
@@ -123,15 +127,33 @@ class _Reader:
             self._note_names(scope)
         devices: list[Mention] = []
         pairs: list[Pair] = []
+        whole = self.evaluation
         for name, call in self.made:
-            if name in library.PAIRS:
-                pairs += self._pairs(name, call)
-                devices += self._needs(name, call)
-            elif name == library.MOTOR_SET:
-                devices += self._motor_set(call)
-            elif name in library.DEVICES:
-                devices += self._devices(name, call)
-        return Mentions(tuple(devices), tuple(pairs), self.scopes, self.evaluation)
+            for inside, via in self._ways(name, call, whole):
+                self.evaluation, self.via = inside, via
+                if name in library.PAIRS:
+                    pairs += self._pairs(name, call)
+                    devices += self._needs(name, call)
+                elif name == library.MOTOR_SET:
+                    devices += self._motor_set(call)
+                elif name in library.DEVICES:
+                    devices += self._devices(name, call)
+        self.evaluation = whole
+        return Mentions(tuple(dict.fromkeys(devices)), tuple(dict.fromkeys(pairs)), self.scopes, whole)
+
+    def _ways(self, name: str, call: Call, whole: Evaluation) -> Iterator[tuple[Evaluation, Call | None]]:
+        """Yield what is known in each call of the function in which something is made, with that call."""
+        function = call.scope.node
+        calls = whole.calls.get(function, ()) if isinstance(function, FUNCTIONS) else ()
+        if not 1 < len(calls) <= _MAX_WAYS or not isinstance(function, FUNCTIONS):
+            yield whole, None
+            return
+        for via in calls:
+            inside = whole.within(function, via)
+            made = inside.values(call.node.func, call.scope)
+            # A class that is given to the function is another one in another call.
+            if not any(isinstance(value, LibraryClass) for value in made) or LibraryClass(name) in made:
+                yield inside, via
 
     # Calls
 
@@ -233,7 +255,7 @@ class _Reader:
             kind = told[0]
         elif kind is Kind.SENSOR:
             kind = self._kind_by_mode(call) or kind
-        names = tuple(self.hints.get(call.node, ()))
+        names = self._called(call)
         owner = call.scope.owner
         ports = [("", names)] if name in library.WITHOUT_PORT else list(self._ports(call, "address", 0, names))
         if not ports:
@@ -242,6 +264,11 @@ class _Reader:
             if port and port.startswith("out") != kind.is_motor:
                 continue
             yield Mention(kind, port, where, called, owner, not port, call.node)
+
+    def _called(self, call: Call) -> tuple[str, ...]:
+        """Return what the program calls the thing that a call makes."""
+        outside = self.hints.get(self.via.node, ()) if self.via else ()
+        return tuple(dict.fromkeys((*self.hints.get(call.node, ()), *outside)))
 
     def _takes_any(self, call: Call) -> bool:
         node = argument_node(call, "address", 0)
@@ -313,7 +340,7 @@ class _Reader:
     # Pairs
 
     def _pairs(self, name: str, call: Call) -> Iterator[Pair]:
-        known, names = library.PAIRS[name], tuple(self.hints.get(call.node, ()))
+        known, names = library.PAIRS[name], self._called(call)
         # The ports of a balancing robot come last.
         at = (10, 11) if known.usual[0] else (0, 1)
         left = [port for port, _ in self._ports(call, known.left, at[0], names)]

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tuisim.config.files import read_bytes
-from tuisim.config.program_file import LIBRARIES
 from tuisim.errors import ConfigError
-from tuisim.source import Program, decode_source
+from tuisim.source import LIBRARIES, Program, decode_source
 
 MAX_MODULES = 100
 MAX_MODULE_BYTES = 1 << 20
