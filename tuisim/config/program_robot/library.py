@@ -117,6 +117,7 @@ CONSTANTS: Mapping[str, str] = {
     **{f"INPUT_{port[-1]}": port for port in INPUT_PORTS},
     "POLARITY_NORMAL": "normal",
     "POLARITY_INVERSED": "inversed",
+    "STATE_STALLED": "stalled",
 }
 """Names of the library with the value that matters here."""
 

@@ -139,6 +139,9 @@ class _Reader:
                 elif name in library.DEVICES:
                     devices += self._devices(name, call)
         self.evaluation = whole
+        # What is known in one call of a function may not be in another one, such as that in itself.
+        known = {one.call for one in devices if one.port}
+        devices = [one for one in devices if one.port or one.is_any or one.call not in known]
         return Mentions(tuple(dict.fromkeys(devices)), tuple(dict.fromkeys(pairs)), self.scopes, whole)
 
     def _ways(self, name: str, call: Call, whole: Evaluation) -> Iterator[tuple[Evaluation, Call | None]]:
@@ -258,7 +261,8 @@ class _Reader:
         names = self._called(call)
         owner = call.scope.owner
         ports = [("", names)] if name in library.WITHOUT_PORT else list(self._ports(call, "address", 0, names))
-        if not ports:
+        if not ports and not any(isinstance(value, str) for value in self._given(call)):
+            # A text that is no port of the brick names something that is not simulated.
             yield Mention(kind, "", where, names, owner, self._takes_any(call), call.node)
         for port, called in dict(ports).items():
             if port and port.startswith("out") != kind.is_motor:
@@ -269,6 +273,9 @@ class _Reader:
         """Return what the program calls the thing that a call makes."""
         outside = self.hints.get(self.via.node, ()) if self.via else ()
         return tuple(dict.fromkeys((*self.hints.get(call.node, ()), *outside)))
+
+    def _given(self, call: Call) -> Sequence[Value]:
+        return argument_of(call, "address", 0, self.evaluation) or ()
 
     def _takes_any(self, call: Call) -> bool:
         node = argument_node(call, "address", 0)
