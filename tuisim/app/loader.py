@@ -412,7 +412,8 @@ class Loader:
         folder = program.module_folder if program and not new.path else ""
         before = self._magic_settings
         applied = replace(new, prelude=as_said, module_folder=folder)
-        self._apply_changed(_differences(before, said), applied, replace(source, program=applied))
+        gone = before.keys() - said.keys()
+        self._apply_changed(_differences(before, said), applied, replace(source, program=applied), gone)
         self._note_program(new, said)
         self._apply_app_settings(before, said)
 
@@ -426,12 +427,23 @@ class Loader:
             self._run_controller.set_speed(now["speed"])
 
     def _apply_changed(
-        self, differences: Mapping[str, Any], program: Program | None, source: ProgramSource | None = None
+        self,
+        differences: Mapping[str, Any],
+        program: Program | None,
+        source: ProgramSource | None = None,
+        gone: Iterable[str] = (),
     ) -> None:
-        """Apply changed settings of a file; unchanged ones keep what the user has set since."""
+        """Apply changed settings of a file; unchanged ones keep what the user has set since.
+
+        Args:
+            differences: The new values.
+            program: The program from now on.
+            source: The same, if its text has changed.
+            gone: The settings that it no longer has.
+        """
         plan, decided = plans.with_choices(self._run_controller.next_run, differences), Decided()
         if source is not None:
-            plan, decided = plans.following(plan, source)
+            plan, decided = plans.following(plans.with_free(plan, gone), source)
         if differences.keys() & {"background", *plans.POSE_FIELDS}:
             self._load(plan, program)
         else:

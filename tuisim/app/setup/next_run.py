@@ -15,7 +15,7 @@ from tuisim.config.obstacles import load_obstacles
 from tuisim.config.options import RobotChoice, Settings, settings_of
 from tuisim.config.profiles import load_profile
 from tuisim.config.program_file import ProgramSource
-from tuisim.config.program_settings import BRICK_PROFILE, Decided, decide
+from tuisim.config.program_settings import BRICK_PROFILE, PROGRAM_FIELDS, Decided, decide
 from tuisim.config.robots import DEFAULT_ROBOT, choose_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec
@@ -168,6 +168,12 @@ def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
     found = replace(_built(plan, **changed) if changed else plan, words=kept | named, from_program=layer)
     found = replace(found, robot=changed.get("robot", plan.robot), program_robot=decided.robot)
     return found, decided if changed.keys() & {"robot", "profile"} else Decided()
+
+
+def with_free(plan: NextRun, keys: Iterable[str]) -> NextRun:
+    """Return the plan with settings that nobody chooses any more, so that they follow the program where they can."""
+    free = {key: getattr(plan.settings, key) for key in keys if key in PROGRAM_FIELDS}
+    return replace(plan, from_program={**plan.from_program, **free})
 
 
 def with_program_robot(plan: NextRun) -> NextRun:

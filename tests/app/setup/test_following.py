@@ -1,0 +1,97 @@
+"""What of the plan follows the source of the program: what nobody has chosen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import pytest
+
+from tuisim.app.setup import next_run as plans
+from tuisim.app.setup.next_run import NextRun
+from tuisim.config.options import Settings
+from tuisim.config.program_file import parse_program
+from tuisim.config.program_settings import PROGRAM_FIELDS
+from tuisim.core.geometry import Pose
+
+CLAW = "from ev3dev2.motor import MediumMotor\nMediumMotor('outA').on(5)\n"
+LIFT = CLAW.replace("outA", "outD")
+USUAL = "from ev3dev2.motor import LargeMotor\nLargeMotor('outB').on(5)\n"
+COURSE = "tank_drive.on(5, 5)\n"
+MAGIC = f"# %%sim_magic\n{CLAW}"
+MIDDLE, MAT = Pose(1181.0, 571.5, 0.0), Pose(157.0, 800.0, 0.0)
+
+Step = str | Callable[[NextRun], NextRun]
+
+
+def done(steps: list[Step], free: tuple[str, ...] = PROGRAM_FIELDS) -> NextRun:
+    """The plan after programs were opened, and changes were made, in turn."""
+    plan = plans.plan_of(Settings(), free)
+    for step in steps:
+        if isinstance(step, str):
+            source = parse_program(step, "p.py")
+            plan, _ = plans.following(plans.with_choices(plan, source.options), source)
+        else:
+            plan = step(plan)
+    return plan
+
+
+def robot(name: str) -> Step:
+    return lambda plan: plans.with_robot(plan, name)
+
+
+def mat(name: str) -> Step:
+    return lambda plan: plans.with_mat(plan, name)
+
+
+# What is done; then the motor ports besides the wheels, the robot's name, and the profile.
+WAYS: Mapping[str, tuple[list[Step], tuple[list[str], str, str]]] = {
+    "a program": ([CLAW], (["outA"], "Robot of p.py", "ev3")),
+    "another one": ([CLAW, LIFT], (["outD"], "Robot of p.py", "ev3")),
+    "one for the usual robot": ([CLAW, USUAL], ([], "Default_Robot", "ev3")),
+    "one of the course": ([CLAW, COURSE], ([], "Default_Robot", "robolab")),
+    "one with a magic line": ([USUAL, MAGIC], (["outA"], "Robot of p.py", "robolab")),
+    "a robot chosen before": ([robot("Explorer"), CLAW], (["outA"], "Explorer", "ev3")),
+    "a robot chosen after": ([CLAW, robot("Explorer"), LIFT], (["outA"], "Explorer", "ev3")),
+    "and the program's again": ([CLAW, robot("Explorer"), plans.with_program_robot, LIFT],
+                                (["outD"], "Robot of p.py", "ev3")),
+    "a profile chosen": ([CLAW, lambda plan: plans.with_profile(plan, "robolab"), LIFT],
+                         (["outD"], "Robot of p.py", "robolab")),
+    "a mat chosen before": ([mat("Loop"), CLAW], (["outA"], "Robot of p.py", "robolab")),
+    "a mat chosen after": ([CLAW, mat("Loop"), LIFT], (["outD"], "Robot of p.py", "ev3")),
+    "an edited robot": ([CLAW, lambda plan: plans.with_robot_edited(plan, plan.robot.spec), LIFT],
+                        (["outD"], "Robot of p.py", "ev3")),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_robot_and_profile_follow_the_program_unless_somebody_chose_them(way: str) -> None:
+    steps, expected = WAYS[way]
+    spec = done(steps).spec
+    assert ([motor.port for motor in spec.robot.extra_motors], spec.robot.name, spec.profile.name) == expected
+
+
+PLACES: Mapping[str, tuple[list[Step], tuple[float, float]]] = {
+    "a brick's program": ([CLAW], (1181, 571.5)),
+    "then one of the course": ([CLAW, COURSE], (100, 800)),
+    "a robot that was moved": ([CLAW, lambda plan: plans.at_pose(plan, Pose(300, 400, 0)), LIFT], (300, 400)),
+    "a mat": ([CLAW, mat("Loop"), LIFT], (500, 500)),
+}
+
+
+@pytest.mark.parametrize("way", PLACES)
+def test_the_place_follows_until_the_robot_is_moved_or_a_mat_says_it(way: str) -> None:
+    steps, (x_mm, y_mm) = PLACES[way]
+    start = done(steps).spec.world.start
+    assert (start.x_mm, start.y_mm) == (x_mm, y_mm)
+
+
+def test_nothing_follows_where_everything_was_chosen() -> None:
+    spec = done([CLAW], free=()).spec
+    assert (spec.robot.name, spec.profile.name, spec.world.start.x_mm) == ("Default_Robot", "robolab", 100)
+
+
+def test_what_is_decided_is_told_only_if_it_is_new() -> None:
+    plan = done([CLAW])
+    again, same = plans.following(plan, parse_program(CLAW + "# more\n", "p.py"))
+    _, other = plans.following(again, parse_program(LIFT, "p.py"))
+    assert (same.said, "outD" in other.said) == ("", True)

@@ -1,0 +1,77 @@
+"""The robot that was built for a program, in the app: told, drawn, in the dialog of the robots, and kept up to date."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from textual.widgets import OptionList
+
+from tests.app.app_help import lab, notices, ready, screen_text, until
+from tuisim.app.app import AppSettings, LabApp
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.config.program_file import read_program
+from tuisim.config.program_settings import PROGRAM_FIELDS, Decided, program_settings
+
+CLAW = "from ev3dev2.motor import MediumMotor\nclaw = MediumMotor('outA')\nclaw.on_for_degrees(20, 90)\n"
+
+
+@pytest.fixture
+def claw(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "claw.py").write_text(CLAW)
+    return tmp_path / "claw.py"
+
+
+def opened(path: Path) -> AppSettings:
+    """What the command makes of `tuisim PROGRAM`."""
+    source = read_program(path)
+    found = program_settings(source)
+    spec = build_run_spec(found.settings)
+    return AppSettings(spec=spec, settings=found.settings, program=source.program, decided=found.decided)
+
+
+def extra_ports(app: LabApp) -> list[str]:
+    return [motor.port for motor in app.run_controller.next_run.spec.robot.extra_motors]
+
+
+async def test_it_is_told_and_the_dialog_lists_its_ports(claw: Path) -> None:
+    async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: any("built from it: medium motor on outA" in notice for notice in notices(app)))
+        await pilot.press("r")
+        await until(pilot, lambda: "outA medium motor" in screen_text(app))
+        entries = app.screen.query_one(OptionList)
+        assert entries.highlighted_option is not None
+        assert entries.highlighted_option.id == "*program"
+
+
+async def test_another_robot_is_chosen_and_the_program_s_again(claw: Path) -> None:
+    async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        for key, ports in (("down", []), ("up", ["outA"])):
+            await pilot.press("r")
+            await until(pilot, lambda: bool(app.screen.query(OptionList)))
+            await pilot.press(key, "enter")
+            await until(pilot, lambda ports=ports: extra_ports(app) == ports)  # type: ignore[misc]
+
+
+async def test_it_follows_the_text_of_the_program(claw: Path) -> None:
+    async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        claw.write_text(CLAW.replace("outA", "outD"))
+        app.check_files()
+        await until(pilot, lambda: extra_ports(app) == ["outD"])
+        await until(pilot, lambda: any("medium motor on outD" in notice for notice in notices(app)))
+
+
+async def test_opening_a_program_gives_it_its_robot(claw: Path) -> None:
+    settings, decided = Settings(), Decided(free=frozenset(PROGRAM_FIELDS))
+    start = AppSettings(spec=build_run_spec(settings), settings=settings, decided=decided)
+    async with LabApp(start).run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        app = lab(pilot)
+        app.loader.open_file(str(claw))
+        assert extra_ports(app) == ["outA"]
+        assert app.run_controller.next_run.spec.profile.name == "ev3"

@@ -1,0 +1,110 @@
+"""What the source of a program decides about its run, and what stands above it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.config.program_file import parse_program
+from tuisim.config.program_settings import program_settings
+
+BRICK = "from ev3dev2.motor import MediumMotor, MoveTank, OUTPUT_A, OUTPUT_B, OUTPUT_C\n"
+CLAW = f"{BRICK}MediumMotor(OUTPUT_A).on(5)\n"
+USUAL = f"{BRICK}MoveTank(OUTPUT_B, OUTPUT_C).on(5, 5)\n"
+SENSOR = "from ev3dev2.sensor.lego import ColorSensor\nprint(ColorSensor('in2').reflected_light_intensity)\n"
+MIDDLE = (1181.0, 571.5)
+MAT = (None, None)
+
+# The text, the arguments of `program_settings`; profile, the robot's name, and the place.
+CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float | None, float | None]]]] = {
+    "a brick's program": (USUAL, {}, ("ev3", "Default_Robot", MIDDLE)),
+    "with another robot": (CLAW, {}, ("ev3", "Robot of p.py", MIDDLE)),
+    "-r": (CLAW, {"above": {"robot": "Explorer"}}, ("ev3", "Explorer", MIDDLE)),
+    "-x": (CLAW, {"above": {"x_mm": 300.0}}, ("ev3", "Robot of p.py", (300, None))),
+    "-a": (USUAL, {"above": {"heading_deg": 90.0}}, ("ev3", "Default_Robot", MIDDLE)),
+    "-b": (CLAW, {"above": {"background": "Loop"}}, ("robolab", "Robot of p.py", MAT)),
+    "-b of the usual mat": (USUAL, {"above": {"background": "Empty_Map"}}, ("robolab", "Default_Robot", MAT)),
+    "--profile": (CLAW, {"above": {"profile": "robolab"}}, ("robolab", "Robot of p.py", MAT)),
+    "--profile ev3": (SENSOR, {"above": {"profile": "ev3"}}, ("ev3", "Default_Robot", MIDDLE)),
+    "--profile ev3 on a mat": (
+        USUAL, {"above": {"profile": "ev3", "background": "Loop"}}, ("ev3", "Default_Robot", MAT)
+    ),
+    "a magic line": (f"# %%sim_magic\n{CLAW}", {}, ("robolab", "Robot of p.py", MAT)),
+    "a magic line with a robot": (f"# %%sim_magic -r Explorer\n{CLAW}", {}, ("robolab", "Explorer", MAT)),
+    "a magic line with the profile": (f"# %%sim_magic --profile ev3\n{USUAL}", {}, ("ev3", "Default_Robot", MAT)),
+    "a preloaded program": (f"# %%sim_magic_preloaded\n{CLAW}", {}, ("robolab", "Default_Robot", MAT)),
+    "--preload": (CLAW, {"above": {"preload": "preloaded"}}, ("robolab", "Default_Robot", MAT)),
+    "a world": (CLAW, {"above": {}, "in_world": True}, ("robolab", "Robot of p.py", MAT)),
+    "a world with a robot": (CLAW, {"above": {"robot": "Explorer"}, "in_world": True}, ("robolab", "Explorer", MAT)),
+    "a task": (CLAW, {"above": {"seed": 1}, "in_world": True, "of_task": True}, ("robolab", "Default_Robot", MAT)),
+    "the user's profile": (CLAW, {"below": {"profile": "robolab"}}, ("robolab", "Robot of p.py", MAT)),
+    "the user's robot": (CLAW, {"below": {"robot": "Explorer"}}, ("ev3", "Explorer", MIDDLE)),
+    "the user's mat": (CLAW, {"below": {"background": "Loop"}}, ("ev3", "Robot of p.py", MAT)),
+    "the course's percents": (
+        SENSOR.replace("intensity)", "intensity_pc)"), {}, ("robolab", "Default_Robot", MAT)
+    ),
+    "a percentage of its own": (
+        f"{SENSOR}class C:\n    def reflected_light_intensity_pc(self): pass\nC().reflected_light_intensity_pc()\n", {},
+        ("ev3", "Default_Robot", MIDDLE),
+    ),
+    "the course's clock": (f"{SENSOR}from ev3dev2_glue import get_clock\n", {}, ("robolab", "Default_Robot", MAT)),
+    "names of the prelude": (f"{USUAL}say('hello')\n", {}, ("robolab", "Default_Robot", MAT)),
+    "such names of its own": (f"{USUAL}def say(text): pass\nsay(1)\n", {}, ("ev3", "Default_Robot", MIDDLE)),
+    "imports of everything": (
+        "from ev3dev2.motor import *\nMoveTank(OUTPUT_B, OUTPUT_C).on(SpeedPercent(5), 5)\n", {},
+        ("ev3", "Default_Robot", MIDDLE),
+    ),
+    "no library": ("print(1)\n", {}, ("robolab", "Default_Robot", MAT)),
+    "the older library": ("from ev3dev.ev3 import *\nm = LargeMotor('outB')\n", {}, ("ev3", "Default_Robot", MIDDLE)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_what_is_decided(case: str) -> None:
+    text, given, (profile, robot, place) = CASES[case]
+    above = [given["above"]] if "above" in given else []
+    rest = {key: value for key, value in given.items() if key != "above"}
+    found = program_settings(parse_program(text, "p.py"), *above, **rest)
+    spec = build_run_spec(found.settings)
+    assert (spec.profile.name, spec.robot.name) == (profile, robot)
+    assert (found.settings.x_mm, found.settings.y_mm) == place
+    assert bool(found.decided.note) == bool({"robot", "profile"} & found.decided.layer.keys())
+
+
+def test_a_course_program_has_the_settings_that_it_had() -> None:
+    text = "tank_drive.on(5, 5)\nprint('A: 1')\n"
+    assert program_settings(parse_program(text, "p.py")).settings == Settings()
+
+
+def test_a_module_of_the_program_may_import_the_library_and_define_what_a_prelude_has(tmp_path: Path) -> None:
+    (tmp_path / "hardware.py").write_text(f"{BRICK}gyro = MediumMotor(OUTPUT_A)\n")
+    source = parse_program("from hardware import *\nprint(gyro.position)\n", "p.py", str(tmp_path / "p.py"))
+    assert source.program.prelude == "none"
+    found = program_settings(source)
+    assert found.settings.profile == "ev3"
+    assert "robot" in found.decided.layer
+
+
+def test_a_course_program_may_have_a_module_that_imports_the_library(tmp_path: Path) -> None:
+    (tmp_path / "hardware.py").write_text(f"{BRICK}arm = MediumMotor(OUTPUT_A)\n")
+    source = parse_program("from hardware import *\ntank_drive.on(5, 5)\n", "p.py", str(tmp_path / "p.py"))
+    assert source.program.prelude == "preloaded"
+    assert program_settings(source).settings == Settings()
+
+
+def test_the_line_names_what_was_built_and_how_to_change_it() -> None:
+    source = parse_program(CLAW, "my claw.py", "a folder/my claw.py")
+    assert program_settings(source).decided.note == (
+        "my claw.py runs on a robot built from it: medium motor on outA; by the rules of a brick (profile ev3). "
+        "-r or --profile to change it; `tuisim robots --from 'a folder/my claw.py'` shows the robot"
+    )
+    assert program_settings(source, {"robot": "Explorer"}).decided.note == (
+        "my claw.py runs by the rules of a brick (profile ev3). --profile to change it"
+    )
+    assert program_settings(replace(source, has_magic=True)).decided.hint.startswith("-r to change it")
