@@ -221,3 +221,16 @@ def test_what_a_robots_file_has_that_means_nothing_here_is_said_once(cell: Cell,
     noted = cell(f"%sim_magic -W -r {tmp_path / 'mine.json'}")
     assert noted.err.count("ignored unknown keys: owner") == 1
     assert "ignored unknown keys" not in cell("%sim_magic -W -x 100").err
+
+
+def test_a_cell_gets_the_robot_that_its_program_talks_about_under_the_course_s_rules(cell: Cell) -> None:
+    text = (
+        "from ev3dev2.motor import MediumMotor\nfrom ev3dev2.sensor.lego import ColorSensor\n"
+        "claw = MediumMotor('outA')\nprint(claw.address, ColorSensor('in2').reflected_light_intensity)\n"
+    )
+    shown = cell(f"%%sim_magic -RHW\n{text}")
+    assert shown.out == "ev3-ports:outA 255\n"
+    assert "cell runs on a robot built from it: medium motor on outA. -r to change it\n" in shown.err
+    assert "is not connected" in cell(f"%%sim_magic -RHW -r Small_Robot\n{text}").err
+    # A chosen robot lasts until another cell changes it.
+    assert "is not connected" in cell(f"%%sim_magic -RHW\n{text}").err
