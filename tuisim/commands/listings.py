@@ -123,7 +123,7 @@ def _size(one: Taken) -> str:
     AS_JSON,
 )  # fmt: skip
 def robots(robot: str | None, program: str | None, out: str | None, as_json: bool) -> int:
-    """List the robots, or print one in TOML as a starting point for your own.
+    """List the robots; print one, or the one that a program talks about, in TOML as a starting point for your own.
 
     Raises:
         ConfigError: there is no such robot or program, or the file cannot be written.
