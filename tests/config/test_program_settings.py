@@ -108,3 +108,27 @@ def test_the_line_names_what_was_built_and_how_to_change_it() -> None:
         "my claw.py runs by the rules of a brick (profile ev3). --profile to change it"
     )
     assert program_settings(replace(source, has_magic=True)).decided.hint.startswith("-r to change it")
+
+
+ON_USUAL_PORTS = """\
+from ev3dev2.motor import OUTPUT_B, OUTPUT_C, MoveDifferential
+from ev3dev2.wheel import EV3Tire
+MoveDifferential(OUTPUT_C, OUTPUT_B, EV3Tire, 120)
+"""
+
+
+@pytest.mark.parametrize(
+    ("magic", "above", "is_built"),
+    [
+        pytest.param("", {}, True, id="nothing is chosen"),
+        pytest.param("# %%sim_magic\n", {}, False, id="magic line"),
+        pytest.param("", {"background": "Loop"}, False, id="mat"),
+        pytest.param("", {"profile": "robolab"}, False, id="profile"),
+        pytest.param("", {"x_mm": 300.0}, True, id="start"),
+    ],
+)
+def test_sizes_and_sides_count_where_the_program_brings_its_rules(
+    magic: str, above: Mapping[str, Any], is_built: bool
+) -> None:
+    source = parse_program(magic + ON_USUAL_PORTS, "program.py")
+    assert ("robot" in program_settings(source, above).decided.layer) is is_built

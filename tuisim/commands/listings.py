@@ -151,10 +151,10 @@ def _robot_from(program: str, out: str | None, *, as_json: bool) -> int:
     """Print or write the robot that a program talks about."""
     from tuisim.config.program_file import find_program, read_program
     from tuisim.config.program_robot.report import USUAL, robot_file_of, save_robot_of
-    from tuisim.config.program_settings import facts_of
+    from tuisim.config.program_settings import robot_for
 
     source = read_program(find_program(program))
-    built = facts_of(source.program).robot
+    built = robot_for(source)
     if as_json:
         echo_json([asdict(built.choice.spec if built else USUAL)])
     elif out is not None:

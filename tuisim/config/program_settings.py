@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from tuisim.config.options import RobotChoice, Settings, settings_of
@@ -131,17 +131,39 @@ def decide(source: ProgramSource, settings: Settings, free: Collection[str]) -> 
         free: The fields that are not.
     """
     prelude = settings.preload or source.program.prelude
-    facts = facts_of(source.program) if prelude == _NO_PRELUDE else SourceFacts()
+    facts = _facts_in_run(source, free) if prelude == _NO_PRELUDE else SourceFacts()
     layer: dict[str, Any] = {}
     if facts.robot and "robot" in free:
         layer["robot"] = facts.robot.choice
-    if facts.for_brick and not facts.of_course and not source.has_magic and "profile" in free:
+    if _by_brick_rules(source, facts, free):
         layer["profile"] = BRICK_PROFILE
     profile = layer.get("profile", settings.profile)
     if profile in (BRICK_PROFILE, PROFILES[BRICK_PROFILE]) and not source.has_magic and {"x_mm", "y_mm"} <= {*free}:
         layer |= {"x_mm": FIELD_WIDTH_MM / 2, "y_mm": FIELD_HEIGHT_MM / 2}
     needed = facts.robot.choice if facts.robot else None
     return Decided(layer, *_in_words(source.program, facts, layer), needed, frozenset(free))
+
+
+def robot_for(source: ProgramSource) -> BuiltRobot | None:
+    """Return the robot on which a program runs without further options; None for the default one."""
+    free = free_fields((source.options,), (), in_world=False, of_task=False)
+    return _facts_in_run(source, free).robot
+
+
+def _facts_in_run(source: ProgramSource, free: Collection[str]) -> SourceFacts:
+    """Return what the source of a program says that counts in its run.
+
+    What it says of sizes, sides and mountings counts only where it also brings its rules. A program of the course, or
+    one that is told where or how to run, keeps the default robot if that has every part on its port.
+    """
+    facts = facts_of(source.program)
+    if facts.robot and facts.robot.keeps_ports and not _by_brick_rules(source, facts, free):
+        return replace(facts, robot=None)
+    return facts
+
+
+def _by_brick_rules(source: ProgramSource, facts: SourceFacts, free: Collection[str]) -> bool:
+    return facts.for_brick and not facts.of_course and not source.has_magic and "profile" in free
 
 
 def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) -> tuple[str, str]:

@@ -61,6 +61,8 @@ class BuiltRobot:
     parts: tuple[Part, ...]
     doubts: tuple[str, ...] = ()
     """Where the program can be read in another way: what was taken, in words."""
+    keeps_ports: bool = False
+    """Whether the usual robot has the same parts on the same ports: only sizes, sides or mountings differ."""
 
 
 def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot | None:
@@ -81,7 +83,13 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
         # What a program says may be impossible, such as a wheel of 0 mm: the run then says what is missing.
         return None
     own_places = {sensor.name for sensor in spec.color_sensors} > {sensor.name for sensor in usual.color_sensors}
-    return BuiltRobot(RobotChoice(spec, own_places=own_places), tuple(builder.parts), tuple(builder.doubts))
+    keeps = _on_ports(spec) == _on_ports(usual)
+    return BuiltRobot(RobotChoice(spec, own_places=own_places), tuple(builder.parts), tuple(builder.doubts), keeps)
+
+
+def _on_ports(robot: RobotSpec) -> dict[str, object]:
+    """Return the kind of the part on each port."""
+    return {motor.port: motor.kind for motor in robot.motors} | {one.port: type(one) for one in robot.sensors}
 
 
 @dataclass(slots=True)

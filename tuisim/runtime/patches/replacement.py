@@ -30,7 +30,8 @@ class _Replacement:
 
     @property
     def __class__(self) -> Any:
-        return type(self._real)
+        # What it replaces may be a replacement itself.
+        return self._real.__class__
 
     @__class__.setter
     def __class__(self, _other: object) -> None:

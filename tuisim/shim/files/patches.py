@@ -25,6 +25,8 @@ from tuisim.shim.files.tree import MAYBE_OURS, DeviceTree
 Replace = Callable[[Any, str, Callable[..., Any]], None]
 """Replaces a function of a module, by its name."""
 
+_MISSING: Any = object()
+
 _FLAGS = {"r": os.O_RDONLY, "w": os.O_WRONLY | os.O_CREAT, "a": os.O_WRONLY | os.O_CREAT | os.O_APPEND}
 _FLAGS["x"] = _FLAGS["w"] | os.O_EXCL
 """How each mode of `open` opens a file; with + also for the other direction."""
@@ -139,9 +141,13 @@ class FilePatches:
         files, tree, by_fd = self._files, self._tree, self._files.by_fd
 
         def open(  # noqa: A001 - the name that the program sees
-            file: Any, mode: str = "r", buffering: int = -1, encoding: Any = None, errors: Any = None,
+            file: Any = _MISSING, mode: str = "r", buffering: int = -1, encoding: Any = None, errors: Any = None,
             newline: Any = None, closefd: bool = True, opener: Any = None,
         ) -> Any:  # fmt: skip
+            if file is _MISSING:
+                nothing: tuple[Any, ...] = ()
+                # Raises its own error.
+                return real_open(*nothing)
             if (
                 (file.__class__ is str and not file.startswith(MAYBE_OURS))
                 or mode.__class__ is not str
@@ -150,7 +156,9 @@ class FilePatches:
                 return real_open(file, mode, buffering, encoding, errors, newline, closefd, opener)
             return file_object(raw, mode, buffering, encoding, errors, newline)
 
-        def os_open(path: Any, flags: int, *given: Any, **named: Any) -> int:
+        def os_open(path: Any = _MISSING, flags: Any = _MISSING, *given: Any, **named: Any) -> int:
+            if flags is _MISSING:
+                return real_os_open(*(() if path is _MISSING else (path,)), **named)
             if path.__class__ is str and not path.startswith(MAYBE_OURS):
                 return real_os_open(path, flags, *given, **named)
             entry = _or_refuse(tree, path, flags)
