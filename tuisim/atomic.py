@@ -36,21 +36,24 @@ def make_private_folder(folder: Path) -> None:
 
 
 @contextmanager
-def replacing(path: Path, *, durable: bool = True, owner_only: bool = False) -> Iterator[BinaryIO]:
+def replacing(
+    path: Path, *, durable: bool = True, owner_only: bool = False, follow_links: bool = True
+) -> Iterator[BinaryIO]:
     """Open a new file that replaces `path` when the block ends without an exception.
 
     If the block raises, or a write fails, `path` is unchanged and no temporary file is left.
-    If `path` is a symbolic link, its target is replaced.
 
     Args:
         path: The file; its folder must exist.
         durable: Whether to `fsync`, so that the file survives a power cut; False is faster.
         owner_only: Use owner-only permissions regardless of the umask, as for everything in `TUISIM_HOME`.
+        follow_links: Replace the target of a symbolic link, as users expect; False replaces the link itself, which a
+            program may have put in its run folder.
 
     Raises:
         OSError: the folder or the file cannot be written.
     """
-    target = Path(os.path.realpath(path))
+    target = Path(os.path.realpath(path)) if follow_links else path
     # Not `tempfile`, which ignores the umask. Not `secrets`, which imports `random`: a child process imports this
     # module before it seeds `random`.
     beside = target.with_name(f".{target.name}.{os.urandom(4).hex()}{PART_SUFFIX}")

@@ -91,6 +91,8 @@ class End(StrEnum):
     DISK_FULL = "disk_full"
     KILLED = "killed"
     CRASHED = "crashed"
+    FALSIFIED = "falsified"
+    """The program has written to its recording, or to the pipes, in place of the simulation."""
 
 
 class Unended(StrEnum):

@@ -121,9 +121,9 @@ files = [os.readlink(link) for link in links if os.path.exists(link)]
 own = [file for file in files if 'tmp_path' in file and file.endswith('.bin')]
 """
 HARM = {
-    "writes into its recording": ("open(own[0], 'r+b').write(bytes(range(1, 60)))", "finished", 1),
-    "writes and crashes": ("open(own[0], 'r+b').write(bytes(range(1, 60)))\nos.kill(os.getpid(), 9)", "crashed", 1),
-    "deletes its recording": ("shutil.rmtree(os.path.dirname(own[0]))", "crashed", 0),
+    "writes into its recording": ("open(own[0], 'r+b').write(bytes(range(1, 60)))", "falsified", 1),
+    "writes and crashes": ("open(own[0], 'r+b').write(bytes(range(1, 60)))\nos.kill(os.getpid(), 9)", "falsified", 1),
+    "deletes its recording": ("shutil.rmtree(os.path.dirname(own[0]))", "falsified", 0),
 }
 
 

@@ -54,5 +54,5 @@ class Recorder:
         self.telemetry.close()
         self.output.close()
         tick = self.simulation.tick
-        self.store.finish(self.run.id, Ended(end, tick, self.simulation.due_ns(tick), summary=summary))
+        self.store.finish(self.run, Ended(end, tick, self.simulation.due_ns(tick), summary=summary))
         return self.store.load_run(self.run.id)

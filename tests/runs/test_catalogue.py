@@ -38,7 +38,7 @@ spec = RunSpec(RobotSpec(), WorldSpec(), ROBOLAB)
 for _ in range(12):
     run = store.new_run(Program("p.py", ""), spec)
     store.runs()
-    store.finish(run.id, Ended(End.FINISHED, 1, 1))
+    store.finish(run, Ended(End.FINISHED, 1, 1))
     print(run.number, flush=True)
 """
 
@@ -130,7 +130,7 @@ def test_harm_to_the_catalogue_does_not_stop_a_run(
 ) -> None:
     run = store.new_run(PROGRAM, spec)
     harm(store.home / CATALOGUE_FILE)
-    store.finish(run.id, FINISHED)
+    store.finish(run, FINISHED)
     assert [(info.number, info.end) for info in store.runs()] == [(1, "finished")]
 
 

@@ -28,7 +28,7 @@ from tuisim.runs.catalogue import CATALOGUE_FILE, RunInfo
 from tuisim.runs.records import OUTPUT_FILE
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, noise_at, write_run_file
 from tuisim.runs.side_files import ACTIONS_FILE, LOCK_FILE, hold, is_held
-from tuisim.runs.store import RunStore, load_run
+from tuisim.runs.store import NewRun, RunStore, load_run
 
 FINISHED = Ended(End.FINISHED, 100, 1_000_000_000)
 
@@ -80,7 +80,7 @@ def test_run_is_found(logged: StoredRun, store: RunStore, how: str) -> None:
 
 def test_number_goes_before_the_start_of_an_id(store: RunStore, spec: RunSpec) -> None:
     for _ in range(2):
-        store.finish(store.new_run(PROGRAM, spec).id, FINISHED)
+        store.finish(store.new_run(PROGRAM, spec), FINISHED)
     assert store.find("2").number == 2
 
 
@@ -279,8 +279,9 @@ def test_damaged_run_file_is_named_and_does_not_hide_the_others(
 
 def test_damaged_action_is_named_by_its_row(logged: StoredRun) -> None:
     (logged.folder / ACTIONS_FILE).write_text('{"tick": 1, "kind": "set_pen", "down": true}\n5\n')
-    with pytest.raises(LogError, match=r"actions\.jsonl, row 2: not a user action"):
-        load_run(logged.folder)
+    run = load_run(logged.folder)
+    assert run.actions == ()
+    assert "actions.jsonl, row 2: not a user action" in run.notes[-1]
 
 
 # Changing the store
@@ -289,7 +290,7 @@ def test_damaged_action_is_named_by_its_row(logged: StoredRun) -> None:
 def test_removed_run_is_gone_and_its_number_is_not_used_again(store: RunStore, spec: RunSpec) -> None:
     runs = [store.new_run(PROGRAM, spec) for _ in range(3)]
     for run in runs:
-        store.finish(run.id, FINISHED)
+        store.finish(run, FINISHED)
     store.remove(runs[2].id)
     assert [info.number for info in store.runs()] == [1, 2]
     assert {path.name for path in (store.home / "runs").iterdir()} == {run.id for run in runs[:2]}
@@ -301,7 +302,7 @@ def test_what_a_killed_removal_has_left_goes_with_the_next_one(
 ) -> None:
     runs = [store.new_run(PROGRAM, spec) for _ in range(3)]
     for run in runs:
-        store.finish(run.id, FINISHED)
+        store.finish(run, FINISHED)
     with monkeypatch.context() as killed:
         killed.setattr("shutil.rmtree", lambda *_, **__: None)
         store.remove(runs[0].id)
@@ -333,7 +334,7 @@ def test_a_run_cannot_be_removed_while_it_is_copied_into_the_store(
 @pytest.mark.parametrize("change", ["finish", "tag", "remove"])
 def test_run_that_is_not_there_cannot_be_changed(store: RunStore, change: str) -> None:
     changes: dict[str, Callable[[], None]] = {
-        "finish": lambda: store.finish("x", FINISHED),
+        "finish": lambda: store.finish(NewRun("x", 1, store.folder("x")), FINISHED),
         "tag": lambda: store.tag("x", ["y"]),
         "remove": lambda: store.remove("x"),
     }
@@ -344,7 +345,7 @@ def test_run_that_is_not_there_cannot_be_changed(store: RunStore, change: str) -
 def test_tags_stay_when_the_run_ends_and_the_catalogue_is_lost(store: RunStore, spec: RunSpec) -> None:
     run = store.new_run(PROGRAM, spec)
     store.tag(run.id, ["good", "fast"])
-    store.finish(run.id, FINISHED)
+    store.finish(run, FINISHED)
     (store.home / CATALOGUE_FILE).unlink()
     assert store.runs()[0].tags == "good fast"
     assert store.load_run(run.id).tags == ("good", "fast")

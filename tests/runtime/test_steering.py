@@ -17,7 +17,8 @@ from tuisim.core.tick_record import TICK_RECORD
 from tuisim.errors import HostError
 from tuisim.protocol import Answer, Message, Paused, Resume, SetNoise, SetPose, SetSpeed, StepTicks
 from tuisim.runs import handle
-from tuisim.runs.process import decode_event, waited_s
+from tuisim.runs.events import decode_event
+from tuisim.runs.process import waited_s
 
 ROOT = Path(__file__).resolve().parents[2]
 

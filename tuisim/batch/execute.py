@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -18,15 +17,13 @@ from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.protocol import End, Ended
 from tuisim.runs.handle import RunHandle
 from tuisim.runs.records import OutputRow, Stream
+from tuisim.runs.regular_file import of_the_machine
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import samples_of
 from tuisim.runs.store import RunStore
 from tuisim.runs.temporary import TemporaryRun
 
 MATS_KEPT = 20
-
-_OF_THE_MACHINE = frozenset({errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.ENOSPC})
-"""Errors of files that are not the program's doing."""
 
 
 def execute(task: Task, folder: Path) -> Result:
@@ -59,10 +56,10 @@ def execute(task: Task, folder: Path) -> Result:
             result = _result(task, run, ended, judgements)
         except LogError as error:
             cause = error.__cause__
-            if isinstance(cause, OSError) and cause.errno in _OF_THE_MACHINE:
+            if isinstance(cause, OSError) and of_the_machine(cause):
                 return _not_started(task, error)
-            # A program can damage its own recording; that must not end the batch.
-            return nothing_known_of(task, End.CRASHED, "the program has damaged the recording of its run")
+            why = f"the program has falsified its recording: {error.message}"
+            return nothing_known_of(task, End.FALSIFIED, why)
         finally:
             handle.close()
         return replace(result, run_id=_keep(temporary, ended)) if _is_kept(task, ended, judgements) else result

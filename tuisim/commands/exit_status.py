@@ -24,7 +24,7 @@ def exit_code_of(end: End, exit_code: int) -> int:
             return EXIT_RAISED if exit_code else 0
         case End.TIME_LIMIT | End.STALLED | End.OUTPUT_LIMIT | End.DISK_FULL:
             return EXIT_LIMIT
-        case End.RAISED | End.STOPPED | End.DEADLOCK | End.KILLED | End.CRASHED:
+        case End.RAISED | End.STOPPED | End.DEADLOCK | End.KILLED | End.CRASHED | End.FALSIFIED:
             return EXIT_RAISED
         case _:
             assert_never(end)

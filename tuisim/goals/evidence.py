@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 from tuisim.config.mat_cache import open_field
 from tuisim.core.field import Field
 from tuisim.core.profile import NS_PER_S
-from tuisim.protocol import Ended, Unended
+from tuisim.protocol import End, Ended, Unended
 from tuisim.runs.frames import tick_times_s
 from tuisim.runs.handle import RunHandle
 from tuisim.runs.records import OutputRow, Stream
@@ -85,6 +85,8 @@ class Evidence:
             self.end = run.end
             self.ended = run.end is not None or run.state is not Unended.RUNNING
             self.answers = tuple(run.options.get("answers", ()))
+        self.falsified = self.end.summary if self.end is not None and self.end.end is End.FALSIFIED else ""
+        """What the program has falsified; empty if its recording can be trusted."""
         self.records: Array = run.telemetry.array()
 
     @cached_property

@@ -110,6 +110,9 @@ class _Judge:
         return replace(outcome, reason=if_missed) if if_missed and outcome.state is GoalState.MISSED else outcome
 
     def _judged(self, goal: Goal) -> _Outcome:
+        if self._evidence.falsified:
+            # What is recorded may not have happened.
+            return _Outcome(GoalState.MISSED, reason=f"It does not count: {self._evidence.falsified}.")
         start = START
         match goal.after:
             case str(name):

@@ -10,7 +10,9 @@ import msgspec
 
 from tuisim.protocol import End
 
-_GIVEN_UP = frozenset({End.STALLED, End.OUTPUT_LIMIT, End.CRASHED, End.KILLED, End.STOPPED, End.DISK_FULL})
+_GIVEN_UP = frozenset(
+    {End.STALLED, End.OUTPUT_LIMIT, End.CRASHED, End.KILLED, End.FALSIFIED, End.STOPPED, End.DISK_FULL}
+)
 """Ends that cost as much with every further seed."""
 
 

@@ -24,6 +24,9 @@ ROW_BYTES = -(-DISPLAY_WIDTH // 8)
 LED_NAMES = ("left red", "left green", "right red", "right green")
 
 BLANK = bytes(ROW_BYTES * DISPLAY_HEIGHT)
+_MOST_CELLS = 1000
+"""More columns and rows than the text screen has with any font."""
+_MOST_NUMBER = 1e12
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +88,45 @@ def motors_row(turns: Iterable[tuple[float, float]]) -> str:
     return json.dumps(list(turns))
 
 
+DRAWN_STREAMS = frozenset({Stream.LED, Stream.DISPLAY, Stream.CONSOLE, Stream.MOTORS})
+"""Streams whose rows are data of the brick's own, and not texts."""
+
+
+def is_sound(stream: Stream, text: bytes) -> bool:
+    """Return whether a row of one of `DRAWN_STREAMS` is what the functions of this module write."""
+    try:
+        face = face_after(BrickState(), [OutputRow(text.decode(), 0, 0, 0, stream)])
+    except (ValueError, TypeError, AttributeError, RecursionError, zlib.error):
+        return False
+    match stream:
+        case Stream.LED:
+            return all(type(value) is int and 0 <= value <= 255 for value in face.leds.values())
+        case Stream.MOTORS:
+            return all(_is_number(value) for turn in face.turns for value in turn)
+        case Stream.CONSOLE:
+            return face.text is not None and _is_screen(face.text)
+        case _:
+            return len(face.picture) == len(BLANK)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _MOST_NUMBER
+
+
+def _is_screen(screen: TextScreen) -> bool:
+    sizes = (screen.columns, screen.rows, *(number for span in screen.inverse for number in span))
+    return (
+        all(type(size) is int and 0 <= size <= _MOST_CELLS for size in sizes)
+        and len(screen.lines) <= _MOST_CELLS
+        and all(isinstance(line, str) and len(line) <= _MOST_CELLS for line in screen.lines)
+    )
+
+
+def _unpacked(text: str) -> bytes:
+    """Return the picture in a row; at most one byte more than a picture has, whatever the row claims."""
+    return zlib.decompressobj().decompress(base64.b85decode(text), len(BLANK) + 1)
+
+
 def face_after(face: BrickState, rows: Iterable[OutputRow]) -> BrickState:
     """Return the state after more output; rows of other streams are ignored."""
     for row in rows:
@@ -92,7 +134,7 @@ def face_after(face: BrickState, rows: Iterable[OutputRow]) -> BrickState:
             case Stream.LED:
                 face = replace(face, leds=json.loads(row.text))
             case Stream.DISPLAY:
-                face = replace(face, picture=zlib.decompress(base64.b85decode(row.text)), shows_text=False)
+                face = replace(face, picture=_unpacked(row.text), shows_text=False)
             case Stream.CONSOLE:
                 columns, count, lines, inverse = json.loads(row.text)
                 spans = tuple((line, start, end) for line, start, end in inverse)

@@ -21,10 +21,9 @@ from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import due_ns
 from tuisim.core.spec import NoiseSpec, RunSpec
-from tuisim.errors import HostError, LogError
+from tuisim.errors import HostError, LogError, counted
 from tuisim.protocol import (
     COMMAND_SIGNAL,
-    PROTOCOL_VERSION,
     STACK_SIGNAL,
     Answer,
     End,
@@ -41,9 +40,10 @@ from tuisim.protocol import (
     UserAction,
     Wheels,
 )
+from tuisim.runs.events import DEBUGGED, EventStream, allowed_events
+from tuisim.runs.packed_files import PACKED_MAGIC, PACKED_SUFFIX
 from tuisim.runs.process import (
     await_stack,
-    decode_event,
     end_group,
     end_left_over,
     mark,
@@ -55,7 +55,7 @@ from tuisim.runs.process import (
     write_command,
 )
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
-from tuisim.runs.side_files import copy_modules
+from tuisim.runs.side_files import LOG_FILE, MOST_BYTES, STACK_FILE, copy_modules, read_actions, read_stop_tick
 from tuisim.runs.store import NewRun, RunStore
 from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
@@ -101,6 +101,11 @@ class RunOptions:
     hold_at: tuple[int, int] | None = None
     """Run at full speed to this instant and pause: tick and ordinal, as in `Paused`. (0, 1) is the first line."""
 
+    @property
+    def can_pause(self) -> bool:
+        """Whether the run can be paused without further commands."""
+        return bool(self.live or self.start_paused or self.breaks or self.hold_at)
+
     def to_plain(self) -> dict[str, Any]:
         """Return the options in the form that is stored with a run."""
         return {**asdict(self), "actions": [action.to_plain() for action in self.actions]}
@@ -123,7 +128,7 @@ class RunFolders(Protocol):
         live: bool = False,
     ) -> NewRun: ...
 
-    def finish(self, run_id: str, end: Ended, /) -> None: ...
+    def finish(self, run: NewRun, end: Ended, /) -> None: ...
 
     def forget(self, run_id: str, /) -> None: ...
 
@@ -165,7 +170,7 @@ class RunHandle:
     ) -> None:
         self.program, self.spec, self.field = program, spec, field
         self._options, self._store = options, store
-        run = store.new_run(program, spec, field.to_plain(), options.to_plain(), options.live)
+        self._run = run = store.new_run(program, spec, field.to_plain(), options.to_plain(), options.live)
         self.run_id, self.number, self.folder = run.id, run.number, run.folder
         if program.modules_from is not None:
             try:
@@ -182,11 +187,9 @@ class RunHandle:
         self.waiting_for_reply = False
         self.wheels = Wheels()
         """The registers of the wheel motors; known once the run has ended, unless it was killed."""
-        self.telemetry, self.output = TelemetryView(self.folder), OutputView(self.folder)
-        self._rest = b""
+        self.telemetry, self.output = TelemetryView(self.folder, is_live=True), OutputView(self.folder, is_live=True)
         self._unsent: list[Message] = []
         """Commands sent before the child listens: the signal that announces one would kill it."""
-        self._end_of_events = False
         self._waited_s = 0.0
         self._stop_at: float | None = None
         self._asked_at = 0.0
@@ -210,6 +213,12 @@ class RunHandle:
             what = error.strerror or str(error)
             raise HostError(f"the program's process cannot be started: {what}", str(run.folder)) from error
         self._mark = mark(self._process.pid)
+        self._events = EventStream(
+            self._event_fd,
+            allowed_events(can_pause=options.can_pause, asks_user=options.asks_user, replies=options.replies),
+        )
+        self._falsified = ""
+        """Why what the child has sent or recorded does not come from the simulation."""
 
     @property
     def answers(self) -> tuple[str, ...]:
@@ -225,21 +234,16 @@ class RunHandle:
     def pump(self) -> list[Message]:
         """Return the events that have arrived, without blocking; `Ended` comes once, as the last.
 
-        Must be called regularly while the run is active: it also kills a child that does not stop.
-
-        Raises:
-            HostError: the child sent invalid data; it has been killed.
+        Must be called regularly while the run is active: it also kills a child that does not stop, and one that sends
+        or records what the simulation does not: such a run ends as falsified.
         """
         if self.ended is not None:
             return []
         # Checked before reading: all output of a child that has exited is in the pipe then.
         exited = self._process.poll() is not None
-        events = self._read_events()
+        events = self._events.read()
         for event in events:
             match event:
-                case Started(protocol=number) if number != PROTOCOL_VERSION:
-                    self.kill()
-                    raise HostError(f"the program's process speaks protocol {number}, this is {PROTOCOL_VERSION}")
                 case Started():
                     self.started = True
                     unsent, self._unsent = self._unsent, []
@@ -257,6 +261,7 @@ class RunHandle:
                     self.wheels = event
                 case Ended():
                     self._announced, self._announced_at = event, time.monotonic()
+        self._look_for_falsified()
         self._enforce_stop()
         final = self._final_event(exited)
         kept = [event for event in events if not isinstance(event, Ended)]
@@ -265,31 +270,34 @@ class RunHandle:
         self._finish(final)
         return [*kept, final]
 
-    def _read_events(self) -> list[Message]:
-        chunks = []
-        while not self._end_of_events:
-            try:
-                chunk = os.read(self._event_fd, 65536)
-            except BlockingIOError:
-                break
-            self._end_of_events = not chunk
-            chunks.append(chunk)
-        *lines, self._rest = (self._rest + b"".join(chunks)).split(b"\n")
-        try:
-            return [decode_event(line) for line in lines]
-        except HostError:
-            self.kill()
-            raise
+    def _look_for_falsified(self) -> None:
+        """Kill a child that has sent or recorded what the simulation does not."""
+        # In a folder that was deleted there is nothing to look at: such a run is stopped.
+        if not self._falsified and self.folder.is_dir():
+            self._falsified = (
+                self._events.falsified or self.telemetry.damage or self.output.damage or self._flooded_log()
+            )
+            if self._falsified:
+                end_group(self._process.pid)
+
+    def _flooded_log(self) -> str:
+        with suppress(OSError):
+            if (self.folder / LOG_FILE).stat().st_size > MOST_BYTES:
+                return f"it has written more than {MOST_BYTES >> 20} MiB to {LOG_FILE}"
+        return ""
 
     def _final_event(self, exited: bool) -> Ended | None:
-        if self._announced is not None:
-            if not exited and time.monotonic() - self._announced_at > ENDED_CHILD_S:
-                end_group(self._process.pid)
-            return self._announced if exited else None
+        if self._announced is not None and not exited and time.monotonic() - self._announced_at > ENDED_CHILD_S:
+            end_group(self._process.pid)
         if not exited:
             return None
-        tick = max(0, self._ticks() - 1)
+        tick = max(0, self.telemetry.count - 1)
         time_ns = due_ns(tick, self.spec.profile.tick_hz)
+        falsified = self._falsified or (self._what_is_falsified() if self.folder.is_dir() else "")
+        if falsified:
+            return Ended(End.FALSIFIED, tick, time_ns, 1, f"the program has falsified its recording: {falsified}")
+        if self._announced is not None:
+            return self._announced
         line = stuck_line(self.folder, self.program.path or self.program.name)
         if self._stop_at is not None:
             where = f" in line {line}, where it was stuck" if line else ""
@@ -300,12 +308,30 @@ class RunHandle:
         status = self._process.wait()
         return Ended(End.CRASHED, tick, time_ns, 1, what_ended(status, self.folder, line), error_line=line)
 
-    def _ticks(self) -> int:
-        """Return the number of recorded ticks; 0 also if the program has damaged its recording."""
+    def _what_is_falsified(self) -> str:
+        """Return what the run has left that the simulation does not leave; empty if there is nothing."""
+        end = self._announced
+        # One that could not begin, or found no room, leaves what it could write.
+        is_whole = end is not None and end.end not in (End.CRASHED, End.DISK_FULL)
+        for view in (TelemetryView(self.folder, is_live=True), OutputView(self.folder, is_live=True)):
+            if view.damage or (is_whole and view.note):
+                return view.damage or view.note
+            if is_whole and view.is_missing:
+                return "a part of it was deleted"
+        ticks = self.telemetry.count
+        if is_whole and end is not None and end.tick != ticks - 1:
+            return f"it ends at tick {end.tick}, and {counted(ticks, 'tick is', 'ticks are')} recorded"
+        if any(path.exists() for path in self._packed_files()):
+            return "it was packed while the program ran"
         try:
-            return self.telemetry.count
-        except LogError:
-            return 0
+            read_actions(self.folder)
+            read_stop_tick(self.folder)
+        except LogError as error:
+            return error.message.replace(f"{self.folder}{os.sep}", "")
+        return ""
+
+    def _packed_files(self) -> list[Path]:
+        return [self.folder / (name + PACKED_SUFFIX) for name in PACKED_MAGIC]
 
     def _finish(self, final: Ended) -> None:
         self.ended = final
@@ -313,14 +339,17 @@ class RunHandle:
         for fd in (self._event_fd, self._command_fd, self._lifeline_fd):
             os.close(fd)
         end_left_over(self._process.pid, self._mark)
-        for name in ("child.log", "stack.txt"):
+        if final.end is End.FALSIFIED:
+            for path in self._packed_files():
+                path.unlink(missing_ok=True)
+        for name in (LOG_FILE, STACK_FILE):
             path = self.folder / name
             # The folder may be about to be deleted.
             with suppress(OSError):
                 if not path.stat().st_size:
                     path.unlink()
         try:
-            self._store.finish(self.run_id, final)
+            self._store.finish(self._run, final)
         except LogError as error:
             self.unstored = self._what_is_wrong(error)
             summary = f"{final.summary}; its end" if final.summary else "its end"
@@ -366,7 +395,7 @@ class RunHandle:
 
     def wait_for_event(self, timeout_s: float) -> None:
         """Block until the child sends an event, exits, or the timeout is over."""
-        if self._end_of_events:
+        if self._events.at_end:
             try:
                 self._process.wait(timeout_s)
             except subprocess.TimeoutExpired:
@@ -395,6 +424,9 @@ class RunHandle:
                 self.waiting_for_input = None
             case Reply():
                 self.waiting_for_reply = False
+            case _ if not self._options.can_pause:
+                # It may pause at this command, and tell what is asked for.
+                self._events.allow(DEBUGGED)
         # If it cannot be written completely, the child is gone or stuck: pump() handles that.
         if write_command(self._command_fd, command.encode()):
             self._signal(COMMAND_SIGNAL)
@@ -438,7 +470,7 @@ class RunHandle:
                 self._asked_at = time.monotonic()
                 self._signal(COMMAND_SIGNAL)
         elif self._options.stall_limit_s and not self.paused:
-            tick, now = self._ticks(), self._fair_time_s()
+            tick, now = self.telemetry.count, self._fair_time_s()
             if tick != self._progress[0] or self.waiting_for_reply or self.waiting_for_input is not None:
                 self._progress = (tick, now)
             elif now - self._progress[1] > STALL_FACTOR * self._options.stall_limit_s:

@@ -26,6 +26,7 @@ from tuisim.runs.records import (
     header,
     published_length,
 )
+from tuisim.runs.regular_file import open_regular
 
 PACKED_SUFFIX = ".packed"
 PACKED_MAGIC = {TELEMETRY_FILE: b"TUISIMTP", OUTPUT_FILE: b"TUISIMOP"}
@@ -58,9 +59,9 @@ class Packed:
             LogError: the file is damaged.
         """
         try:
-            with open(self.path, "rb") as handle:
+            with open_regular(self.path) as handle:
                 handle.seek(_HEADER.size + _CHECK.size)
-                data = handle.read()
+                data = handle.read(self.packed_bytes + 1)
             if len(data) != self.packed_bytes:
                 raise ValueError(f"{len(data)} bytes instead of {self.packed_bytes}")
             content = self._unfolded(data)
@@ -87,7 +88,7 @@ def find_packed(path: Path) -> Packed | None:
     """
     packed = path.with_name(path.name + PACKED_SUFFIX)
     try:
-        with open(packed, "rb") as handle:
+        with open_regular(packed) as handle:
             head = handle.read(_HEADER.size + _CHECK.size)
     except FileNotFoundError:
         return None
@@ -124,13 +125,14 @@ def compact(folder: Path, spec: RunSpec) -> None:
 
 def _compact_file(path: Path, spec: RunSpec) -> None:
     try:
-        data = path.read_bytes()
+        with open_regular(path) as handle:
+            data = handle.read()
     except FileNotFoundError:
         return
     packed = _packed(path, data, spec)
     if packed is None:
         return
-    with replacing(path.with_name(path.name + PACKED_SUFFIX), owner_only=True) as handle:
+    with replacing(path.with_name(path.name + PACKED_SUFFIX), owner_only=True, follow_links=False) as handle:
         handle.write(packed)
     # Another process may have packed it in the meantime.
     path.unlink(missing_ok=True)

@@ -16,13 +16,11 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, ClassVar
 
-import msgspec
-
 from tuisim.atomic import private
 from tuisim.core.profile import NS_PER_S
-from tuisim.errors import HostError
-from tuisim.protocol import EVENTS, Message
 from tuisim.runs.isolation import spawn_isolated
+from tuisim.runs.regular_file import read_regular
+from tuisim.runs.side_files import LOG_FILE, MOST_BYTES, STACK_FILE
 from tuisim.source import source_lines
 
 if TYPE_CHECKING:
@@ -45,6 +43,8 @@ FILE_LOCKS = 10
 STACK_WRITTEN_WITHIN_S, STACK_AWAITED_S, LOOK_AGAIN_S = 0.05, 0.1, 0.003
 """Time for a stuck child to write its stack, that with its wait for a processor, and the interval of checks."""
 
+_DIGITS = 10
+"""Fewer than these has the number of a line."""
 MOST_SHOWN = 500
 """Stacks contain at most this many characters of a file name."""
 
@@ -113,7 +113,7 @@ def start_child(
         event_fd, event_write = _pipe(ours, theirs)
         lifeline_read, lifeline_fd = _pipe(theirs, ours)
         inherited = (command_read, event_write, lifeline_read, lock_fd)
-        with open(folder / "child.log", "wb", opener=private) as log:
+        with open(folder / LOG_FILE, "wb", opener=private) as log:
             cwd = working_directory if os.path.isdir(working_directory) else None
             process: ChildProcess
             if isolated_with is None:
@@ -291,7 +291,7 @@ def write_command(fd: int, data: bytes) -> bool:
 def await_stack(folder: Path, pid: int) -> None:
     """Block for a short time until a stuck child has written its stack."""
     start_s, waited_before_s = time.monotonic(), waited_s(pid)
-    size, path = 0, folder / "stack.txt"
+    size, path = 0, folder / STACK_FILE
     while (passed_s := time.monotonic() - start_s) < STACK_AWAITED_S and passed_s - (
         waited_s(pid) - waited_before_s
     ) < STACK_WRITTEN_WITHIN_S:
@@ -304,14 +304,15 @@ def await_stack(folder: Path, pid: int) -> None:
 def stuck_line(folder: Path, program_file: str) -> int:
     """Return the program's line in the stack that a stuck child wrote; 0 if there is none."""
     try:
-        stack = (folder / "stack.txt").read_text("utf-8", "replace")
+        stack = read_regular(folder / STACK_FILE, MOST_BYTES).decode("utf-8", "replace")
     except OSError:
         return 0
     # In the format of that file: ASCII, truncated.
     shown = program_file.encode("ascii", "backslashreplace").decode()
     for line in source_lines(stack):
         if f'"{shown}"' in line or (len(program_file) > MOST_SHOWN and f'"{shown[:MOST_SHOWN]}' in line):
-            return int(line.partition(", line ")[2].partition(" ")[0] or 0)
+            number = line.partition(", line ")[2].partition(" ")[0]
+            return int(number) if number.isdecimal() and len(number) < _DIGITS else 0
     return 0
 
 
@@ -320,7 +321,9 @@ def what_ended(exit_status: int, folder: Path, line: int) -> str:
     if exit_status < 0:
         where = f" in line {line}" if line else ""
         return f"the program's process was ended by {_signal_name(-exit_status)}{where}"
-    log = (folder / "child.log").read_text("utf-8", "replace").strip()
+    log = ""
+    with suppress(OSError):
+        log = read_regular(folder / LOG_FILE, MOST_BYTES).decode("utf-8", "replace").strip()
     last = f": {source_lines(log)[-1]}" if log else ""
     return f"the program's process ended with exit status {exit_status}{last}"
 
@@ -331,20 +334,3 @@ def _signal_name(number: int) -> str:
     except ValueError:
         # Most real-time signals have no name of their own.
         return f"signal {number}"
-
-
-class _Envelope(msgspec.Struct):
-    kind: str
-
-
-def decode_event(line: bytes) -> Message:
-    """Return the event in one line from the child.
-
-    Raises:
-        HostError: the line is not an event of this protocol.
-    """
-    try:
-        kind = EVENTS[msgspec.json.decode(line, type=_Envelope).kind]
-        return msgspec.json.decode(line, type=kind)
-    except (msgspec.MsgspecError, UnicodeDecodeError, KeyError) as error:
-        raise HostError(f"the program's process sent an invalid message: {line[:60]!r}") from error

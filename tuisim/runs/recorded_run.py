@@ -5,6 +5,7 @@ from __future__ import annotations
 from array import array
 from bisect import bisect_right
 from collections.abc import Iterator
+from contextlib import suppress
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +15,7 @@ from tuisim.core.motion import stall_ticks
 from tuisim.core.pen_marks import MarkedField, PenMarks
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING, TICK_RECORD
+from tuisim.errors import LogError
 from tuisim.protocol import SetButtons, UserAction
 from tuisim.runs.handle import program_again
 from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow, Stream
@@ -62,15 +64,13 @@ class Recording:
         return self.telemetry.count - 1
 
     def actions(self) -> tuple[UserAction, ...]:
-        """Return the user's actions.
-
-        Raises:
-            LogError: their file is damaged.
-        """
+        """Return the user's actions, as far as their file is not damaged."""
         last = self.telemetry.last()
         # The record counts the actions modulo 65536, and may be slightly ahead of their file.
         if last is not None and 0 < (last.actions - len(self._actions)) & 0xFFFF < 0x8000:
-            self._actions = read_actions(self.folder)[0]
+            # What is damaged makes the end of the run, or is a note of a stored one.
+            with suppress(LogError):
+                self._actions = read_actions(self.folder)[0]
         return self._actions
 
     def noise_at(self, record: TickRecord) -> NoiseSpec:

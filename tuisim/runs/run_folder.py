@@ -17,7 +17,8 @@ from tuisim.core.profile import NS_PER_S, MotorLaw, due_ns, law_of_earlier
 from tuisim.core.spec import NoiseSpec, RunSpec, from_plain, to_plain
 from tuisim.errors import ConfigError, LogError, TuisimError, shortened
 from tuisim.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
-from tuisim.runs.side_files import is_held, read_actions
+from tuisim.runs.regular_file import read_regular
+from tuisim.runs.side_files import MOST_BYTES, is_held, read_actions
 from tuisim.runs.views import OutputView, TelemetryView, TickRecord
 from tuisim.source import Program
 
@@ -137,7 +138,7 @@ def write_run_file(folder: Path, data: Mapping[str, Any]) -> None:
         LogError: it cannot be written.
     """
     try:
-        with replacing(folder / RUN_FILE, owner_only=True) as handle:
+        with replacing(folder / RUN_FILE, owner_only=True, follow_links=False) as handle:
             handle.write(run_document(data))
     except OSError as error:
         raise LogError(f"cannot write: {error.strerror or error}", file=str(folder / RUN_FILE)) from error
@@ -151,7 +152,7 @@ def read_run_file(folder: Path) -> dict[str, Any]:
     """
     path = folder / RUN_FILE
     try:
-        data = json.loads(path.read_bytes())
+        data = json.loads(read_regular(path, MOST_BYTES))
     except FileNotFoundError as error:
         raise LogError(f"no run here: {RUN_FILE} is missing", file=str(folder)) from error
     except (OSError, ValueError, RecursionError) as error:
@@ -175,16 +176,23 @@ def _end_of(data: Mapping[str, Any]) -> Ended:
     return Ended(**{name: _typed(value, kinds.get(name, object), name) for name, value in known.items()})
 
 
-def read_run(folder: Path) -> StoredRun:
+def read_run(folder: Path, document: bytes | None = None) -> StoredRun:
     """Return the run in a folder.
+
+    Args:
+        folder: The run folder.
+        document: The contents of its `run.json`, if they are known; otherwise they are read.
 
     Raises:
         LogError: the folder holds no run, or a damaged one.
     """
-    data = read_run_file(folder)
+    data = read_run_file(folder) if document is None else json.loads(document)
     # The intact parts of a damaged run are readable: its program, its world, and the other recording.
-    telemetry, output = TelemetryView(folder, may_be_damaged=True), OutputView(folder, may_be_damaged=True)
-    actions, cut = read_actions(folder)
+    telemetry, output = TelemetryView(folder), OutputView(folder)
+    try:
+        actions, cut = read_actions(folder)
+    except LogError as error:
+        actions, cut = (), f"{error.message}: the user's actions are ignored"
     try:
         program: dict[str, Any] = {
             key: _typed(data["program"][key], str, key) for key in ("name", "path", "text", "prelude")

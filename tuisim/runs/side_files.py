@@ -8,7 +8,6 @@ from __future__ import annotations
 import fcntl
 import json
 import os
-import shutil
 import stat
 from binascii import crc32
 from collections.abc import Mapping
@@ -21,6 +20,7 @@ from tuisim.atomic import private
 from tuisim.core.spec import NoiseSpec
 from tuisim.errors import LogError, TuisimError
 from tuisim.protocol import SetNoise, UserAction
+from tuisim.runs.regular_file import read_regular
 
 LOCK_FILE = "lock"
 """Locked by the process that runs the program, as long as it lives.
@@ -48,6 +48,15 @@ MOST_READS = 100
 MOST_PATH = 200
 """Characters of a path that are shown."""
 
+LOG_FILE = "child.log"
+"""The stderr of the child, for errors below Python; missing if there were none."""
+
+STACK_FILE = "stack.txt"
+"""The stack of a child that was stuck."""
+
+MOST_BYTES = 64 << 20
+"""More than any of these files has."""
+
 
 def hold(folder: Path) -> int:
     """Lock a run folder and return the file descriptor of the lock; closing it and all its copies releases the lock.
@@ -57,7 +66,7 @@ def hold(folder: Path) -> int:
     """
     # The file is locked before it gets its name: `is_held` never finds it without an owner.
     name = folder / f".{LOCK_FILE}-{os.getpid()}"
-    descriptor = private(str(name), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
+    descriptor = private(str(name), os.O_RDONLY | os.O_CREAT | os.O_CLOEXEC)
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         os.rename(name, folder / LOCK_FILE)
@@ -94,7 +103,7 @@ def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
     """
     path = folder / ACTIONS_FILE
     try:
-        data = path.read_bytes()
+        data = read_regular(path, MOST_BYTES)
     except FileNotFoundError:
         return (), ""
     except OSError as error:
@@ -129,7 +138,7 @@ def read_stop_tick(folder: Path) -> int | None:
         LogError: the file is damaged.
     """
     try:
-        return int(json.loads((folder / STOP_FILE).read_text("utf-8"))["tick"])
+        return int(json.loads(read_regular(folder / STOP_FILE, MOST_BYTES))["tick"])
     except FileNotFoundError:
         return None
     except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
@@ -176,7 +185,7 @@ def read_modules(run_folder: Path) -> list[OwnModule]:
     """
     path = run_folder / MODULES_FILE
     try:
-        *lines, _ = path.read_bytes().split(b"\n")
+        *lines, _ = read_regular(path, MOST_BYTES).split(b"\n")
         rows = [json.loads(line) for line in lines]
         return [
             OwnModule(row["name"], row["file"], None if row["folders"] is None else tuple(row["folders"]), row["text"])
@@ -196,7 +205,7 @@ def copy_modules(source: Path, target: Path) -> None:
     """
     try:
         with suppress(FileNotFoundError):
-            shutil.copy2(source / MODULES_FILE, target / MODULES_FILE)
+            (target / MODULES_FILE).write_bytes(read_regular(source / MODULES_FILE, MOST_BYTES))
     except OSError as error:
         raise LogError(f"cannot be copied: {error.strerror or error}", file=str(source / MODULES_FILE)) from error
 

@@ -15,7 +15,7 @@ import sys
 import threading
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -76,6 +76,8 @@ class NewRun:
     folder: Path
     lock_fd: int = -1
     """The lock of the folder, see `side_files.hold`, which the process of the run inherits; -1 if it is over."""
+    data: Mapping[str, Any] = field(default_factory=dict)
+    """The contents of its `run.json`."""
 
 
 class RunStore:
@@ -124,13 +126,14 @@ class RunStore:
         info = RunInfo(0, run_id, created, program.name, spec.world.background, spec.profile.name, spec.seed)
         try:
             number = self._catalogue.add(info)
-            write_run_file(folder, new_run_data(run_id, number, created, program, spec, field, options, live))
+            data = new_run_data(run_id, number, created, program, spec, field, options, live)
+            write_run_file(folder, data)
         # Interrupted, too: nobody else closes the lock.
         except BaseException:
             os.close(lock_fd)
             shutil.rmtree(folder, ignore_errors=True)
             raise
-        return NewRun(run_id, number, folder, lock_fd)
+        return NewRun(run_id, number, folder, lock_fd, data)
 
     def adopt(self, folder: Path) -> NewRun:
         """Move the folder of a finished run from elsewhere into the store, and list it; return where it is now.
@@ -157,14 +160,20 @@ class RunStore:
         shutil.rmtree(folder, ignore_errors=True)
         return NewRun(run_id, number, place)
 
-    def finish(self, run_id: str, end: Ended) -> None:
+    def finish(self, run: NewRun, end: Ended) -> None:
         """Record how a run ended.
+
+        Its `run.json` is written as it was at the start, but for its tags: the program could have changed the file.
 
         Raises:
             LogError: the run does not exist, or cannot be written.
         """
-        self._edit(run_id, end=asdict(end))
-        output = OutputView(self.folder(run_id))
+        run_id = run.id
+        if not os.path.isdir(run.folder):
+            raise LogError(f"no run {run_id!r}", file=str(self._runs))
+        with locked(self.home):
+            write_run_file(run.folder, {**run.data, "tags": _tags_in(run.folder), "end": asdict(end)})
+        output = OutputView(run.folder)
         samples = counts_of(output).samples if output.length <= _COUNT_AT_ONCE_BYTES else None
         # If the catalogue cannot be written now, it will be updated later.
         with suppress(LogError):
@@ -479,6 +488,15 @@ def _delete(folder: Path) -> None:
     for left in folder.parent.glob(f".*{_REMOVED}"):
         with suppress(FileNotFoundError):
             shutil.rmtree(left, ignore_errors=left != removed)
+
+
+def _tags_in(folder: Path) -> list[str]:
+    """Return the tags of a run that is over, without what the program may have put in their place."""
+    try:
+        tags = read_run_file(folder).get("tags", ())
+    except LogError:
+        return []
+    return [tag for tag in tags if isinstance(tag, str) and tag.split() == [tag]] if isinstance(tags, list) else []
 
 
 def _has_end(folder: Path) -> bool:

@@ -18,7 +18,7 @@ from typing import Any
 from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError
 from tuisim.protocol import Ended
-from tuisim.runs.run_folder import RUN_FILE, StoredRun, new_run_data, read_run, read_run_file, write_run_file
+from tuisim.runs.run_folder import RUN_FILE, StoredRun, new_run_data, read_run, run_document, write_run_file
 from tuisim.runs.side_files import hold
 from tuisim.runs.store import NewRun
 from tuisim.source import Program
@@ -89,6 +89,8 @@ class TemporaryRun:
 
     def __init__(self, parent: Path) -> None:
         self.folder = _new_folder(parent)
+        self._data: dict[str, Any] = {}
+        """The contents of `run.json`: the program could change the file."""
 
     def __enter__(self) -> TemporaryRun:
         return self
@@ -113,23 +115,29 @@ class TemporaryRun:
         """
         created = datetime.now(UTC).isoformat(timespec="milliseconds")
         run_id = self.folder.name
-        data = new_run_data(run_id, 0, created, program, spec, field, options, live)
+        self._data = data = new_run_data(run_id, 0, created, program, spec, field, options, live)
         file = self.folder / RUN_FILE
         try:
             file.write_text(json.dumps(data), "utf-8")
-            return NewRun(run_id, 0, self.folder, hold(self.folder))
+            return NewRun(run_id, 0, self.folder, hold(self.folder), data)
         except OSError as error:
             raise LogError(f"cannot be written: {error.strerror or error}", file=str(file)) from error
 
-    def finish(self, _run_id: str, _end: Ended) -> None:
+    def finish(self, _run: NewRun, _end: Ended) -> None:
         """Do nothing: the handle of the run keeps its end."""
 
     def forget(self, _run_id: str) -> None:
         """Do nothing: the end of the `with` block deletes the folder."""
 
     def load_run(self, folder: Path) -> StoredRun:
-        """Return the run, without its end; see `RunStore.load_run`."""
-        return read_run(folder)
+        """Return the run, without its end; see `RunStore.load_run`.
+
+        Raises:
+            LogError: the program has deleted it, or it is damaged.
+        """
+        if not folder.is_dir():
+            raise LogError("its folder was deleted while it ran", file=str(folder))
+        return read_run(folder, run_document(self._data))
 
     def write_end(self, end: Ended) -> None:
         """Write the end of the run to its folder, which then is as that of a stored run.
@@ -137,4 +145,5 @@ class TemporaryRun:
         Raises:
             LogError: it cannot be written.
         """
-        write_run_file(self.folder, {**read_run_file(self.folder), "end": asdict(end)})
+        self._data["end"] = asdict(end)
+        write_run_file(self.folder, self._data)

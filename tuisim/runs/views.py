@@ -3,6 +3,9 @@
 A view never changes the file and never blocks. A missing file reads as empty; of a file
 that has grown the rest is read; a packed file is unpacked in memory, once, when its
 contents are needed. Data that has been read stays valid, whatever happens to the file.
+
+The program could write to these files as well. So a view reads only as far as they are what
+the simulation writes: ticks in order, finite numbers, whole rows. `damage` says what is not.
 """
 
 from __future__ import annotations
@@ -23,23 +26,32 @@ from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
 from tuisim.errors import LogError, counted
+from tuisim.runs.brick_state import DRAWN_STREAMS, is_sound
 from tuisim.runs.packed_files import Packed, find_packed
 from tuisim.runs.records import (
     HEADER_BYTES,
+    MAX_OUTPUT_BYTES,
     OUTPUT_FILE,
     OUTPUT_MAGIC,
+    OUTPUT_ROW,
     TELEMETRY_FILE,
     TELEMETRY_MAGIC,
     OutputRow,
+    Stream,
     output_rows,
     published_length,
     raw_rows,
 )
+from tuisim.runs.regular_file import of_the_machine, open_regular
 
 if TYPE_CHECKING:
     import numpy as np
 
 _LARGE_BYTES = 1 << 20
+_CHUNK_BYTES = 1 << 22
+"""So much is read and checked at a time: a file may claim, or seem to have, any length."""
+_MOST_NUMBER = 1e12
+"""Larger than any position, angle or speed that a run can reach."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,22 +101,23 @@ class _View(ABC):
 
     Args:
         folder: The run folder.
-        may_be_damaged: Whether an invalid file is treated as empty, as `note` reports.
+        is_live: Whether the run is running: then there is no packed form, and a file that was there stays.
 
     Raises:
-        LogError: by every method, if the file is invalid or of another version and `may_be_damaged` is false.
+        LogError: by every method, if this machine cannot read the file, or if its packed form is damaged.
     """
 
     _name: ClassVar[str]
     _magic: ClassVar[bytes]
     _record_bytes: ClassVar[int]
     """Size of a record; 1 if it varies."""
+    _most_bytes: ClassVar[int | None] = None
+    """The length that the program's process never exceeds; None if there is none."""
 
-    def __init__(self, folder: Path, may_be_damaged: bool = False) -> None:
+    def __init__(self, folder: Path, is_live: bool = False) -> None:
         self._path = folder / self._name
-        self._may_be_damaged = may_be_damaged
+        self._is_live = is_live
         self._damage = ""
-        """Why nothing of the file can be read; empty if it can."""
         self._copy: bytearray | mmap = bytearray()
         """Starts like the file, with spare capacity."""
         self._published = self._there = 0
@@ -113,8 +126,19 @@ class _View(ABC):
         """The packed form, while only its header has been read."""
 
     @property
+    def damage(self) -> str:
+        """Why the file, or the rest of it, is not a recording; empty as long as it is one."""
+        self._extent()
+        return self._damage
+
+    @property
+    def is_missing(self) -> bool:
+        """Whether there is neither the file nor its packed form."""
+        return not self._extent() and self._packed is None and not self._path.exists()
+
+    @property
     def note(self) -> str:
-        """A description of what is missing in a truncated file, or empty."""
+        """A description of what is missing in a truncated or damaged file, or empty."""
         there = self._extent()
         if self._damage or self._published == there:
             return self._damage
@@ -123,6 +147,16 @@ class _View(ABC):
     @abstractmethod
     def _lost(self, count: int) -> str:
         """Return in words that `count` records, or bytes, are lost."""
+
+    @abstractmethod
+    def _sound(self, data: memoryview, begin: int, end: int) -> int:
+        """Return up to where the recording, already read up to `end`, is what the simulation writes.
+
+        Args:
+            data: The copy.
+            begin: The first record, or byte, to check.
+            end: The one after the last.
+        """
 
     def _look(self) -> tuple[memoryview, int]:
         """Return the recording, and the length that exists."""
@@ -133,7 +167,7 @@ class _View(ABC):
 
     def _extent(self) -> int:
         """Return the length that exists, after a look at what has been published since."""
-        if self._packed is None and not self._unpacked:
+        if self._packed is None and not self._unpacked and not self._damage:
             self._read_on()
         return self._there
 
@@ -145,15 +179,28 @@ class _View(ABC):
 
     def _read_on(self) -> None:
         try:
-            with open(self._path, "rb", buffering=0) as handle:
+            with open_regular(self._path) as handle:
                 self._read_from(handle.fileno())
         except FileNotFoundError:
-            # Searched in this order, a recording that is being packed is always found.
-            self._packed = find_packed(self._path)
-            if self._packed is not None:
-                self._published = self._there = self._packed.length
+            self._read_packed()
         except OSError as error:
-            raise LogError(f"cannot be read: {error.strerror or error}", file=str(self._path)) from error
+            reason = error.strerror or str(error)
+            if of_the_machine(error):
+                raise LogError(f"cannot be read: {reason}", file=str(self._path)) from error
+            self._damage = f"{self._path.name} cannot be read: {reason}"
+
+    def _read_packed(self) -> None:
+        if self._is_live:
+            if self._there:
+                self._damage = f"{self._path.name} was deleted"
+            return
+        try:
+            # Searched after the file itself: a recording that is being packed is always found.
+            self._packed = find_packed(self._path)
+        except LogError as error:
+            self._damage = f"{error.message}: nothing of it can be read"
+        if self._packed is not None:
+            self._published = self._there = self._packed.length
 
     def _read_from(self, fd: int) -> None:
         head = _whole_header(fd)
@@ -161,19 +208,24 @@ class _View(ABC):
         if not head.strip(b"\0") or (self._there and len(head) < HEADER_BYTES):
             return
         try:
-            published = published_length(head, self._magic, str(self._path))
+            published = published_length(head, self._magic, self._path.name)
         except LogError as error:
-            if not self._may_be_damaged:
-                raise
             self._damage = f"{error.message}: nothing of it can be read"
             return
+        if self._most_bytes is not None and published > self._most_bytes:
+            self._damage = f"{self._path.name} is longer than a recording can be"
+            return
         room = max(0, os.fstat(fd).st_size - HEADER_BYTES) // self._record_bytes
+        self._published = max(published, self._published)
         # The last record may have been rewritten.
         kept = max(0, self._there - 1) if self._record_bytes > 1 else self._there
-        self._published = max(published, self._published)
         wanted = min(published, room)
-        if wanted <= kept:
-            return
+        step = _CHUNK_BYTES // self._record_bytes
+        while kept < wanted and not self._damage:
+            kept = self._read_chunk(fd, head, kept, min(wanted, kept + step))
+
+    def _read_chunk(self, fd: int, head: bytes, kept: int, wanted: int) -> int:
+        """Read and check the records between two positions; return the position up to which there are sound ones."""
         begin, end = (HEADER_BYTES + self._record_bytes * count for count in (kept, wanted))
         if end > len(self._copy):
             # A new buffer instead of a resized one: arrays may still refer to the old one.
@@ -181,8 +233,20 @@ class _View(ABC):
             larger[:HEADER_BYTES] = head
             larger[HEADER_BYTES:begin] = memoryview(self._copy)[HEADER_BYTES:begin]
             self._copy = larger
-        got = _read_into(fd, memoryview(self._copy)[begin:end], begin)
-        self._there = max(self._there, kept + got // self._record_bytes)
+        got = _read_into(fd, memoryview(self._copy)[begin:end], begin) // self._record_bytes
+        sound = self._sound(memoryview(self._copy).toreadonly(), kept, kept + got)
+        self._there = max(self._there, sound)
+        # A file that was truncated meanwhile has no more; what was read of it before stays.
+        return sound if got == wanted - kept else wanted
+
+
+def _all_finite(records: memoryview) -> bool:
+    """Return whether all numbers in tick records are finite, and not beyond what a run can reach."""
+    doubles, floats = records.cast("d"), records.cast("f")
+    columns = [doubles[at :: TICK_RECORD.size // 8] for at in range(1, 6)]
+    columns += [floats[at :: TICK_RECORD.size // 4] for at in range(12, 15)]
+    # NaN is not below anything, nor is a sum with it.
+    return all(sum(map(abs, column.tolist())) <= _MOST_NUMBER * len(column) for column in columns)
 
 
 def _zeros(size: int) -> bytearray | mmap:
@@ -218,6 +282,18 @@ class TelemetryView(_View):
 
     def _lost(self, count: int) -> str:
         return f"the last {count} of {self._published} records {'is' if count == 1 else 'are'} lost"
+
+    def _sound(self, data: memoryview, begin: int, end: int) -> int:
+        # Ticks are numbered from 0; all other fields are finite numbers. Whole columns, for their speed.
+        part = data[HEADER_BYTES + TICK_RECORD.size * begin : HEADER_BYTES + TICK_RECORD.size * end]
+        if part.cast("I")[:: TICK_RECORD.size // 4].tolist() == list(range(begin, end)) and _all_finite(part):
+            return end
+        for tick in range(begin, end):
+            record = TICK_RECORD.unpack_from(data, HEADER_BYTES + TICK_RECORD.size * tick)
+            if record[0] != tick or not all(abs(value) <= _MOST_NUMBER for value in record):
+                self._damage = f"record {tick} of {self._path.name} is not one that the simulation writes"
+                return tick
+        return end
 
     def last(self) -> TickRecord | None:
         """Return the newest record; None if there is none."""
@@ -259,7 +335,10 @@ class OutputView(_View):
     """The rows of a run: printed, spoken, answers to input(), brick state."""
 
     _name, _magic, _record_bytes = OUTPUT_FILE, OUTPUT_MAGIC, 1
+    _most_bytes = MAX_OUTPUT_BYTES
     _seen = 0
+    _checked = 0
+    """Up to here there are whole and sound rows."""
 
     @property
     def length(self) -> int:
@@ -268,6 +347,22 @@ class OutputView(_View):
 
     def _lost(self, count: int) -> str:
         return f"its last {counted(count, 'byte is', 'bytes are')} lost"
+
+    def _sound(self, data: memoryview, begin: int, end: int) -> int:
+        at = self._checked
+        while at + OUTPUT_ROW.size <= end:
+            size, _, _, _, stream = OUTPUT_ROW.unpack_from(data, HEADER_BYTES + at)
+            after = at + OUTPUT_ROW.size + size
+            if after > end and after <= self._published:
+                # The rest of the row has not been read yet, or is lost.
+                break
+            body = slice(HEADER_BYTES + after - size, HEADER_BYTES + after)
+            if after > end or (stream in DRAWN_STREAMS and not is_sound(Stream(stream), bytes(data[body]))):
+                self._damage = f"the row at byte {at} of {self._path.name} is not one that the brick writes"
+                return at
+            at = after
+        self._checked = at
+        return end
 
     def new_rows(self, limit: int | None = None) -> list[OutputRow]:
         """Return the rows since the last call, at most `limit`; the others follow with the next call."""

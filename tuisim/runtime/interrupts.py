@@ -15,6 +15,7 @@ from pathlib import Path
 
 from tuisim.atomic import private
 from tuisim.protocol import COMMAND_SIGNAL, STACK_SIGNAL, End
+from tuisim.runs.side_files import STACK_FILE
 from tuisim.runtime import wallclock
 from tuisim.runtime.control import ATTENTION
 from tuisim.runtime.session import Session
@@ -24,7 +25,6 @@ RAISE_AGAIN_AFTER_S, RAISE_AGAIN_EVERY_S = 0.2, 0.02
 LEFT_TO_OTHERS_S = 0.1
 """Real time that a thread has to take a command before the main thread, which waits for its turn, does."""
 STALL_LOOK_S = 1.0
-STACK_FILE = "stack.txt"
 
 # Saved: the program gets others.
 _enable, _register = faulthandler.enable, faulthandler.register

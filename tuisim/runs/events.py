@@ -1,0 +1,129 @@
+"""The events of a child, as far as it may send them: its program can write to the pipe as well."""
+
+from __future__ import annotations
+
+import os
+
+import msgspec
+
+from tuisim.errors import HostError
+from tuisim.protocol import (
+    EVENTS,
+    PROTOCOL_VERSION,
+    Ended,
+    InputWanted,
+    Inspected,
+    LineHistory,
+    Message,
+    Paused,
+    ReplyWanted,
+    Resumed,
+    Spoke,
+    Started,
+    Wheels,
+)
+
+MOST_EVENT_BYTES = 8 << 20
+"""More than any event has."""
+MOST_AT_ONCE_BYTES = 1 << 20
+"""As much as a pipe of Linux can hold; of a flood of events the rest follows with the next read."""
+_CHUNK_BYTES = 1 << 16
+_MOST_SHOWN = 60
+
+_Kinds = tuple[type[Message], ...]
+DEBUGGED: _Kinds = (Paused, Resumed, Inspected, LineHistory)
+"""Events of a run that can be paused."""
+
+
+class _Envelope(msgspec.Struct):
+    kind: str
+
+
+def decode_event(line: bytes) -> Message:
+    """Return the event in one line from the child.
+
+    Raises:
+        HostError: the line is not an event of this protocol.
+    """
+    try:
+        kind = EVENTS[msgspec.json.decode(line, type=_Envelope).kind]
+        return msgspec.json.decode(line, type=kind)
+    except (msgspec.MsgspecError, UnicodeDecodeError, KeyError, RecursionError) as error:
+        raise HostError(f"the program's process sent an invalid message: {line[:_MOST_SHOWN]!r}") from error
+
+
+class EventStream:
+    """Reads the events from a pipe, without blocking.
+
+    Args:
+        descriptor: The read end, non-blocking.
+        allowed: The classes of events that this run can send besides those of every run.
+    """
+
+    def __init__(self, descriptor: int, allowed: _Kinds) -> None:
+        self._descriptor = descriptor
+        self._allowed: _Kinds = (Started, Spoke, Wheels, Ended, *allowed)
+        self._rest = b""
+        self._last: Message | None = None
+        self.at_end = False
+        """Whether all writers have closed the pipe."""
+        self.falsified = ""
+        """Why what has arrived does not come from the simulation; nothing is read after it. Empty if it does."""
+
+    def allow(self, kinds: _Kinds) -> None:
+        """Let the child send further classes of events: it has been asked for them."""
+        self._allowed = (*self._allowed, *kinds)
+
+    def read(self) -> list[Message]:
+        """Return the events that have arrived; see `falsified`."""
+        events: list[Message] = []
+        for line in self._lines():
+            event = self._decoded(line)
+            if event is None:
+                break
+            events.append(event)
+            self._last = event
+        return events
+
+    def _lines(self) -> list[bytes]:
+        data, left = self._rest, MOST_AT_ONCE_BYTES
+        while left > 0 and not self.at_end and not self.falsified:
+            try:
+                chunk = os.read(self._descriptor, _CHUNK_BYTES)
+            except BlockingIOError:
+                break
+            self.at_end = not chunk
+            data += chunk
+            left -= len(chunk)
+        *lines, self._rest = data.split(b"\n")
+        if len(self._rest) > MOST_EVENT_BYTES:
+            self.falsified = "the program's process sent an endless message"
+        return lines
+
+    def _decoded(self, line: bytes) -> Message | None:
+        """Return the event in a line; None if there is none that can come now."""
+        try:
+            event = decode_event(line)
+        except HostError as error:
+            self.falsified = str(error)
+            return None
+        is_first, is_start = self._last is None, isinstance(event, Started)
+        match event:
+            case Started(protocol=number) if number != PROTOCOL_VERSION:
+                self.falsified = f"the program's process speaks protocol {number}, this is {PROTOCOL_VERSION}"
+            case _ if not isinstance(event, self._allowed) or isinstance(self._last, Ended):
+                self.falsified = f"the program's process sent the message {event.kind}, which cannot come here"
+            # A run that cannot begin ends without a start.
+            case _ if is_start != is_first and not (is_first and isinstance(event, Ended)):
+                when = "first" if is_first else "again"
+                self.falsified = f"the program's process sent the message {event.kind}, which cannot come {when}"
+        return None if self.falsified else event
+
+
+def allowed_events(*, can_pause: bool, asks_user: bool, replies: bool) -> _Kinds:
+    """Return the classes of events that a run can send besides those of every run."""
+    return (
+        *(DEBUGGED if can_pause else ()),
+        *((InputWanted,) if asks_user else ()),
+        *((ReplyWanted,) if replies else ()),
+    )
