@@ -187,7 +187,10 @@ class RunHandle:
         self.waiting_for_reply = False
         self.wheels = Wheels()
         """The registers of the wheel motors; known once the run has ended, unless it was killed."""
-        self.telemetry, self.output = TelemetryView(self.folder, is_live=True), OutputView(self.folder, is_live=True)
+        self.telemetry, self.output = (
+            TelemetryView(self.folder, is_checked=True),
+            OutputView(self.folder, is_checked=True),
+        )
         self._unsent: list[Message] = []
         """Commands sent before the child listens: the signal that announces one would kill it."""
         self._waited_s = 0.0
@@ -313,7 +316,7 @@ class RunHandle:
         end = self._announced
         # One that could not begin, or found no room, leaves what it could write.
         is_whole = end is not None and end.end not in (End.CRASHED, End.DISK_FULL)
-        for view in (TelemetryView(self.folder, is_live=True), OutputView(self.folder, is_live=True)):
+        for view in (TelemetryView(self.folder, is_checked=True), OutputView(self.folder, is_checked=True)):
             if view.damage or (is_whole and view.note):
                 return view.damage or view.note
             if is_whole and view.is_missing:

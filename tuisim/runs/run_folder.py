@@ -188,7 +188,8 @@ def read_run(folder: Path, document: bytes | None = None) -> StoredRun:
     """
     data = read_run_file(folder) if document is None else json.loads(document)
     # The intact parts of a damaged run are readable: its program, its world, and the other recording.
-    telemetry, output = TelemetryView(folder), OutputView(folder)
+    is_falsified = isinstance(data.get("end"), dict) and data["end"].get("end") == End.FALSIFIED
+    telemetry, output = TelemetryView(folder, is_falsified), OutputView(folder, is_falsified)
     try:
         actions, cut = read_actions(folder)
     except LogError as error:

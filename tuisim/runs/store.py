@@ -25,7 +25,7 @@ from tuisim.config.folders import home_folder
 from tuisim.core.profile import NS_PER_S, due_ns
 from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError
-from tuisim.protocol import RUN_STATES, Ended, Unended
+from tuisim.protocol import RUN_STATES, End, Ended, Unended
 from tuisim.runs.catalogue import HOME_HINT, Catalogue, RunInfo, locked
 from tuisim.runs.packed_files import compact
 from tuisim.runs.run_folder import (
@@ -173,7 +173,7 @@ class RunStore:
             raise LogError(f"no run {run_id!r}", file=str(self._runs))
         with locked(self.home):
             write_run_file(run.folder, {**run.data, "tags": _tags_in(run.folder), "end": asdict(end)})
-        output = OutputView(run.folder)
+        output = OutputView(run.folder, end.end is End.FALSIFIED)
         samples = counts_of(output).samples if output.length <= _COUNT_AT_ONCE_BYTES else None
         # If the catalogue cannot be written now, it will be updated later.
         with suppress(LogError):
@@ -185,7 +185,8 @@ class RunStore:
                 samples=samples,
                 summary=end.summary,
             )
-        if self._lasting and (end.tick >= COMPACT_TICKS or samples is None):
+        # One that is falsified stays as it is, for whoever wants to look.
+        if self._lasting and end.end is not End.FALSIFIED and (end.tick >= COMPACT_TICKS or samples is None):
             pack_later(self.folder(run_id))
 
     def count_samples(self, run_id: str) -> None:

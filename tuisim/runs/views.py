@@ -4,8 +4,8 @@ A view never changes the file and never blocks. A missing file reads as empty; o
 that has grown the rest is read; a packed file is unpacked in memory, once, when its
 contents are needed. Data that has been read stays valid, whatever happens to the file.
 
-The program could write to these files as well. So a view reads only as far as they are what
-the simulation writes: ticks in order, finite numbers, whole rows. `damage` says what is not.
+The program could write to these files as well. So a view of a run that is running reads only
+as far as they are what the simulation writes: ticks in order, finite numbers, whole rows.
 """
 
 from __future__ import annotations
@@ -101,7 +101,8 @@ class _View(ABC):
 
     Args:
         folder: The run folder.
-        is_live: Whether the run is running: then there is no packed form, and a file that was there stays.
+        is_checked: Whether it is read only as far as it is what the simulation writes, as of a run that is running or
+            falsified. Then there is no packed form, and a file that was there stays.
 
     Raises:
         LogError: by every method, if this machine cannot read the file, or if its packed form is damaged.
@@ -114,9 +115,9 @@ class _View(ABC):
     _most_bytes: ClassVar[int | None] = None
     """The length that the program's process never exceeds; None if there is none."""
 
-    def __init__(self, folder: Path, is_live: bool = False) -> None:
+    def __init__(self, folder: Path, is_checked: bool = False) -> None:
         self._path = folder / self._name
-        self._is_live = is_live
+        self._is_checked = is_checked
         self._damage = ""
         self._copy: bytearray | mmap = bytearray()
         """Starts like the file, with spare capacity."""
@@ -190,15 +191,12 @@ class _View(ABC):
             self._damage = f"{self._path.name} cannot be read: {reason}"
 
     def _read_packed(self) -> None:
-        if self._is_live:
+        if self._is_checked:
             if self._there:
                 self._damage = f"{self._path.name} was deleted"
             return
-        try:
-            # Searched after the file itself: a recording that is being packed is always found.
-            self._packed = find_packed(self._path)
-        except LogError as error:
-            self._damage = f"{error.message}: nothing of it can be read"
+        # Searched after the file itself: a recording that is being packed is always found.
+        self._packed = find_packed(self._path)
         if self._packed is not None:
             self._published = self._there = self._packed.length
 
@@ -234,7 +232,7 @@ class _View(ABC):
             larger[HEADER_BYTES:begin] = memoryview(self._copy)[HEADER_BYTES:begin]
             self._copy = larger
         got = _read_into(fd, memoryview(self._copy)[begin:end], begin) // self._record_bytes
-        sound = self._sound(memoryview(self._copy).toreadonly(), kept, kept + got)
+        sound = self._sound(memoryview(self._copy).toreadonly(), kept, kept + got) if self._is_checked else kept + got
         self._there = max(self._there, sound)
         # A file that was truncated meanwhile has no more; what was read of it before stays.
         return sound if got == wanted - kept else wanted
