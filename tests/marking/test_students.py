@@ -11,7 +11,7 @@ from tests.marking.the_class import CLASS, write_class
 from tuisim.errors import ConfigError
 from tuisim.marks.journal import Journal
 from tuisim.marks.outcome import GoalOutcome, Outcome
-from tuisim.marks.students import Student, find_students
+from tuisim.marks.students import Student, file_outside, find_students
 from tuisim.marks.workspace import digest_of, program_in, temporary_workspace
 
 
@@ -99,7 +99,7 @@ def test_folders_without_programs_are_refused(tmp_path: Path, word: str) -> None
 def test_a_program_sees_a_copy_of_its_own_files_only(tmp_path: Path) -> None:
     folder = _folder(tmp_path, "ada/main.py", "ada/data/hops.csv", "ada/__pycache__/main.pyc", "ben.py")
     os.mkfifo(folder / "ada" / "pipe")
-    (folder / "ada" / "link").symlink_to("/etc/passwd")
+    (folder / "ada" / "link").symlink_to("data/hops.csv")
     ada, ben = find_students([str(folder)]).students
     with temporary_workspace() as workspace:
         program = program_in(ada, workspace.copy(ada, 0))
@@ -143,3 +143,51 @@ def test_a_journal_knows_what_an_interrupted_marking_has_done(tmp_path: Path) ->
 
 def test_a_student_without_a_program_has_no_text() -> None:
     assert Student("ada", Path("ada"), problem="nothing").text == ""
+
+
+SECRET = "secret = 1\n"
+LINKS = {
+    "the file": ("eve.py", "../secret.py", "it is a link; hand in the files themselves"),
+    "the folder": ("eve", "../elsewhere", "it is a link; hand in the files themselves"),
+    "another's": ("eve.py", "ada.py", "it is a link; hand in the files themselves"),
+    "the main program": ("eve/main.py", "../../secret.py", "main.py is a link that leads out of the folder"),
+    "a module": ("eve/lib/helper.py", "../../../secret.py", "lib/helper.py is a link that leads out of the folder"),
+    "a folder inside": ("eve/lib", "../..", "lib is a link that leads out of the folder"),
+    "an absolute one": ("eve/main.py", "/etc/hostname", "main.py is a link that leads out of the folder"),
+}
+
+
+@pytest.mark.parametrize(("link", "target", "problem"), LINKS.values(), ids=LINKS)
+@pytest.mark.parametrize("by_name", [False, True], ids=["in a class", "by name"])
+def test_a_link_out_of_the_folder_is_refused_by_name(
+    tmp_path: Path, link: str, target: str, problem: str, by_name: bool
+) -> None:
+    folder = _folder(tmp_path, "ada.py", "eve/main.py" if link.startswith("eve/") else "ben.py")
+    (tmp_path / "secret.py").write_text(SECRET)
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "main.py").write_text(SECRET)
+    place = folder / link
+    place.parent.mkdir(exist_ok=True)
+    place.unlink(missing_ok=True)
+    place.symlink_to(target)
+    words = [str(path) for path in folder.iterdir()] if by_name else [str(folder)]
+    found = {student.name: student for student in find_students(words).students}
+    eve = found["eve" if "." not in link.split("/")[0] else "eve.py"]
+    assert (eve.source, eve.text, eve.problem) == (None, "", problem)
+    assert found["ada.py"].source is not None
+
+
+def test_a_link_inside_the_folder_is_the_students_own(tmp_path: Path) -> None:
+    folder = _folder(tmp_path, "ada/code/robot.py")
+    (folder / "ada" / "main.py").symlink_to("code/robot.py")
+    (found,) = find_students([str(folder)]).students
+    assert found.text == "print('ada/code/robot.py')\n"
+
+
+@pytest.mark.parametrize("option", ["-r", "-b", "-o", "--profile", "--mats"])
+def test_a_magic_line_may_not_name_files_outside_the_folder(tmp_path: Path, option: str) -> None:
+    folder = _folder(tmp_path, "ada/main.py", "ben/main.py")
+    (folder / "ada" / "main.py").write_text(f"# %%sim_magic {option} ../../secret.toml\n")
+    (folder / "ben" / "main.py").write_text(f"# %%sim_magic {option} ./own.toml\n")
+    ada, ben = find_students([str(folder)]).students
+    assert (bool(file_outside(ada)), file_outside(ben)) == (True, "")

@@ -36,7 +36,7 @@ from tuisim.marks.page import page_of
 from tuisim.marks.reports import folder_of, write_reports
 from tuisim.marks.runs import STALL_LIMIT_S, Entry, Plan, outcomes_of
 from tuisim.marks.sheet import Column, Sheet, lines_of, sheet_of, summary_of
-from tuisim.marks.students import Found, Student, find_students
+from tuisim.marks.students import Found, Student, file_outside, find_students
 from tuisim.runs.handle import RunOptions, user_python_path
 from tuisim.runs.isolation import check_isolation
 
@@ -195,6 +195,8 @@ def _entries(found: Found, task: GoalsFile, arguments: Arguments) -> tuple[list[
         spec = shared
         if student.source and not task.settings:
             try:
+                if outside := file_outside(student):
+                    raise ConfigError("the magic line names a file outside the folder", key=outside)
                 spec = build_run_spec(program_settings(student.source, arguments.settings).settings)
             except ConfigError as error:
                 student = replace(student, source=None, problem=printable(str(error)))

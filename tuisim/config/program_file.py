@@ -22,8 +22,8 @@ from tuisim.source import LIBRARIES, PRELUDE_TEXTS, PRELUDES, Program, decode_so
 
 MAX_PROGRAM_BYTES = 4 << 20
 
-_FILE_FIELDS = {"background", "robot", "obstacles", "profile"}
-"""Settings that may name a file."""
+FILE_FIELDS = {"background", "robot", "obstacles", "profile", "mats"}
+"""Settings that may name a file or a folder."""
 
 _MAGIC = re.compile(r"(?P<comment>#\s*)?%%?(?P<name>sim_magic\w*)(?P<words>.*)")
 _READS_ANY_NAME = {"eval", "exec", "globals", "vars"}
@@ -107,13 +107,16 @@ def _head(lines: list[str]) -> Iterator[tuple[int, str]]:
 def beside(folder: Path, options: Mapping[str, Any]) -> dict[str, Any]:
     """Return the options of a magic line, with file names resolved from the folder of the program or its notebook."""
     found = dict(options)
-    if "mats" in found:
-        found["mats"] = str(folder / user_path(found["mats"]))
-    for field_name in _FILE_FIELDS & found.keys():
+    for field_name in FILE_FIELDS & found.keys():
         word = found[field_name]
-        if os.sep in word or Path(word).suffix:
+        if field_name == "mats" or names_file(word):
             found[field_name] = str(folder / user_path(word))
     return found
+
+
+def names_file(word: str) -> bool:
+    """Return whether the value of one of `FILE_FIELDS` names a file, and not something built in."""
+    return os.sep in word or bool(Path(word).suffix)
 
 
 def find_magic(text: str, name: str) -> Magic | None:

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import os
+import shutil
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from tuisim.config.program_file import ProgramSource, read_program
+from tuisim.config.program_file import FILE_FIELDS, ProgramSource, names_file, read_program
 from tuisim.errors import ConfigError, listed, printable, see_page
 
 MAIN = "main.py"
 SUFFIX = ".py"
+LEFT_OUT = shutil.ignore_patterns("__pycache__", ".git", ".venv", "venv", "node_modules")
+"""Folders that are no part of what a student has handed in."""
+_LINK = "it is a link; hand in the files themselves"
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +67,7 @@ def find_students(words: Sequence[str], program: str = "", excluded: Collection[
         path = Path(word)
         if os.path.isdir(path) and not os.path.isfile(path / MAIN):
             for entry in _entries(path, excluded):
-                if entry.is_dir() or entry.suffix.lower() == SUFFIX:
+                if entry.is_symlink() or entry.is_dir() or entry.suffix.lower() == SUFFIX:
                     students.append((path, _student(entry, program)))
                 else:
                     ignored.append(printable(entry.name))
@@ -106,14 +110,45 @@ def _named(students: Iterable[tuple[Path, Student]]) -> Iterator[Student]:
 def _student(path: Path, program: str) -> Student:
     # A path such as `.` ends in no name.
     name = _shown(path.name if path.name not in ("", "..") else _real(path).name)
+    if path.is_symlink():
+        return Student(name, path, problem=_LINK)
     if not os.path.isdir(path):
         # Its copy has this name.
         return _read(Student(name, path, name), path)
     try:
+        if link := _link_out_of(path):
+            return Student(name, path, problem=f"{_shown(link)} is a link that leads out of the folder")
         main = _main_of(path, program)
     except (ConfigError, OSError) as error:
         return Student(name, path, problem=str(error).replace(f"{path}{os.sep}", ""))
     return _read(Student(name, path, main), path / main)
+
+
+def _link_out_of(folder: Path) -> str:
+    """Return the path of a link in a student's folder that leads out of it, relative to it; empty if there is none."""
+    own = _real(folder)
+    for inside, folders, names in os.walk(folder):
+        left_out = LEFT_OUT(inside, folders)
+        folders[:] = sorted(name for name in folders if name not in left_out)
+        for name in sorted((*folders, *names)):
+            path = Path(inside, name)
+            if path.is_symlink() and not _real(path).is_relative_to(own):
+                return os.path.relpath(path, folder)
+    return ""
+
+
+def file_outside(student: Student) -> str:
+    """Return the option of the student's magic line that names a file outside the folder; empty if there is none.
+
+    Such a file would be read with the rights of whoever marks.
+    """
+    assert student.source is not None
+    own = _real(student.path if student.path.is_dir() else student.path.parent)
+    for field in sorted(FILE_FIELDS & student.source.options.keys()):
+        word = str(student.source.options[field])
+        if (field == "mats" or names_file(word)) and not _real(Path(word)).is_relative_to(own):
+            return field
+    return ""
 
 
 def _shown(name: str) -> str:

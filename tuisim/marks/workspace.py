@@ -13,11 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.errors import LogError
-from tuisim.marks.students import Student
+from tuisim.marks.students import LEFT_OUT, Student
 from tuisim.runs.temporary import temporary_home
 from tuisim.source import Program
 
-_LEFT_OUT = shutil.ignore_patterns("__pycache__", ".git", ".venv", "venv", "node_modules")
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 """Errors about the copy, not about the file."""
 
@@ -67,7 +66,7 @@ def temporary_workspace() -> Iterator[Workspace]:
 def _copy_folder(folder: Path, place: Path) -> None:
     # Links are copied as links: what they point to is not the student's. An error about a part is raised at the end.
     with suppress(shutil.Error):
-        shutil.copytree(folder, place, symlinks=True, ignore=_LEFT_OUT, copy_function=_copy_file)
+        shutil.copytree(folder, place, symlinks=True, ignore=LEFT_OUT, copy_function=_copy_file)
 
 
 def _copy_file(source: str | Path, target: str | Path) -> None:
@@ -92,7 +91,9 @@ def digest_of(student: Student) -> str:
         relative = os.path.relpath(path, student.path.parent)
         found.update(os.fsencode(relative) + b"\0")
         try:
-            found.update(hashlib.sha256(path.read_bytes()).digest())
+            # A link is what it says: what it leads to may be no file of the student's.
+            content = os.fsencode(os.readlink(path)) if path.is_symlink() else path.read_bytes()
+            found.update(hashlib.sha256(content).digest())
         except OSError as error:
             found.update(str(error.errno).encode())
     return found.hexdigest()
@@ -103,7 +104,7 @@ def _files(path: Path) -> Iterator[Path]:
         yield path
         return
     for folder, folders, names in os.walk(path):
-        left_out = _LEFT_OUT(folder, folders)
+        left_out = LEFT_OUT(folder, folders)
         folders[:] = sorted(name for name in folders if name not in left_out)
         # A named pipe or a device would block.
         yield from (file for name in sorted(names) if os.path.isfile(file := Path(folder, name)))
