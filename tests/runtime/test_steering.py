@@ -18,7 +18,7 @@ from tuisim.errors import HostError
 from tuisim.protocol import Answer, Message, Paused, Resume, SetNoise, SetPose, SetSpeed, StepTicks
 from tuisim.runs import handle
 from tuisim.runs.events import decode_event
-from tuisim.runs.process import waited_s
+from tuisim.runs.process import computed_s, waited_s
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -116,7 +116,22 @@ def test_the_time_that_a_process_waits_for_a_processor_is_known() -> None:
         for process in spinning:
             process.kill()
             process.wait()
-    assert waited_s(spinning[0].pid) == 0.0
+    assert waited_s(spinning[0].pid) == computed_s(spinning[0].pid) == 0.0
+
+
+def test_the_time_that_other_threads_wait_counts_too() -> None:
+    busy = f"import os, threading\nos.sched_setaffinity(0, {{{min(os.sched_getaffinity(0))}}})\n"
+    busy += "threading.Thread(target=lambda: sum(range(10**12))).start()\nprint(flush=True)\n"
+    spinning = [subprocess.Popen([sys.executable, "-c", busy], stdout=subprocess.PIPE) for _ in range(2)]
+    try:
+        give_up = time.monotonic() + PATIENCE_S
+        while sum(waited_s(process.pid) for process in spinning) < 0.1 or not computed_s(spinning[0].pid):
+            assert time.monotonic() < give_up
+            time.sleep(0.01)
+    finally:
+        for process in spinning:
+            process.kill()
+            process.communicate()
 
 
 def test_pause_steps_and_resume(start: Start) -> None:

@@ -67,6 +67,9 @@ def execute(task: Task, folder: Path) -> Result:
 
 def _to_the_end(handle: RunHandle, limit_s: float) -> Ended:
     ended = handle.wait(limit_s or None)
+    while ended is None and (left_s := limit_s - handle.time_used_s) > 0:
+        # On a busy machine the child had to wait for a processor.
+        ended = handle.wait(left_s)
     if ended is None:
         handle.stop()
         ended = handle.wait()

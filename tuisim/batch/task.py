@@ -46,7 +46,7 @@ class Task:
     isolate: bool = False
     """Whether it runs through bubblewrap, without network and without the user's files."""
     real_time_limit_s: float = 0.0
-    """Real seconds after which it is stopped; 0 is no limit."""
+    """Real seconds, without those in which it waits for a processor, after which it is stopped; 0 is no limit."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,6 +44,7 @@ from tuisim.runs.events import DEBUGGED, EventStream, allowed_events
 from tuisim.runs.packed_files import PACKED_MAGIC, PACKED_SUFFIX
 from tuisim.runs.process import (
     await_stack,
+    computed_s,
     end_group,
     end_left_over,
     mark,
@@ -193,10 +194,11 @@ class RunHandle:
         )
         self._unsent: list[Message] = []
         """Commands sent before the child listens: the signal that announces one would kill it."""
-        self._waited_s = 0.0
+        self._waited_s = self._known_waits_s = 0.0
+        self._started_s = self._looked_s = time.monotonic()
         self._stop_at: float | None = None
         self._asked_at = 0.0
-        self._progress = (0, time.monotonic())
+        self._progress = (0, self._started_s)
         self._stack_asked = False
         self._announced: Ended | None = None
         self._announced_at = 0.0
@@ -480,9 +482,20 @@ class RunHandle:
                 self._read_stack_and_kill()
 
     def _fair_time_s(self) -> float:
-        """Return the time without that in which the child waited for a processor: it cannot help that others run."""
-        self._waited_s = max(self._waited_s, waited_s(self._process.pid))
-        return time.monotonic() - self._waited_s
+        """Return a clock without the time in which the child waited for a processor: it cannot help that others run.
+
+        It is never later than the child's own computing: of many threads, some always wait.
+        """
+        now_s, waited = time.monotonic(), waited_s(self._process.pid)
+        more_s = min(max(0.0, waited - self._known_waits_s), now_s - self._looked_s)
+        self._known_waits_s, self._looked_s = waited, now_s
+        self._waited_s += more_s
+        return max(now_s - self._waited_s, self._started_s + computed_s(self._process.pid))
+
+    @property
+    def time_used_s(self) -> float:
+        """Real seconds since the start without those in which the child waited for a processor."""
+        return self._fair_time_s() - self._started_s
 
     def _read_stack_and_kill(self) -> None:
         if not self._stack_asked:

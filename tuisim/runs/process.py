@@ -43,6 +43,8 @@ FILE_LOCKS = 10
 STACK_WRITTEN_WITHIN_S, STACK_AWAITED_S, LOOK_AGAIN_S = 0.05, 0.1, 0.003
 """Time for a stuck child to write its stack, that with its wait for a processor, and the interval of checks."""
 
+_CLOCK_HZ = os.sysconf("SC_CLK_TCK")
+
 _DIGITS = 10
 """Fewer than these has the number of a line."""
 MOST_SHOWN = 500
@@ -212,10 +214,25 @@ def mark(pid: int) -> int:
 
 
 def waited_s(pid: int) -> float:
-    """Return how long a process has waited for its turn on a processor; 0 if it is gone, or where that is unknown."""
+    """Return how long the threads of a process have waited for their turn on a processor, together.
+
+    It is 0 if the process is gone, or where that is unknown; what a thread that has ended waited is lost.
+    """
+    found = 0
+    with suppress(OSError):
+        for thread in os.listdir(f"/proc/{pid}/task"):
+            # Nanoseconds on a processor, and in the queue: Documentation/scheduler/sched-stats.rst of Linux.
+            with suppress(OSError, ValueError, IndexError):
+                found += int(Path(f"/proc/{pid}/task/{thread}/schedstat").read_bytes().split()[1])
+    return found / NS_PER_S
+
+
+def computed_s(pid: int) -> float:
+    """Return the time that a process has spent on processors; 0 if it is gone, or where that is unknown."""
     try:
-        # Nanoseconds on a processor, and in the queue: Documentation/scheduler/sched-stats.rst of Linux.
-        return int(Path(f"/proc/{pid}/schedstat").read_bytes().split()[1]) / NS_PER_S
+        # The name, in parentheses, may contain anything. Then the state, and 10 more: proc_pid_stat(5).
+        fields = Path(f"/proc/{pid}/stat").read_bytes().rpartition(b")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / _CLOCK_HZ
     except (OSError, ValueError, IndexError):
         return 0.0
 

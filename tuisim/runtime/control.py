@@ -51,7 +51,9 @@ SLICE_S = 0.02
 BEHIND_S = 0.25
 """A run that is later than this restarts its pace."""
 STOP_GRACE_S = 0.2
-"""Real time for the program's cleanup after a stop."""
+"""Real time for the program's cleanup after a stop of a live run."""
+STOP_GRACE_CPU_S = 2.0
+"""Its own computing time for that in a headless run."""
 FAST_SLICE_TICKS = 64
 """Ticks between two checks for commands in a run without pacing."""
 
@@ -136,11 +138,16 @@ class RunControl:
 
     def begin_grace(self) -> None:
         """Start the grace period of a stop."""
-        self._stop_asked_at = wallclock.monotonic()
+        self._stop_asked_at = self._grace_clock()
 
     def grace_is_over(self) -> bool:
-        """Whether the real time for the program's cleanup is over."""
-        return self._stop_asked_at is not None and wallclock.monotonic() - self._stop_asked_at > STOP_GRACE_S
+        """Whether the time for the program's cleanup is over."""
+        most_s = STOP_GRACE_S if self.live else STOP_GRACE_CPU_S
+        return self._stop_asked_at is not None and self._grace_clock() - self._stop_asked_at > most_s
+
+    def _grace_clock(self) -> float:
+        # A user waits in real time; what a program of a batch does must not depend on what else the machine does.
+        return wallclock.monotonic() if self.live else wallclock.process_time()
 
     # Right before ticks
 
