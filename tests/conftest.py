@@ -23,7 +23,7 @@ from tuisim.config.preferences import keep
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import NoiseSpec, PenSpec, RobotSpec, RunSpec, WorldSpec
-from tuisim.runs import process
+from tuisim.runs.child import process
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.source import Program
 

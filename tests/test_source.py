@@ -11,7 +11,7 @@ from tests.running import Run
 from tuisim.app.editor.text_file import read_text
 from tuisim.config.program_file import parse_program, read_program
 from tuisim.errors import ConfigError
-from tuisim.runs.process import stuck_line
+from tuisim.runs.child.process import stuck_line
 from tuisim.source import source_lines
 
 NO_ENDS = "\x0b \x0c \x1c \x1d \x1e \x85 \u2028 \u2029"

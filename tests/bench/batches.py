@@ -15,7 +15,7 @@ from tests.bench.figures import Effort, Figure
 from tests.bench.processes import app_environment
 from tests.bench.references import Ratio, bare_start
 from tests.bench.running import begin, started_by_itself
-from tuisim.runs import process
+from tuisim.runs.child import process
 from tuisim.runs.handle import RunOptions
 
 PROGRAM = """\

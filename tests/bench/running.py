@@ -7,7 +7,7 @@ from unittest.mock import patch
 
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
-from tuisim.runs import process
+from tuisim.runs.child import process
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.store import RunStore
 from tuisim.source import Program

@@ -32,9 +32,9 @@ from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.packed_files import PACKED_SUFFIX
 from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_CHUNK, TELEMETRY_FILE, OutputWriter, TelemetryWriter
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
+from tuisim.runs.side_files import STACK_FILE
 from tuisim.runs.store import PACKER_LOCK_FILE, PACKERS, RunStore
 from tuisim.runs.views import TelemetryView
-from tuisim.runtime.interrupts import STACK_FILE
 from tuisim.source import Program
 
 ENDLESS = """

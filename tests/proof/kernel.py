@@ -16,7 +16,7 @@ from tests.running import PATIENCE_S
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.core.spec import MotorSpec, RobotSpec
-from tuisim.runs import process
+from tuisim.runs.child import process
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.records import Stream
 from tuisim.source import Program

@@ -23,7 +23,7 @@ from tuisim.protocol import (
     Message,
     Pause,
 )
-from tuisim.runs import process
+from tuisim.runs.child import process
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.records import OutputRow
 from tuisim.runs.rerun import rerun, same

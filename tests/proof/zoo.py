@@ -22,7 +22,7 @@ from tests.running import PATIENCE_S
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.protocol import End, Ended
-from tuisim.runs import process
+from tuisim.runs.child import process
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.packed_files import find_packed
 from tuisim.runs.records import Stream

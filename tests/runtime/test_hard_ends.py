@@ -12,7 +12,7 @@ import pytest
 from tests.conftest import Command
 from tests.running import PATIENCE_S, Run, Start, over, until
 from tuisim.protocol import End, Ended
-from tuisim.runs.events import decode_event
+from tuisim.runs.child.events import decode_event
 
 CAFE = "b'caf\\xe9'.decode('utf-8', 'surrogateescape')"
 """A text that no UTF-8 can hold, such as a file name of another system."""

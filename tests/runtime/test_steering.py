@@ -17,8 +17,9 @@ from tuisim.core.tick_record import TICK_RECORD
 from tuisim.errors import HostError
 from tuisim.protocol import Answer, Message, Paused, Resume, SetNoise, SetPose, SetSpeed, StepTicks
 from tuisim.runs import handle
-from tuisim.runs.events import decode_event
-from tuisim.runs.process import computed_s, waited_s
+from tuisim.runs.child import fair_clock
+from tuisim.runs.child.events import decode_event
+from tuisim.runs.child.fair_clock import computed_s, waited_s
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -91,7 +92,7 @@ def test_a_program_whose_turn_does_not_come_is_not_taken_for_stuck(
     until(run, lambda: run.output.length > 0)
     # So busy a machine that the program has waited far longer at each look, while any time at all is too long.
     waits_s, killed = count(1e6, 1e3), list[int]()
-    monkeypatch.setattr(handle, "waited_s", lambda pid: next(waits_s))
+    monkeypatch.setattr(fair_clock, "waited_s", lambda pid: next(waits_s))
     monkeypatch.setattr(handle, "STUCK_AFTER_S", 0.0)
     monkeypatch.setattr(handle, "end_group", killed.append)
     run.stop()

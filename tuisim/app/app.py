@@ -47,7 +47,7 @@ from tuisim.config.user_config import FILE, UserConfig, load_config
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.protocol import Ended
-from tuisim.runs.process import warm_up
+from tuisim.runs.child.process import warm_up
 from tuisim.runs.run_folder import StoredRun
 from tuisim.source import Program
 

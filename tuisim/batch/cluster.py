@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim.batch.execute import execute
 from tuisim.batch.task import Result, Task
 from tuisim.errors import ConfigError, HostError
-from tuisim.runs.process import warm_up
+from tuisim.runs.child.process import warm_up
 from tuisim.runs.temporary import batch_folder
 
 if TYPE_CHECKING:

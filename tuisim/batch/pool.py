@@ -20,7 +20,7 @@ from typing import Any
 from tuisim.batch.execute import execute, nothing_known_of
 from tuisim.batch.task import Result, Task
 from tuisim.protocol import End
-from tuisim.runs.process import warm_up
+from tuisim.runs.child.process import warm_up
 from tuisim.runs.temporary import batch_folder
 
 CHUNK = 4

@@ -6,7 +6,7 @@ import os
 import shutil
 import sys
 from collections.abc import Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,7 @@ from tuisim.config.command_line import Arguments, Value, argument, command, opti
 from tuisim.config.options import APP, PANEL, settings_of
 from tuisim.config.program_settings import program_settings
 from tuisim.config.shared_options import shared_options
-from tuisim.errors import ConfigError, ExportError, counted, listed, printable
+from tuisim.errors import ConfigError, ExportError, counted, listed, printable, see_page
 from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
 from tuisim.marks.feedback import write_feedback
@@ -37,8 +37,9 @@ from tuisim.marks.reports import folder_of, write_reports
 from tuisim.marks.runs import STALL_LIMIT_S, Entry, Plan, outcomes_of
 from tuisim.marks.sheet import Column, Sheet, lines_of, sheet_of, summary_of
 from tuisim.marks.students import Found, Student, file_outside, find_students
+from tuisim.runs.child.isolation import check_isolation
+from tuisim.runs.child.supervisor import supervised
 from tuisim.runs.handle import RunOptions, user_python_path
-from tuisim.runs.isolation import check_isolation
 
 PAGE_SUFFIXES = (".html", ".htm")
 DEFAULT_SEEDS = "0..19"
@@ -57,7 +58,9 @@ _OPTIONS = (
     input_option(_RUNS),
     jobs_option(group=_RUNS),
     option("--isolate", is_flag=True, group=_RUNS,
-           help="Run each program through bubblewrap, without network and without your files."),
+           help="Refuse to mark where programs cannot be isolated: without network, your files, and much memory."),
+    option("--no-isolate", "no_isolate", is_flag=True, group=_RUNS,
+           help="Do not isolate programs; otherwise each runs through bubblewrap, where that starts."),
     option("--resume", is_flag=True, group=_RUNS,
            help="Go on where an earlier marking with these goals ended; run only what is new or has changed."),
     keep_option(USUAL_KEEP, _RUNS),
@@ -77,7 +80,7 @@ _OPTIONS = (
     student; a student's folder contains the program main.py, a single program, or the one that GOALS names.
 
     Programs run in the world of GOALS; if it names none, in that of their magic line. A program that hangs, floods or
-    crashes affects its own marks only, but tuisim is not a sandbox: see --isolate.
+    crashes affects its own marks only. Where bubblewrap is installed and starts, each program is isolated.
 
     Exit code: 0 all programs have marks, 1 this machine could not make some runs (--resume makes them), 2 bad
     input, 130 interrupted (--resume goes on).
@@ -107,27 +110,65 @@ def mark(**given: Any) -> int:
         ),
         keep=Keep(arguments.keep or USUAL_KEEP),
         jobs=arguments.jobs,
-        isolate=arguments.isolate,
+        isolate=_isolates(arguments),
         version=__version__,
         arguments=settings_of(task.settings).arguments,
         python_path=user_python_path(),
     )
-    if plan.isolate:
-        check_isolation()
     outcomes: dict[str, list[Outcome]] = {student.name: [] for student in students}
     with Progress("marking"):
         try:
-            with signals_raise():
+            with signals_raise(), nullcontext() if plan.isolate else supervised():
                 _collect(entries, plan, journal_of(task.path), outcomes, resumes=arguments.resume)
         except Interrupted as interrupted:
-            done = sum(map(len, outcomes.values()))
-            echo_error(f"tuisim: interrupted; {counted(done, 'run')} kept: the same command with --resume goes on")
+            _tell_so_far(task, plan, students, outcomes)
             return interrupted.exit_code
         sheet = sheet_of(task.title, _columns(task), seeds, students, outcomes)
         # First, so that marks are seen also if a file cannot be written.
         _print(sheet, found.ignored)
         _write(sheet, students, found.ignored, arguments)
     return _tell_missing(outcomes)
+
+
+def _isolates(arguments: Arguments) -> bool:
+    """Return whether programs are isolated; say so if they are not, and nobody has asked for that.
+
+    Raises:
+        ConfigError: they cannot be isolated, and must be; or the options contradict each other.
+    """
+    if arguments.isolate and arguments.no_isolate:
+        raise ConfigError("is given together with --no-isolate", "give only one of them", key="--isolate")
+    if arguments.no_isolate:
+        return False
+    try:
+        check_isolation()
+    except ConfigError as error:
+        if arguments.isolate:
+            raise
+        reason = error.message.removeprefix(f"{error.key}: ")
+        echo_error(f"note: {reason}: programs can read and change your files ({see_page('security')})")
+        return False
+    return True
+
+
+def _tell_so_far(
+    task: GoalsFile, plan: Plan, students: Sequence[Student], outcomes: Mapping[str, Sequence[Outcome]]
+) -> None:
+    """Print the marks of the students whose programs have had all their runs, and what is kept of the others."""
+    done = [
+        student
+        for student in students
+        if not student.source or len(outcomes[student.name]) == len(plan.seeds) or _gave_up(outcomes[student.name])
+    ]
+    if done:
+        _print(sheet_of(task.title, _columns(task), plan.seeds, done, outcomes), ())
+    echo_error(f"tuisim: interrupted with {len(done)} of {counted(len(students), 'student')} marked, nothing exported;")
+    kept = counted(sum(map(len, outcomes.values())), "run")
+    echo_error(f"tuisim: {kept} kept: the same command with --resume goes on")
+
+
+def _gave_up(outcomes: Sequence[Outcome]) -> bool:
+    return bool(outcomes) and outcomes[0].gave_up
 
 
 def _tell_missing(outcomes: Mapping[str, Sequence[Outcome]]) -> int:

@@ -40,25 +40,25 @@ from tuisim.protocol import (
     UserAction,
     Wheels,
 )
-from tuisim.runs.events import DEBUGGED, EventStream, allowed_events
-from tuisim.runs.packed_files import PACKED_MAGIC, PACKED_SUFFIX
-from tuisim.runs.process import (
+from tuisim.runs.child.events import DEBUGGED, EventStream, allowed_events
+from tuisim.runs.child.fair_clock import FairClock
+from tuisim.runs.child.isolation import Quota
+from tuisim.runs.child.process import (
     await_stack,
-    computed_s,
     end_group,
     end_left_over,
     mark,
     prepare_template,
     start_child,
     stuck_line,
-    waited_s,
     what_ended,
     write_command,
 )
+from tuisim.runs.packed_files import PACKED_MAGIC, PACKED_SUFFIX
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
 from tuisim.runs.side_files import LOG_FILE, MOST_BYTES, STACK_FILE, copy_modules, read_actions, read_stop_tick
 from tuisim.runs.store import NewRun, RunStore
-from tuisim.runs.views import OutputView, TelemetryView
+from tuisim.runs.views import views_of
 from tuisim.source import Program
 
 STUCK_AFTER_S = 0.3
@@ -106,6 +106,11 @@ class RunOptions:
     def can_pause(self) -> bool:
         """Whether the run can be paused without further commands."""
         return bool(self.live or self.start_paused or self.breaks or self.hold_at)
+
+    @property
+    def events(self) -> tuple[type[Message], ...]:
+        """The classes of events that the run can send besides its start, its sounds and its end."""
+        return allowed_events(can_pause=self.can_pause, asks_user=self.asks_user, replies=self.replies)
 
     def to_plain(self) -> dict[str, Any]:
         """Return the options in the form that is stored with a run."""
@@ -188,17 +193,12 @@ class RunHandle:
         self.waiting_for_reply = False
         self.wheels = Wheels()
         """The registers of the wheel motors; known once the run has ended, unless it was killed."""
-        self.telemetry, self.output = (
-            TelemetryView(self.folder, is_checked=True),
-            OutputView(self.folder, is_checked=True),
-        )
+        self.telemetry, self.output = views_of(self.folder, is_checked=True)
         self._unsent: list[Message] = []
         """Commands sent before the child listens: the signal that announces one would kill it."""
-        self._waited_s = self._known_waits_s = 0.0
-        self._started_s = self._looked_s = time.monotonic()
         self._stop_at: float | None = None
         self._asked_at = 0.0
-        self._progress = (0, self._started_s)
+        self._progress = (0, 0.0)
         self._stack_asked = False
         self._announced: Ended | None = None
         self._announced_at = 0.0
@@ -218,10 +218,11 @@ class RunHandle:
             what = error.strerror or str(error)
             raise HostError(f"the program's process cannot be started: {what}", str(run.folder)) from error
         self._mark = mark(self._process.pid)
-        self._events = EventStream(
-            self._event_fd,
-            allowed_events(can_pause=options.can_pause, asks_user=options.asks_user, replies=options.replies),
-        )
+        self._clock = FairClock(self._process.pid)
+        self._events = EventStream(self._event_fd, options.events)
+        self._quota = Quota([run.folder, Path(program.working_directory)]) if isolated else None
+        self._exceeded = ""
+        """The limit of an isolated program that it has exceeded."""
         self._falsified = ""
         """Why what the child has sent or recorded does not come from the simulation."""
 
@@ -267,6 +268,7 @@ class RunHandle:
                 case Ended():
                     self._announced, self._announced_at = event, time.monotonic()
         self._look_for_falsified()
+        self._enforce_quota()
         self._enforce_stop()
         final = self._final_event(exited)
         kept = [event for event in events if not isinstance(event, Ended)]
@@ -285,6 +287,12 @@ class RunHandle:
             if self._falsified:
                 end_group(self._process.pid)
 
+    def _enforce_quota(self) -> None:
+        if self._quota is not None and not self._exceeded:
+            self._exceeded = self._quota.exceeded(time.monotonic())
+            if self._exceeded:
+                end_group(self._process.pid)
+
     def _flooded_log(self) -> str:
         with suppress(OSError):
             if (self.folder / LOG_FILE).stat().st_size > MOST_BYTES:
@@ -301,6 +309,8 @@ class RunHandle:
         falsified = self._falsified or (self._what_is_falsified() if self.folder.is_dir() else "")
         if falsified:
             return Ended(End.FALSIFIED, tick, time_ns, 1, f"the program has falsified its recording: {falsified}")
+        if self._exceeded:
+            return Ended(End.OUTPUT_LIMIT, tick, time_ns, 1, self._exceeded)
         if self._announced is not None:
             return self._announced
         line = stuck_line(self.folder, self.program.path or self.program.name)
@@ -318,7 +328,7 @@ class RunHandle:
         end = self._announced
         # One that could not begin, or found no room, leaves what it could write.
         is_whole = end is not None and end.end not in (End.CRASHED, End.DISK_FULL)
-        for view in (TelemetryView(self.folder, is_checked=True), OutputView(self.folder, is_checked=True)):
+        for view in views_of(self.folder, is_checked=True):
             if view.damage or (is_whole and view.note):
                 return view.damage or view.note
             if is_whole and view.is_missing:
@@ -391,7 +401,7 @@ class RunHandle:
             rest = ASK_AGAIN_S if until is None else min(ASK_AGAIN_S, until - now)
             if rest <= 0:
                 break
-            if self._stop_at is not None and (left := self._stop_at + STUCK_AFTER_S - self._fair_time_s()) > 0:
+            if self._stop_at is not None and (left := self._stop_at + STUCK_AFTER_S - self._clock.now_s()) > 0:
                 # A stuck child is killed on time.
                 rest = min(rest, left)
             self.wait_for_event(rest)
@@ -439,14 +449,14 @@ class RunHandle:
     def stop(self) -> None:
         """Ask the program to stop; `pump` or `wait` kill the child if it does not."""
         if self._stop_at is None:
-            self._stop_at = self._fair_time_s()
+            self._stop_at = self._clock.now_s()
         self._asked_at = time.monotonic()
         self.send(Stop())
 
     def kill(self) -> None:
         """Kill the child immediately; what it has written is kept."""
         if self._stop_at is None:
-            self._stop_at = self._fair_time_s()
+            self._stop_at = self._clock.now_s()
         end_group(self._process.pid)
 
     def prepare_next(self) -> None:
@@ -469,33 +479,22 @@ class RunHandle:
             # Deleted while it runs: nobody can see its results.
             self.stop()
         if self._stop_at is not None:
-            if self._fair_time_s() - self._stop_at > STUCK_AFTER_S:
+            if self._clock.now_s() - self._stop_at > STUCK_AFTER_S:
                 self._read_stack_and_kill()
             elif self.started and time.monotonic() - self._asked_at > ASK_AGAIN_S:
                 self._asked_at = time.monotonic()
                 self._signal(COMMAND_SIGNAL)
         elif self._options.stall_limit_s and not self.paused:
-            tick, now = self.telemetry.count, self._fair_time_s()
+            tick, now = self.telemetry.count, self._clock.now_s()
             if tick != self._progress[0] or self.waiting_for_reply or self.waiting_for_input is not None:
                 self._progress = (tick, now)
             elif now - self._progress[1] > STALL_FACTOR * self._options.stall_limit_s:
                 self._read_stack_and_kill()
 
-    def _fair_time_s(self) -> float:
-        """Return a clock without the time in which the child waited for a processor: it cannot help that others run.
-
-        It is never later than the child's own computing: of many threads, some always wait.
-        """
-        now_s, waited = time.monotonic(), waited_s(self._process.pid)
-        more_s = min(max(0.0, waited - self._known_waits_s), now_s - self._looked_s)
-        self._known_waits_s, self._looked_s = waited, now_s
-        self._waited_s += more_s
-        return max(now_s - self._waited_s, self._started_s + computed_s(self._process.pid))
-
     @property
     def time_used_s(self) -> float:
         """Real seconds since the start without those in which the child waited for a processor."""
-        return self._fair_time_s() - self._started_s
+        return self._clock.now_s()
 
     def _read_stack_and_kill(self) -> None:
         if not self._stack_asked:

@@ -19,7 +19,7 @@ from tuisim.errors import ConfigError, LogError, TuisimError, shortened
 from tuisim.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
 from tuisim.runs.regular_file import read_regular
 from tuisim.runs.side_files import MOST_BYTES, is_held, read_actions
-from tuisim.runs.views import OutputView, TelemetryView, TickRecord
+from tuisim.runs.views import OutputView, TelemetryView, TickRecord, views_of
 from tuisim.source import Program
 
 RUN_FILE = "run.json"
@@ -189,7 +189,7 @@ def read_run(folder: Path, document: bytes | None = None) -> StoredRun:
     data = read_run_file(folder) if document is None else json.loads(document)
     # The intact parts of a damaged run are readable: its program, its world, and the other recording.
     is_falsified = isinstance(data.get("end"), dict) and data["end"].get("end") == End.FALSIFIED
-    telemetry, output = TelemetryView(folder, is_falsified), OutputView(folder, is_falsified)
+    telemetry, output = views_of(folder, is_falsified)
     try:
         actions, cut = read_actions(folder)
     except LogError as error:

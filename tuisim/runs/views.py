@@ -333,7 +333,8 @@ class OutputView(_View):
     """The rows of a run: printed, spoken, answers to input(), brick state."""
 
     _name, _magic, _record_bytes = OUTPUT_FILE, OUTPUT_MAGIC, 1
-    _most_bytes = MAX_OUTPUT_BYTES
+    # The file is larger by its last step of growth.
+    _most_bytes = 2 * MAX_OUTPUT_BYTES
     _seen = 0
     _checked = 0
     """Up to here there are whole and sound rows."""
@@ -386,3 +387,8 @@ class OutputView(_View):
     def rows(self) -> Iterator[OutputRow]:
         """Yield the rows of `all_rows` one by one: a run may print a million lines."""
         return (row for row, _ in self.rows_from(0))
+
+
+def views_of(folder: Path, is_checked: bool = False) -> tuple[TelemetryView, OutputView]:
+    """Return both views of a run folder; see `_View` for `is_checked`."""
+    return TelemetryView(folder, is_checked), OutputView(folder, is_checked)

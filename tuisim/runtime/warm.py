@@ -1,6 +1,6 @@
 """The warm process: it has imported what a child imports, and forks one child for each request of its host.
 
-A request is JSON with the files of the child attached; `tuisim.runs.warm` sends it. A forked child runs the
+A request is JSON with the files of the child attached; `tuisim.runs.child.warm` sends it. A forked child runs the
 same code as any other child, in a session of its own, and has only the files that it was given.
 
 A template is a child that is prepared for a robot and a world, and forks children that need not be prepared any more.

@@ -13,11 +13,11 @@ import pytest
 from tests.running import over, until_tick
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
-from tuisim.runs import process
+from tuisim.runs.child import process
+from tuisim.runs.child.warm import ForkedChild, WarmProcess
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.run_folder import field_files
 from tuisim.runs.store import RunStore
-from tuisim.runs.warm import ForkedChild, WarmProcess
 from tuisim.source import Program
 
 SURROUNDINGS = {

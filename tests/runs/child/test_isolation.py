@@ -12,7 +12,7 @@ import pytest
 from tests.conftest import Command
 from tests.marking.right import HOPS
 from tuisim.errors import ConfigError
-from tuisim.runs.isolation import check_isolation
+from tuisim.runs.child.isolation import check_isolation
 
 GOALS = """\
 title = "Isolation"
@@ -94,7 +94,7 @@ def test_isolation_without_bubblewrap_is_refused(
     monkeypatch.setenv("PATH", str(tmp_path))
     done = here("mark", "goals.toml", "ada.py", "--isolate")
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == "tuisim: --isolate: bwrap is not installed (install bubblewrap, or leave --isolate out)\n"
+    assert done.stderr == "tuisim: --isolate: bwrap is not installed (install bubblewrap; --no-isolate goes without)\n"
 
 
 def test_isolation_is_refused_with_the_reason_of_bubblewrap(

@@ -17,14 +17,14 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, ClassVar
 
 from tuisim.atomic import private
-from tuisim.core.profile import NS_PER_S
-from tuisim.runs.isolation import spawn_isolated
+from tuisim.runs.child.fair_clock import waited_s
+from tuisim.runs.child.isolation import LIMITS, spawn_isolated
 from tuisim.runs.regular_file import read_regular
 from tuisim.runs.side_files import LOG_FILE, MOST_BYTES, STACK_FILE
 from tuisim.source import source_lines
 
 if TYPE_CHECKING:
-    from tuisim.runs.warm import ChildProcess, Template, WarmProcess
+    from tuisim.runs.child.warm import ChildProcess, Template, WarmProcess
 
 PATIENCE_S = 0.2
 """Longest wait for a full command pipe: a child that listens empties it at once."""
@@ -42,8 +42,6 @@ FILE_LOCKS = 10
 
 STACK_WRITTEN_WITHIN_S, STACK_AWAITED_S, LOOK_AGAIN_S = 0.05, 0.1, 0.003
 """Time for a stuck child to write its stack, that with its wait for a processor, and the interval of checks."""
-
-_CLOCK_HZ = os.sysconf("SC_CLK_TCK")
 
 _DIGITS = 10
 """Fewer than these has the number of a line."""
@@ -65,7 +63,7 @@ def warm_up() -> None:
     if _Starts.warm is None or not _Starts.warm.is_usable:
         cool_down()
         # Imported on demand: it imports what most commands need not.
-        from tuisim.runs.warm import WarmProcess
+        from tuisim.runs.child.warm import WarmProcess
 
         # If it cannot be started, each child is started by itself.
         with suppress(OSError):
@@ -123,7 +121,7 @@ def start_child(
                 forked = _fork(folder, cwd, log.fileno(), inherited, key)
                 process = forked or _spawn(folder, cwd, log, inherited)
             else:
-                command = [*_command(), str(folder), *map(str, inherited)]
+                command = [*_command(LIMITS), str(folder), *map(str, inherited)]
                 writable = [folder, Path(cwd)] if cwd else [folder]
                 process = spawn_isolated(command, _environment(), log, inherited, writable, isolated_with)
         ours.pop_all()
@@ -153,9 +151,9 @@ def prepare_template(key: Hashable, folder: Path) -> None:
             _template(_Starts.warm, key, folder)
 
 
-def _command() -> list[str]:
-    """Return the command of a child without its arguments."""
-    return [sys.executable, "-s", "-P", "-c", BOOT, str(Path(__file__).parent.parent.parent)]
+def _command(first: str = "") -> list[str]:
+    """Return the command of a child without its arguments; `first` is code for its start."""
+    return [sys.executable, "-s", "-P", "-c", first + BOOT, str(Path(__file__).parents[3])]
 
 
 def _fork(folder: Path, cwd: str | None, log_fd: int, inherited: Sequence[int], key: Hashable) -> ChildProcess | None:
@@ -211,30 +209,6 @@ def mark(pid: int) -> int:
     except (AttributeError, OSError, ValueError):
         return 0
     return wanted
-
-
-def waited_s(pid: int) -> float:
-    """Return how long the threads of a process have waited for their turn on a processor, together.
-
-    It is 0 if the process is gone, or where that is unknown; what a thread that has ended waited is lost.
-    """
-    found = 0
-    with suppress(OSError):
-        for thread in os.listdir(f"/proc/{pid}/task"):
-            # Nanoseconds on a processor, and in the queue: Documentation/scheduler/sched-stats.rst of Linux.
-            with suppress(OSError, ValueError, IndexError):
-                found += int(Path(f"/proc/{pid}/task/{thread}/schedstat").read_bytes().split()[1])
-    return found / NS_PER_S
-
-
-def computed_s(pid: int) -> float:
-    """Return the time that a process has spent on processors; 0 if it is gone, or where that is unknown."""
-    try:
-        # The name, in parentheses, may contain anything. Then the state, and 10 more: proc_pid_stat(5).
-        fields = Path(f"/proc/{pid}/stat").read_bytes().rpartition(b")")[2].split()
-        return (int(fields[11]) + int(fields[12])) / _CLOCK_HZ
-    except (OSError, ValueError, IndexError):
-        return 0.0
 
 
 def end_group(pid: int) -> None:

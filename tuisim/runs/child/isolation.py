@@ -1,7 +1,7 @@
-"""Runs a child process through bubblewrap: without network, and without the user's files.
+"""Runs a child process through bubblewrap: without network, without the user's files, and with limits.
 
-The program sees its own folder, the run folder, Python and its packages, and the libraries of the system. This keeps a
-careless program away from other files; it is no protection against a determined attacker.
+The program sees its own folder, the run folder, Python and its packages, and the libraries of the system. It may start
+no process, and use only so much memory and space.
 """
 
 from __future__ import annotations
@@ -12,12 +12,13 @@ import select
 import shutil
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
 from tuisim.errors import ConfigError
+from tuisim.runs.child.seccomp import filter_descriptor
 
 BWRAP = "bwrap"
 START_S = 10.0
@@ -27,6 +28,47 @@ _SIGNALLED = 128
 """bubblewrap reports a signal N that ended the child as exit status 128 + N."""
 _PACKAGES = ("site-packages", "dist-packages")
 _KEY = "--isolate"
+_TMP_BYTES = 64 << 20
+"""Size of the program's own `/tmp`, which is in memory."""
+MOST_FILES, MOST_BYTES = 20_000, 1 << 30
+"""Files, and bytes in them, that it may have in its folders; see `overused`."""
+_MEMORY_BYTES = 2 << 30
+"""Address space of its process; it is told at half of that."""
+_OPEN_FILES = 256
+LIMITS = f"""\
+import resource
+for kind, most in (
+    (resource.RLIMIT_AS, {_MEMORY_BYTES}),
+    (resource.RLIMIT_FSIZE, {MOST_BYTES}),
+    (resource.RLIMIT_NOFILE, {_OPEN_FILES}),
+    (resource.RLIMIT_CORE, 0),
+):
+    hard = resource.getrlimit(kind)[1]
+    most = most if hard == resource.RLIM_INFINITY else min(most, hard)
+    resource.setrlimit(kind, (most, most))
+del resource, kind, most, hard
+"""
+"""Code for the start of the process: it sets limits that cannot be raised again."""
+_LOOK_EVERY_S = 0.25
+_SYSTEM = ("/usr", "/lib", "/lib32", "/lib64", "/libx32", "/bin", "/etc/ld.so.cache", "/etc/alternatives")
+_SIGNALLED = 128
+"""bubblewrap reports a signal N that ended the child as exit status 128 + N."""
+_PACKAGES = ("site-packages", "dist-packages")
+_KEY = "--isolate"
+_TMP_BYTES = 64 << 20
+"""Size of the program's own `/tmp`, which is in memory."""
+MOST_FILES, MOST_BYTES = 20_000, 1 << 30
+"""Files, and bytes in them, that it may have in its folders; see `overused`."""
+_MEMORY_BYTES = 2 << 30
+"""Address space of its process; it is told at half of that."""
+_OPEN_FILES = 256
+_LIMITS = (
+    "import resource as r; limit = lambda kind, most: r.setrlimit(kind, (min(most, r.getrlimit(kind)[1] "
+    f"if r.getrlimit(kind)[1] >= 0 else most),) * 2); limit(r.RLIMIT_AS, {_MEMORY_BYTES}); "
+    f"limit(r.RLIMIT_FSIZE, {MOST_BYTES}); limit(r.RLIMIT_NOFILE, {_OPEN_FILES}); limit(r.RLIMIT_CORE, 0); "
+    "del r, limit; "
+)
+"""Code that sets limits which the process cannot raise again."""
 
 
 def check_isolation() -> None:
@@ -35,8 +77,9 @@ def check_isolation() -> None:
     Raises:
         ConfigError: it is not installed, or cannot start here.
     """
+    hint = "--no-isolate goes without"
     if shutil.which(BWRAP) is None:
-        raise ConfigError(f"{BWRAP} is not installed", "install bubblewrap, or leave --isolate out", key=_KEY)
+        raise ConfigError(f"{BWRAP} is not installed", f"install bubblewrap; {hint}", key=_KEY)
     try:
         done = subprocess.run(
             [*_command(Path("/"), (), ()), sys.executable, "-c", ""],
@@ -50,7 +93,7 @@ def check_isolation() -> None:
     except (OSError, subprocess.TimeoutExpired) as error:
         reason = str(error)
     if reason:
-        raise ConfigError(f"{BWRAP} cannot start here: {reason}", "leave --isolate out", key=_KEY)
+        raise ConfigError(f"{BWRAP} cannot start here: {reason}", hint, key=_KEY)
 
 
 class IsolatedChild:
@@ -91,6 +134,45 @@ class IsolatedChild:
         return self.returncode
 
 
+class Quota:
+    """How much an isolated program may have in its folders.
+
+    Args:
+        folders: The folders.
+    """
+
+    def __init__(self, folders: Iterable[Path]) -> None:
+        self._folders = tuple(folders)
+        self._next_look_s = 0.0
+
+    def exceeded(self, now_s: float) -> str:
+        """Return which limit is exceeded; empty if none is, or if it has been looked at a moment ago.
+
+        Args:
+            now_s: The time on any clock.
+        """
+        if now_s < self._next_look_s:
+            return ""
+        self._next_look_s = now_s + _LOOK_EVERY_S
+        files = size = 0
+        for entry in self._entries():
+            # Another process writes there: what is gone takes no space.
+            with suppress(OSError):
+                files, size = files + 1, size + 512 * entry.stat(follow_symlinks=False).st_blocks
+            if files > MOST_FILES or size > MOST_BYTES:
+                return f"the program has written more than {MOST_FILES:,} files or {MOST_BYTES >> 30} GiB"
+        return ""
+
+    def _entries(self) -> Iterator[os.DirEntry[str]]:
+        folders = [str(folder) for folder in self._folders]
+        while folders:
+            with suppress(OSError), os.scandir(folders.pop()) as entries:
+                for entry in entries:
+                    yield entry
+                    if entry.is_dir(follow_symlinks=False):
+                        folders.append(entry.path)
+
+
 def spawn_isolated(
     command: Sequence[str],
     environment: Mapping[str, str],
@@ -113,10 +195,13 @@ def spawn_isolated(
         OSError: bubblewrap cannot be started, or has not started the child.
     """
     info_fd, info_write = os.pipe()
+    filter_fd = filter_descriptor()
+    filtered = [] if filter_fd is None else ["--seccomp", str(filter_fd)]
+    theirs = [info_write] if filter_fd is None else [info_write, filter_fd]
     try:
         process = subprocess.Popen(
-            [*_command(writable[-1], writable, readable), "--info-fd", str(info_write), "--", *command],
-            pass_fds=[*inherited, info_write],
+            [*_command(writable[-1], writable, readable), *filtered, "--info-fd", str(info_write), "--", *command],
+            pass_fds=[*inherited, *theirs],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=log,
@@ -124,7 +209,8 @@ def spawn_isolated(
             start_new_session=True,
         )
     finally:
-        os.close(info_write)
+        for fd in theirs:
+            os.close(fd)
     with open(info_fd, "rb") as info:
         # It is closed when the child starts, or when bubblewrap has given up.
         text = info.read() if select.select([info_fd], [], [], START_S)[0] else b""
@@ -139,17 +225,18 @@ def spawn_isolated(
 def _command(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> list[str]:
     """Return the command of bubblewrap, up to its last options."""
     words = [BWRAP, "--unshare-all", "--as-pid-1", "--new-session", "--die-with-parent"]
-    words += ["--proc", "/proc", "--dev", "/dev", "--tmpfs", "/tmp"]
+    words += ["--proc", "/proc", "--dev", "/dev", "--size", str(_TMP_BYTES), "--tmpfs", "/tmp"]
     for place in (*_SYSTEM, *_python(), *map(str, readable)):
         words += ["--ro-bind-try", place, place]
     for folder in writable:
         words += ["--bind", str(folder), str(folder)]
-    return [*words, "--chdir", str(cwd)]
+    # These are in memory, too.
+    return [*words, "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", str(cwd)]
 
 
 def _python() -> list[str]:
     """Return the folders that Python and its packages are in."""
-    package = Path(__file__).parent.parent
+    package = Path(__file__).parent.parent.parent
     packages = [folder for folder in sys.path if Path(folder).name in _PACKAGES]
     folders = [sys.base_prefix, sys.base_exec_prefix, sys.prefix, sys.exec_prefix, *packages, str(package)]
     # A prefix such as / would show everything; what Python needs of it is part of the system.

@@ -1,0 +1,1 @@
+"""Starting the child process of a run, and guarding the host against what its program does."""
