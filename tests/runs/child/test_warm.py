@@ -10,10 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.running import over, until_tick
+from tests.running import Start, over, until_tick
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.runs.child import process
+from tuisim.runs.child import warm as process_warm
 from tuisim.runs.child.warm import ForkedChild, WarmProcess
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.run_folder import field_files
@@ -139,3 +140,13 @@ def test_how_a_child_ends_is_known(warm: WarmProcess) -> None:
 def test_the_warm_process_ends_with_its_host(warm: WarmProcess) -> None:
     warm.close()
     assert warm._process.returncode == 0
+
+
+@pytest.mark.parametrize("harm", ["SIGSTOP", "SIGKILL"])
+def test_a_program_that_harms_its_parent_does_not_keep_the_next_one_from_running(
+    start: Start, monkeypatch: pytest.MonkeyPatch, harm: str
+) -> None:
+    monkeypatch.setattr(process_warm, "ANSWER_S", 0.5)
+    over(start("print('A: 1')"))
+    over(start(f"import os, signal\nos.kill(os.getppid(), signal.{harm})"))
+    assert over(start("print('A: 1')")).lines == ["A: 1"]

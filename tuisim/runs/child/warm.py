@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import select
@@ -15,6 +16,10 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Protocol
 
+ANSWER_S = 10.0
+"""Longest wait for a server: a program may have stopped it. Then it is continued once, and given up after that."""
+END_S = 5.0
+"""Time for a server to end when its socket is closed; then it is killed."""
 _NUMBER_BYTES = 8
 _LENGTH_BYTES = 4
 
@@ -62,6 +67,8 @@ class ForkedChild:
                     with suppress(OSError):
                         os.killpg(self.pid, signal.SIGKILL)
                     self.returncode = -signal.SIGKILL
+            elif self.returncode is None:
+                _continue_parent_of(self.pid)
         return self.returncode
 
     def wait(self, timeout: float | None = None) -> int:
@@ -87,17 +94,28 @@ class ForkedChild:
                 os.kill(self.pid, number)
 
 
+def _continue_parent_of(pid: int) -> None:
+    """Continue the process that has to report the end of a child: a program may have stopped it."""
+    # Without /proc, or with another user's process, nothing can be done.
+    with suppress(OSError, ValueError):
+        with open(f"/proc/{pid}/stat", "rb") as file:
+            state, parent = file.read().rpartition(b")")[2].split()[:2]
+        if state == b"Z":
+            os.kill(int(parent), signal.SIGCONT)
+
+
 class ForkServer:
     """A process that forks children.
 
     Args:
         connection: The socket to it.
+        process: The process.
     """
 
-    def __init__(self, connection: socket.socket) -> None:
+    def __init__(self, connection: socket.socket, process: ChildProcess) -> None:
         self._lock = threading.Lock()
         self._pid = os.getpid()
-        self._socket = connection
+        self._socket, self._process = connection, process
 
     @property
     def is_usable(self) -> bool:
@@ -123,7 +141,7 @@ class ForkServer:
             serves: Whether it becomes a template.
 
         Raises:
-            OSError: it cannot be forked, or the server has ended.
+            OSError: it cannot be forked, or the server has ended, or does not answer.
         """
         request = {
             "folder": folder,
@@ -140,7 +158,7 @@ class ForkServer:
                 self._socket.sendall(message[sent:])
                 os.close(theirs)
                 theirs = -1
-                answer = os.read(status_fd, _NUMBER_BYTES)
+                answer = self._answer(status_fd)
         except OSError:
             os.close(status_fd)
             raise
@@ -153,27 +171,28 @@ class ForkServer:
             raise OSError(-pid, os.strerror(-pid)) if pid else ConnectionError("the server has ended")
         return ForkedChild(pid, status_fd)
 
+    def _answer(self, status_fd: int) -> bytes:
+        for _ in range(2):
+            if select.select([status_fd], [], [], ANSWER_S)[0]:
+                return os.read(status_fd, _NUMBER_BYTES)
+            self._process.send_signal(signal.SIGCONT)
+        raise TimeoutError(errno.ETIMEDOUT, "the server does not answer")
+
     def close(self) -> None:
-        """End it; its children go on."""
+        """End it, unless it belongs to a process that has forked this one; its children go on."""
         self._socket.close()
+        if self._pid != os.getpid():
+            return
+        self._process.send_signal(signal.SIGCONT)
+        try:
+            self._process.wait(END_S)
+        except subprocess.TimeoutExpired:
+            self._process.send_signal(signal.SIGKILL)
+            self._process.wait()
 
 
 class Template(ForkServer):
-    """A process that is prepared for a robot and a world, and forks children for them.
-
-    Args:
-        connection: The socket to it.
-        process: The process.
-    """
-
-    def __init__(self, connection: socket.socket, process: ForkedChild) -> None:
-        super().__init__(connection)
-        self._process = process
-
-    def close(self) -> None:
-        """End it; its children go on."""
-        super().close()
-        self._process.wait()
+    """A process that is prepared for a robot and a world, and forks children for them."""
 
 
 class WarmProcess(ForkServer):
@@ -186,10 +205,9 @@ class WarmProcess(ForkServer):
 
     def __init__(self, command: Sequence[str], environment: Mapping[str, str]) -> None:
         mine, theirs = socket.socketpair()
-        super().__init__(mine)
         self._environment = environment
         with theirs:
-            self._process = subprocess.Popen(
+            process = subprocess.Popen(
                 [*command, "--warm", str(theirs.fileno())],
                 pass_fds=[theirs.fileno()],
                 stdin=subprocess.DEVNULL,
@@ -199,6 +217,7 @@ class WarmProcess(ForkServer):
                 cwd="/",
                 start_new_session=True,
             )
+        super().__init__(mine, process)
 
     @property
     def is_usable(self) -> bool:
@@ -222,9 +241,3 @@ class WarmProcess(ForkServer):
         except OSError:
             mine.close()
             raise
-
-    def close(self) -> None:
-        """End it, unless it belongs to a process that has forked this one; its children go on."""
-        super().close()
-        if self._pid == os.getpid():
-            self._process.wait()
