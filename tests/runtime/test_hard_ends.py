@@ -111,7 +111,7 @@ def test_a_stop_in_what_python_calls_at_the_end_is_one(start: Start, text: str) 
 def test_an_error_that_python_cannot_raise_shows_the_programs_lines_only(run: Run) -> None:
     done = run("import time\nclass A:\n    def __del__(self): time.sleep(-1)\nA()\nprint('on')", prelude="none")
     assert done.errors == [
-        "Exception ignored in: <function A.__del__>",
+        "Exception ignored in: <function A.__del__ at 0x7f0000000010>",
         "Traceback (most recent call last):",
         '  File "program.py", line 3, in __del__',
         "    def __del__(self): time.sleep(-1)",

@@ -102,7 +102,7 @@ class Child:
     def _patch_modules(self, turn: Callable[[], None]) -> None:
         """Patch what programs find, and make what runs them."""
         # Imported here: threads must be patched before anything else imports `threading`.
-        from tuisim.runtime.patches.alarm import patch_alarm
+        from tuisim.runtime.patches.alarm import patch_signals
         from tuisim.runtime.patches.threads import patch_threads
         from tuisim.runtime.program import Outcome, ProgramRunner
         from tuisim.runtime.scheduler import Scheduler
@@ -119,8 +119,8 @@ class Child:
         waits = FileWaits(session, files)
         waits.patch_select()
         refuse_processes()
-        patch_threads(scheduler)
-        patch_alarm(session, scheduler)
+        patch_threads(scheduler, lambda *ended: self._runner.hooks.show_end_of_bare_thread(*ended))
+        patch_signals(session, scheduler)
         wallclock.stack_size(STACK_BYTES)
         limit_memory()
         install(
@@ -130,6 +130,7 @@ class Child:
                 "pandas": lambda module: finish_pandas(session, module),
                 "random": lambda module: finish_random(self._config.spec.seed, module),
                 "traceback": finish_traceback,
+                "ctypes": lambda module: self._runner.raw.finish_ctypes(module),
                 "inspect": finish_inspect,
                 "resource": lambda module: finish_resource(session, module),
                 "selectors": waits.finish_selectors,
@@ -179,6 +180,8 @@ class Child:
         remember_source(session.program_file, config.text)
         self._runner.connect(config)
         self._reads.begin(config.folder, config.own_folder, session.program_file)
+        self._runner.raw.open()
+        self._output.drain = self._runner.raw.drain
 
     def _write_turns(self, turns: tuple[Turn, ...]) -> None:
         sim = self._sim

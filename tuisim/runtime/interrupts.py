@@ -73,7 +73,8 @@ class Interrupts:
         _register(STACK_SIGNAL, file=self._stack_file, all_threads=False)
         signal.signal(COMMAND_SIGNAL, self._on_command)
         wallclock.set_signal(signal.SIGALRM, self._on_alarm)
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        # The interrupt of the terminal is for the host; the program's own is simulated.
+        wallclock.set_signal(signal.SIGINT, int(signal.SIG_IGN))
         if self._session.limits.stall_s:
             signal.signal(signal.SIGVTALRM, self._on_stall)
             wallclock.set_timer(signal.ITIMER_VIRTUAL, STALL_LOOK_S, STALL_LOOK_S)

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from tuisim.runs.side_files import OwnModule, note_module, read_modules
+from tuisim.runtime.own_names import PROGRAM_BUILTINS
 from tuisim.runtime.stack import PACKAGE_FOLDER
 
 _FOREIGN = (PACKAGE_FOLDER, os.path.dirname(traceback.__file__) + os.sep)
@@ -36,6 +37,11 @@ class OwnLoader(SourceFileLoader):
     def __init__(self, module: OwnModule) -> None:
         super().__init__(module.name, module.file)
         self._data = module.text.encode("utf-8", "surrogateescape")
+
+    def exec_module(self, module: types.ModuleType) -> None:
+        """Run the module with the builtins that the program has."""
+        vars(module)["__builtins__"] = vars(PROGRAM_BUILTINS)
+        super().exec_module(module)
 
     def get_data(self, path: str) -> bytes:
         """Return the stored text, or the contents of another file."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import codecs
 import io
 from collections.abc import Callable
 from typing import Any
 
-from tuisim.runs.records import MAX_OUTPUT_BYTES, OutputWriter, Stream
+from tuisim.runs.records import MAX_OUTPUT_BYTES, TEXT_STREAMS, OutputWriter, Stream
+from tuisim.runtime.addresses import Addresses
 
 
 class Output:
@@ -19,12 +21,18 @@ class Output:
         self.place: Callable[[], tuple[int, int, int]] = lambda: (0, 0, 0)
         """Returns tick, simulated ns and source line; set once the session exists."""
         self.after_write: Callable[[], None] = lambda: None
+        self.drain: Callable[[], None] = lambda: None
+        """Writes first what was written below Python's streams."""
         self.watch: Callable[[str, Stream], None] | None = None
         """If set, called with text and stream of each written row."""
+        self.addresses = Addresses()
 
     def row(self, text: str, stream: Stream) -> None:
         """Write one row."""
+        self.drain()
         tick, now, line = self.place()
+        if stream in TEXT_STREAMS:
+            text = self.addresses.stable(text)
         self.writer.write(text.encode("utf-8", "backslashreplace"), tick, now, line, stream)
         if self.watch is not None:
             self.watch(text, stream)
@@ -48,11 +56,16 @@ class LineStream(io.TextIOBase):
 
     encoding = "utf-8"
     errors = "backslashreplace"
+    mode = "w"
+    line_buffering = True
+    write_through = False
 
     def __init__(self, output: Output, stream: Stream = Stream.STDOUT) -> None:
         self._output, self._stream = output, stream
         self._part = io.StringIO()
         """Text without a newline yet; a line may be the result of any number of prints."""
+        self._buffer = ByteStream(self)
+        self._is_detached = False
 
     @property
     def name(self) -> str:
@@ -62,19 +75,40 @@ class LineStream(io.TextIOBase):
     @property
     def buffer(self) -> ByteStream:
         """Binary stream, for programs that write bytes."""
-        return ByteStream(self)
+        return self._buffer
+
+    def __repr__(self) -> str:
+        return f"<_io.TextIOWrapper name={self.name!r} mode='w' encoding='utf-8'>"
 
     def reconfigure(self, **_settings: object) -> None:
         """Do nothing: lines are always written at once and in UTF-8."""
+
+    def fileno(self) -> int:
+        """Return the descriptor that C writes to."""
+        return int(self._stream)
 
     def writable(self) -> bool:
         """Return True."""
         return True
 
+    def detach(self) -> Any:
+        """Return the binary stream; this one is unusable afterwards."""
+        self._is_detached = True
+        return self._buffer
+
     def write(self, text: str) -> int:
         """Write text; whole lines are recorded at once."""
         if not isinstance(text, str):
             raise TypeError(f"write() argument must be str, not {type(text).__name__}")
+        if self._is_detached:
+            raise ValueError("underlying buffer has been detached")
+        if self.closed:
+            raise ValueError("I/O operation on closed file.")
+        return self.put(text)
+
+    def put(self, text: str) -> int:
+        """Write text, also if the program has closed the stream."""
+        self._output.drain()
         if "\n" not in text:
             self._part.write(text)
             if self._part.tell() > MAX_OUTPUT_BYTES:
@@ -89,12 +123,16 @@ class LineStream(io.TextIOBase):
         self._output.after_write()
         return len(text)
 
+    def put_bytes(self, data: bytes) -> None:
+        """Write bytes, decoded as UTF-8; a character may come in several parts."""
+        self._buffer.put(data)
+
     def flush(self) -> None:
         """Do nothing: whole lines are written already, and a partial line waits for its end."""
 
     def finish(self) -> None:
         """Write the partial line."""
-        if part := self.take_part():
+        if part := self.take_part() + self._buffer.take_rest():
             self._output.row(part, self._stream)
 
     def take_part(self) -> str:
@@ -110,8 +148,25 @@ class ByteStream(io.RawIOBase):
         stream: Receives the text.
     """
 
+    mode = "wb"
+
     def __init__(self, stream: LineStream) -> None:
         self._stream = stream
+        self._decoder = codecs.getincrementaldecoder("utf-8")("replace")
+
+    @property
+    def name(self) -> str:
+        """Name of the real stream."""
+        return self._stream.name
+
+    @property
+    def raw(self) -> ByteStream:
+        """The stream itself: there is no buffer."""
+        return self
+
+    def fileno(self) -> int:
+        """Return the descriptor that C writes to."""
+        return self._stream.fileno()
 
     def writable(self) -> bool:
         """Return True."""
@@ -119,6 +174,16 @@ class ByteStream(io.RawIOBase):
 
     def write(self, data: Any) -> int:
         """Write bytes, decoded as UTF-8."""
+        if self.closed:
+            raise ValueError("write to closed file")
         taken = bytes(data)
-        self._stream.write(taken.decode("utf-8", "replace"))
+        self.put(taken)
         return len(taken)
+
+    def put(self, data: bytes) -> None:
+        """Write bytes, also if the program has closed the stream."""
+        self._stream.put(self._decoder.decode(data))
+
+    def take_rest(self) -> str:
+        """Return what is there of a character that never came to its end."""
+        return self._decoder.decode(b"", final=True)

@@ -3,34 +3,35 @@
 from __future__ import annotations
 
 import atexit
-import builtins
 import gc
 import io
 import operator
 import os
-import re
+import signal
 import sys
 import types
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, NoReturn
+from typing import NoReturn
 
 from tuisim.core.profile import NS_PER_S
 from tuisim.errors import LogError
 from tuisim.protocol import NO_ANSWER, Answer, End, InputWanted
 from tuisim.runs.records import Stream
-from tuisim.runtime.loader import LOOP_HOOK, MissingPart, compile_prelude, compile_program, point_at_prelude
+from tuisim.runtime.hooks import ErrorHooks, flush_streams, safe_text
+from tuisim.runtime.loader import LOOP_HOOK, MissingPart, compile_prelude, compile_program
 from tuisim.runtime.modules import find_modules_for
 from tuisim.runtime.output import LineStream, Output
+from tuisim.runtime.own_names import PROGRAM_BUILTINS, give_builtins, keep_modules
 from tuisim.runtime.patches.replacement import replace
+from tuisim.runtime.patches.traces import patch_traces, stop_traces
+from tuisim.runtime.raw_output import RawOutput
 from tuisim.runtime.run_config import RunConfig
 from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import Deadlock, Session, StopProgram
 from tuisim.runtime.stack import patch_faulthandler
-from tuisim.runtime.tracebacks import point_at_namesake, report_error
-from tuisim.shim.evdev.devices import point_at_gamepads
-from tuisim.shim.unsupported.modules import point_at_package
+from tuisim.runtime.tracebacks import line_in
 from tuisim.shim.waits import Wait, waits_for
 
 
@@ -45,7 +46,8 @@ class Outcome:
     error_line: int = 0
 
 
-_ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")
+_INTERRUPTED = 128 + signal.SIGINT
+"""What a shell reports of a program that an interrupt has ended."""
 
 
 def _has_finalizer(value: object) -> bool:
@@ -57,14 +59,6 @@ def _has_finalizer(value: object) -> bool:
 def _is_data(value: object) -> bool:
     """Return whether a value is neither code nor an open file."""
     return not isinstance(value, types.ModuleType | types.FunctionType | types.BuiltinFunctionType | type | io.IOBase)
-
-
-def safe_text(write: Callable[[object], str], value: object) -> str:
-    """Return the `str` or `repr` of a value, or a placeholder if that fails."""
-    try:
-        return write(value)
-    except BaseException:  # a program's own method may do anything
-        return f"<{type(value).__name__}, whose {write.__name__}() failed>"
 
 
 class ProgramRunner:
@@ -89,6 +83,8 @@ class ProgramRunner:
         self._session, self._output, self._scheduler = session, output, scheduler
         self._leave = leave
         self.stdout, self.stderr = LineStream(output), LineStream(output, Stream.STDERR)
+        self.raw = RawOutput(self.stdout.put_bytes, self.stderr.put_bytes)
+        self.hooks = ErrorHooks(session, output, self.stderr, lambda: self._config.text)
         self._module = types.ModuleType("__main__")
         self._prelude_error: BaseException | None = None
         self.prepared: dict[str, int] = {}
@@ -97,12 +93,14 @@ class ProgramRunner:
         """The program; None before it is compiled."""
         self.names = self._module.__dict__
         """The program's global names."""
-        setattr(builtins, LOOP_HOOK, loop_hook)
+        self._loop_hook = loop_hook
 
     def prepare(self, prelude: str) -> None:
         """Do what comes before the program and is the same for every program: streams, and the prelude of a name."""
+        give_builtins()
+        vars(PROGRAM_BUILTINS)[LOOP_HOOK] = self._loop_hook
         self._patch()
-        vars(self._module)["__builtins__"] = builtins
+        vars(self._module)["__builtins__"] = PROGRAM_BUILTINS
         sys.modules["__main__"] = self._module
         # The prelude is free of charge.
         self._session.free += 1
@@ -111,6 +109,7 @@ class ProgramRunner:
         except BaseException as error:  # it is an error of the program, and is raised when that begins
             self._prelude_error = error
         self._session.free -= 1
+        keep_modules()
 
     def _run_prelude(self, prelude: str) -> None:
         for part, code in compile_prelude(prelude):
@@ -174,6 +173,7 @@ class ProgramRunner:
         """Do what Python does at the end of a program: exit functions, open files, finalizers."""
         try:
             atexit._run_exitfuncs()
+            flush_streams((self.stdout, self.stderr))
             if self._session.stop_reason is not None:
                 # Its traceback keeps frames alive.
                 self._session.stop_reason.with_traceback(None)
@@ -181,10 +181,14 @@ class ProgramRunner:
                 # A thread that still computes when the user stops the program needs its names.
                 self._clear_module()
         except BaseException as error:  # the program is over: later errors are only reported
-            self._thread_error(type(error), error, None)
+            self.hooks.show(error)
 
     def _clear_module(self) -> None:
         """Clear the program's module in such an order that finalizers still find most of its names."""
+        # The program's functions that are called all the time need theirs, too.
+        gc.collect()
+        stop_traces()
+        gc.callbacks.clear()
         for removable in (_has_finalizer, _is_data):
             for name in [name for name, value in self.names.items() if removable(value) and not name.startswith("__")]:
                 self.names.pop(name, None)
@@ -193,6 +197,8 @@ class ProgramRunner:
         gc.collect()
 
     def _finish_streams(self) -> None:
+        with suppress(LogError):
+            self.raw.finish()
         for stream in (self.stdout, self.stderr):
             try:
                 stream.finish()
@@ -204,14 +210,11 @@ class ProgramRunner:
         sys.stdout, sys.stderr = self.stdout, self.stderr
         # Also for code that replaces a stream and restores it.
         vars(sys).update(__stdout__=self.stdout, __stderr__=self.stderr)
-        replace(sys, "excepthook", self._thread_error, (3, 3))
-        replace(sys, "unraisablehook", self._ignored_error, (1, 1))
-        vars(sys).update(__excepthook__=sys.excepthook, __unraisablehook__=sys.unraisablehook)
+        self.hooks.install()
         patch_faulthandler()
-        import threading
-
-        replace(threading, "excepthook", lambda args: self._thread_error(*args[:3]), (1, 1))
-        replace(builtins, "input", self._input, (0, 1))
+        patch_traces()
+        replace(PROGRAM_BUILTINS, "input", self._input, (0, 1))
+        replace(os, "write", self.raw.write, (2, 2))
         replace(os, "_exit", lambda status: self._exit_now(operator.index(status)))
 
     def _execute(self) -> None:
@@ -245,29 +248,21 @@ class ProgramRunner:
             case SystemExit():
                 return self._exit_outcome(error.code)
             case LogError():
-                return Outcome(End.OUTPUT_LIMIT, 0, error.message, error_line=self._line_in(error.__traceback__))
+                line = line_in(error.__traceback__, self._session.program_file)
+                return Outcome(End.OUTPUT_LIMIT, 0, error.message, error_line=line)
             case MemoryError():
                 return self._raised(MemoryError("the program used up the memory it may have"), error.__traceback__)
         return self._raised(error, error.__traceback__)
 
-    def _line_in(self, trace: types.TracebackType | None) -> int:
-        """Return the program's last line in a traceback; 0 if there is none."""
-        line = 0
-        while trace is not None:
-            line = trace.tb_lineno if trace.tb_frame.f_code.co_filename == self._session.program_file else line
-            trace = trace.tb_next
-        return line
-
     def _raised(self, error: BaseException, trace: types.TracebackType | None) -> Outcome:
         self.stdout.finish()
-        point_at_prelude(error)
-        point_at_namesake(error, self._session.program_file)
-        point_at_package(error)
-        point_at_gamepads(error)
-        report = report_error(error.with_traceback(trace), self._session.program_file, self._config.text)
-        self._write_error(report.text)
+        try:
+            report = self.hooks.show_uncaught(error.with_traceback(trace))
+        except SystemExit as left:
+            return self._exit_outcome(left.code)
         end = End.DEADLOCK if isinstance(error, Deadlock) else End.RAISED
-        return Outcome(end, 1, report.summary, report.text, report.line)
+        code = _INTERRUPTED if isinstance(error, KeyboardInterrupt) else 1
+        return Outcome(end, code, report.summary, report.text, report.line)
 
     def _exit_outcome(self, code: object) -> Outcome:
         if code is None:
@@ -277,7 +272,7 @@ class ProgramRunner:
             # As Python does for invalid exit statuses.
             number = number if abs(number) < 1 << 31 else -1
         else:
-            self._write_error(safe_text(str, code))
+            self.hooks.write(safe_text(str, code) + "\n")
             number = 1
         return Outcome(End.FINISHED, number, f"the program ended itself with exit code {number}" if number else "")
 
@@ -285,40 +280,13 @@ class ProgramRunner:
         self._finish_streams()
         self._leave(self._exit_outcome(status))
 
-    def _thread_error(self, _kind: Any, error: BaseException | None, _trace: Any) -> None:
-        if error is None or isinstance(error, StopProgram):
-            return
-        point_at_prelude(error)
-        point_at_namesake(error, self._session.program_file)
-        point_at_package(error)
-        point_at_gamepads(error)
-        self._write_error(report_error(error, self._session.program_file, self._config.text).text)
-
-    def _ignored_error(self, ignored: Any) -> None:
-        """Report an error that Python cannot raise, such as in a `__del__`; a stop is raised again elsewhere."""
-        if isinstance(ignored.exc_value, StopProgram):
-            self._session.stop_lost()
-            return
-        # The address differs in every run.
-        where = _ADDRESS.sub("", safe_text(repr, ignored.object))
-        self._write_error(f"{ignored.err_msg or 'Exception ignored in'}: {where}")
-        self._thread_error(ignored.exc_type, ignored.exc_value, ignored.exc_traceback)
-
-    def _write_error(self, text: str) -> None:
-        try:
-            for line in text.rstrip("\n").split("\n"):
-                self._output.row(line, Stream.STDERR)
-        except LogError:
-            # The file is full, and reports that itself.
-            return
-
     # Input
 
     @waits_for(Wait.INPUT)
     def _input(self, prompt: object = "") -> str:
         """Replacement for input(): returns scripted answers, or the user's."""
         self.stdout.write(str(prompt))
-        asked = self.stdout.take_part()
+        asked = self._output.addresses.stable(self.stdout.take_part())
         answer: str | None
         if self._answers:
             answer = self._answers.pop(0)

@@ -7,10 +7,10 @@ any mode that needs more (live pacing, threads, a command, stopping) sets a bit 
 
 from __future__ import annotations
 
-import sys
 import types
 from collections.abc import Callable
 from dataclasses import dataclass
+from sys import _getframe
 from typing import TYPE_CHECKING, Any, Protocol
 
 from tuisim.core.field import Field
@@ -262,6 +262,7 @@ class Session:
             self.flags &= ~DEBUG
             self.debug().enter()
         if until > self.now:
+            self.output.drain()
             self.sim.line = self.program_line()
         if self.flags & THREADS and self.sleep_threaded is not None:
             self.sleep_threaded(until, on_change)
@@ -385,7 +386,7 @@ class Session:
 
     def program_line(self) -> int:
         """Return the line of the program that is running; 0 if there is none."""
-        frame: types.FrameType | None = sys._getframe(1)
+        frame: types.FrameType | None = _getframe(1)
         file = self.program_file
         while frame is not None:
             if frame.f_code.co_filename == file:

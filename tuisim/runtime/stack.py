@@ -7,33 +7,24 @@ from __future__ import annotations
 
 import faulthandler
 import os
+import signal
 import sys
 import types
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
 from typing import Any
 
+from tuisim.protocol import COMMAND_SIGNAL, STACK_SIGNAL
+from tuisim.runtime import wallclock
 from tuisim.runtime.patches.replacement import replace
 
+_CRASHES = (signal.SIGSEGV, signal.SIGFPE, signal.SIGABRT, signal.SIGBUS, signal.SIGILL)
+_OURS = (COMMAND_SIGNAL, STACK_SIGNAL, signal.SIGALRM, signal.SIGVTALRM, signal.SIGINT)
+"""Signals that the runtime handles."""
 PACKAGE_FOLDER = str(Path(__file__).parent.parent) + os.sep
 _BOTTOM = os.path.join(PACKAGE_FOLDER, "runtime", "__main__.py")
 """File of the outermost frame of the process."""
-
-
-_every_frame = False
-
-
-@contextmanager
-def every_frame() -> Iterator[None]:
-    """Let `traceback` walk over all frames in the body, including those hidden from the program."""
-    global _every_frame
-    _every_frame = True
-    try:
-        yield
-    finally:
-        _every_frame = False
 
 
 def _seen(walk: Iterable[Any], file_of: Callable[[Any], str]) -> Iterator[Any]:
@@ -79,7 +70,7 @@ def finish_inspect(module: types.ModuleType) -> None:
 def _filtered(walk: Callable[..., Iterable[Any]], file_of: Callable[[Any], str]) -> Callable[..., Iterator[Any]]:
     @wraps(walk)
     def filtered(*args: Any, **kwargs: Any) -> Iterator[Any]:
-        return iter(walk(*args, **kwargs)) if _every_frame else _seen(walk(*args, **kwargs), file_of)
+        return _seen(walk(*args, **kwargs), file_of)
 
     return filtered
 
@@ -95,8 +86,7 @@ def _listed(walk: Callable[..., Iterator[Any]]) -> Callable[..., list[Any]]:
 def patch_faulthandler() -> None:
     """Let a program enable what is always enabled: crashes are written for the host, and their line is reported.
 
-    Functions that write the stack after a real time or on a signal do nothing: time in a run is simulated, its limits
-    are the host's, and the signals are the runtime's.
+    Functions that write the stack after a real time do nothing: time in a run is simulated, its limits are the host's.
     """
     on = False
 
@@ -115,9 +105,40 @@ def patch_faulthandler() -> None:
     replace(faulthandler, "disable", lambda: switch(False), (0, 0))
     replace(faulthandler, "is_enabled", lambda: on, (0, 0))
     replace(faulthandler, "dump_traceback", dump_traceback)
-    for name in ("dump_traceback_later", "cancel_dump_traceback_later", "register"):
+    for name in ("dump_traceback_later", "cancel_dump_traceback_later"):
         replace(faulthandler, name, lambda *_args, **_named: None)
-    replace(faulthandler, "unregister", lambda _number: False, (1, 1))
+    _patch_registration()
+
+
+def _patch_registration() -> None:
+    """Write the stack on a signal that the runtime does not use itself."""
+    before: dict[int, Any] = {}
+
+    def register(signum: int, file: Any = None, all_threads: bool = True, chain: bool = False) -> None:
+        if signum in _CRASHES:
+            raise RuntimeError(f"signal {signum} cannot be registered, use enable() instead")
+        out = sys.stderr if file is None else file
+
+        def handle(number: int, frame: types.FrameType | None) -> None:
+            if frame is not None:
+                _write(_stacks_text(frame, all_threads), out)
+            if chain and callable(previous := before.get(number)):
+                previous(number, frame)
+
+        was = None if signum in _OURS else set_signal(signum, handle)
+        before.setdefault(signum, was)
+
+    def unregister(signum: int) -> bool:
+        if signum not in before:
+            return False
+        was = before.pop(signum)
+        if signum not in _OURS:
+            set_signal(signum, was)
+        return True
+
+    set_signal = wallclock.set_signal
+    replace(faulthandler, "register", register)
+    replace(faulthandler, "unregister", unregister, (1, 1))
 
 
 def _stacks_text(frame: types.FrameType, all_threads: bool) -> str:

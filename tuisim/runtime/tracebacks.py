@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
+import io
+import linecache
 import os
 import sys
-import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 from tuisim.errors import counted
 from tuisim.runtime import wallclock
 from tuisim.runtime.modules import OWN_FILES, is_own
-from tuisim.runtime.stack import every_frame
+from tuisim.runtime.own_names import own_instance
 from tuisim.source import source_lines
 
 _OUR_NAMES = ("tuisim.errors.", "tuisim.runtime.session.")
 MOST_LINKED = 10
 """Of a longer chain of causes, this many are shown at either end."""
 _HEADING = "Traceback (most recent call last):\n"
+_own_linecache = own_instance("linecache")
+_traceback = own_instance("traceback", linecache=_own_linecache)
+"""The program may replace the names of the other instances; it sees fewer frames there."""
+_show = sys.excepthook
+_SYNTAX_ERRORS: tuple[type[SyntaxError], ...] = (SyntaxError, IndentationError, TabError)
+Trace = Any
+"""`_traceback.TracebackException`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,39 +41,120 @@ class ErrorReport:
     """Error and location in one line."""
 
 
-def report_error(error: BaseException, file: str, source: str) -> ErrorReport:
+def report_error(error: BaseException, file: str, source: str, alone: bool = False) -> ErrorReport:
     """Return the report of an error.
 
     Args:
         error: What the program raised.
         file: File name of the program's frames.
         source: The program's text.
+        alone: Whether to leave out suggestions, notes, and the errors that led to it, as Python does where it cannot
+            raise an error.
     """
-    remember_source(file, source)
+    _own_linecache.cache[file] = _remembered(file, source)
+    _add_text(error, file, source)
     try:
         # All frames: an error without any was created but never raised.
-        with every_frame():
-            trace = traceback.TracebackException.from_exception(error, compact=True)
+        make = _traceback.TracebackException.from_exception
+        trace = make(error, limit=sys.maxsize, lookup_lines=False, compact=True)
+        if alone:
+            trace.__cause__ = trace.__context__ = trace.__notes__ = None
+        elif sys.version_info < (3, 12):
+            _add_suggestions(trace, error)
         chain = _keep_program_frames(trace, own_files(file))
-        text, stack, summary = _text_of(chain), trace.stack, _summary(trace)
+        text, summary = _text_of(chain), _summary(trace)
     except Exception as problem:  # an error may be anything, and nested too deeply: it is reported nevertheless
-        stack = traceback.StackSummary.from_list(
-            [frame for frame in traceback.extract_tb(error.__traceback__) if own_files(file)(frame.filename)]
+        stack = _traceback.StackSummary.from_list(
+            [frame for frame in _traceback.extract_tb(error.__traceback__) if own_files(file)(frame.filename)]
         )
         summary = f"{_kind_of(error)}: <cannot be shown: {type(problem).__name__}>"
         text = _HEADING + "".join(stack.format()) + summary + "\n"
     for name in _OUR_NAMES:
         text, summary = text.replace(name, ""), summary.replace(name, "")
-    lines = [frame.lineno or 0 for frame in stack if frame.filename == file]
-    line = lines[-1] if lines else _line_of(error)
+    line = line_in(error.__traceback__, file) or _line_of(error)
     return ErrorReport(text, line, f"{summary} (line {line})" if line else summary)
+
+
+def _add_text(error: BaseException, file: str, source: str) -> None:
+    """Add the program's line to a syntax error for which Python has looked for the file, which need not exist."""
+    if type(error) in _SYNTAX_ERRORS and isinstance(error, SyntaxError) and error.text is None:
+        lines, line = source_lines(source), _line_of(error)
+        if error.filename == file and 0 < line <= len(lines):
+            error.text = lines[line - 1] + "\n"
+
+
+def line_in(trace: Any, file: str) -> int:
+    """Return a file's last line in a traceback; 0 if there is none."""
+    line = 0
+    while trace is not None:
+        line = trace.tb_lineno if trace.tb_frame.f_code.co_filename == file else line
+        trace = trace.tb_next
+    return line
+
+
+# What only the interpreter itself prints, not its module `traceback`: up to Python 3.11 the names that were meant
+
+
+def _add_suggestions(trace: Trace, error: BaseException) -> None:
+    """Add the names that Python suggests to an error and those linked to it."""
+    pairs: list[tuple[Trace, Any]] = [(trace, error)]
+    for one, real in pairs:
+        if one is None or real is None:
+            continue
+        kind = type(real)
+        if kind is NameError or kind is AttributeError:
+            one._str = (one._str or "") + _suggestion(real)
+        elif kind in _SYNTAX_ERRORS:
+            _show_as_python(one, real)
+        pairs += [(one.__cause__, real.__cause__), (one.__context__, real.__context__)]
+        pairs += zip(one.exceptions or (), getattr(real, "exceptions", ()), strict=False)
+
+
+def _suggestion(error: Any) -> str:
+    """Return what Python adds to the message of a NameError or an AttributeError."""
+    kind = type(error)
+    # Without a message, whose text might be written by the program.
+    bare = kind(name=error.name) if kind is NameError else kind(name=error.name, obj=error.obj)
+    bare.__traceback__ = error.__traceback__
+    return _shown(bare).removeprefix(kind.__name__).rstrip("\n")
+
+
+def _show_as_python(trace: Trace, error: SyntaxError) -> None:
+    """Let a syntax error be formatted by Python itself, whose carets differ."""
+    bare: Any = type(error)()
+    for name in ("msg", "filename", "lineno", "offset", "text", "end_lineno", "end_offset", "print_file_and_line"):
+        setattr(bare, name, getattr(error, name, None))
+    shown = _shown(bare)
+
+    def lines(_kind: str) -> Iterator[str]:
+        yield from shown.splitlines(keepends=True)
+
+    trace._format_syntax_error = lines
+
+
+def _shown(error: BaseException) -> str:
+    """Return what Python prints of an error, without its frames."""
+    names, shown = vars(sys), io.StringIO()
+    meanwhile = {"stderr": shown, "tracebacklimit": 0}
+    before = {name: names[name] for name in meanwhile if name in names}
+    names.update(meanwhile)
+    try:
+        _show(type(error), error, error.__traceback__)
+    finally:
+        for name in meanwhile:
+            del names[name]
+        names.update(before)
+    return shown.getvalue()
 
 
 def remember_source(file: str, source: str) -> None:
     """Make tracebacks show the text that runs, not the current contents of the file."""
-    import linecache
+    for cache in (_own_linecache.cache, linecache.cache):
+        cache[file] = _remembered(file, source)
 
-    linecache.cache[file] = (len(source), None, [line + "\n" for line in source_lines(source)], file)
+
+def _remembered(file: str, source: str) -> tuple[int, None, list[str], str]:
+    return len(source), None, [line + "\n" for line in source_lines(source)], file
 
 
 def _kind_of(error: BaseException) -> str:
@@ -79,7 +168,7 @@ def _line_of(error: BaseException) -> int:
     return line if isinstance(line, int) else 0
 
 
-def _summary(trace: traceback.TracebackException) -> str:
+def _summary(trace: Trace) -> str:
     only = source_lines("".join(trace.format_exception_only()).strip())
     # A syntax error starts with its location; of a message of several lines the first is the most useful.
     return only[-1] if only[0].startswith("File ") else only[0]
@@ -96,9 +185,6 @@ def own_files(file: str) -> Callable[[str], bool]:
         return path.startswith(beside) and is_own(path) and not name.startswith("<")
 
     return own
-
-
-Trace = traceback.TracebackException
 
 
 def point_at_namesake(error: BaseException, file: str) -> None:
@@ -119,14 +205,17 @@ def point_at_namesake(error: BaseException, file: str) -> None:
 def _keep_program_frames(trace: Trace, own: Callable[[str], bool]) -> list[Trace]:
     """Remove all other frames from an error and the errors linked to it; return it and its causes, newest first."""
     chains = [[trace]]
+    limit = vars(sys).get("tracebacklimit")
+    most = max(limit, 0) if isinstance(limit, int) else sys.maxsize
     for chain in chains:
         for one in chain:
             was_raised = bool(one.stack)
-            one.stack = traceback.StackSummary.from_list([frame for frame in one.stack if own(frame.filename)])
+            kept = [frame for frame in one.stack if own(frame.filename)]
+            one.stack = _traceback.StackSummary.from_list(kept[-most:] if most else [])
             chains += [[inner] for inner in getattr(one, "exceptions", None) or ()]
             before = chain[-2] if one is not chain[0] else None
             # An error that never touched the program's code is a detail of the runtime or of the library.
-            if before is not None and was_raised and not one.stack:
+            if before is not None and was_raised and not kept:
                 before.__cause__ = before.__context__ = None
                 chain.pop()
             elif (linked := _linked(one)) is not None:

@@ -25,7 +25,7 @@ fork, getpid = os.fork, os.getpid
 signals: Any = import_module("_signal")
 """The C module behind `signal`; type checkers do not know it."""
 set_signal, set_timer = signals.signal, signals.setitimer
-settrace, gettrace = sys.settrace, sys.gettrace
+settrace, gettrace, setprofile = sys.settrace, sys.gettrace, sys.setprofile
 
 
 def _start_folder() -> str:

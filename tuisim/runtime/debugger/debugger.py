@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 import types
 from collections.abc import Callable, Iterable, Mapping
+from sys import _getframe
 from typing import TYPE_CHECKING, Any
 
 from tuisim import protocol
@@ -84,7 +84,7 @@ class Debugger:
             case protocol.StepLine(how=how):
                 self._forget_goals()
                 # A paused run waits for commands in the thread that was paused.
-                depth = self._tracer.depth_of(sys._getframe())
+                depth = self._tracer.depth_of(_getframe())
                 self._step = step_from(how, self._scheduler.current, depth) if steering.holding else NEXT_LINE
                 steering.resume()
             case protocol.RunToLine(line=line):

@@ -6,7 +6,6 @@ memory: that happens only in the copy, which is discarded.
 
 from __future__ import annotations
 
-import builtins
 import os
 import signal
 from collections.abc import Callable, Iterator
@@ -17,6 +16,8 @@ from tuisim.protocol import COMMAND_SIGNAL, STACK_SIGNAL
 from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.loader import LOOP_HOOK
+from tuisim.runtime.own_names import PROGRAM_BUILTINS
+from tuisim.runtime.raw_output import silence_descriptors
 from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import Session
 
@@ -115,9 +116,10 @@ def _freeze(session: Session, scheduler: Scheduler) -> None:
         setattr(frozen, name, _refuse)
     for name in ("wait", "give_way", "spawn"):
         setattr(threads, name, _refuse)
-    setattr(builtins, LOOP_HOOK, lambda: None)
+    setattr(PROGRAM_BUILTINS, LOOP_HOOK, lambda: None)
     silent: Any = session.output
-    silent.row, silent.after_write = lambda *_: None, lambda: None
+    silent.row, silent.after_write, silent.drain = lambda *_: None, lambda: None, lambda: None
+    silence_descriptors()
     for number in (COMMAND_SIGNAL, STACK_SIGNAL, signal.SIGVTALRM):
         signal.signal(number, signal.SIG_IGN)
 

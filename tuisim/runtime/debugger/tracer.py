@@ -7,10 +7,10 @@ there were no debugger. Only code in the program's own files gets line events.
 from __future__ import annotations
 
 import os
-import sys
 import types
 from collections import deque
 from collections.abc import Callable
+from sys import _getframe
 from typing import Any
 
 from tuisim.protocol import UNKNOWN_ORDINAL, ExecutedLine
@@ -80,7 +80,7 @@ class Tracer:
             if found is not None:
                 wallclock.settrace(None)
             return
-        frame: types.FrameType | None = sys._getframe(1)
+        frame: types.FrameType | None = _getframe(1)
         while frame is not None:
             if self.is_own(frame):
                 frame.f_trace = self._on_event

@@ -1,13 +1,15 @@
-"""Alarms in simulated time: `signal.alarm` and `signal.setitimer` interrupt the main thread, as on a brick."""
+"""Signals that the runtime simulates: alarms in simulated time, and the interrupt that a program sends to itself."""
 
 from __future__ import annotations
 
+import _thread
 import errno
 import operator
 import os
 import signal
-import sys
 import types
+from collections.abc import Mapping
+from sys import _getframe
 from typing import Any
 
 from tuisim.core.profile import NS_PER_S
@@ -65,16 +67,55 @@ class Alarm:
         if self.handler == signal.SIG_DFL:
             wallclock.set_signal(signal.SIGALRM, self.handler)
             signal.raise_signal(signal.SIGALRM)
-        frame: types.FrameType | None = sys._getframe(1)
-        while frame is not None and frame.f_code.co_filename != self._session.program_file:
-            frame = frame.f_back
-        self.handler(int(signal.SIGALRM), frame)
+        self.handler(int(signal.SIGALRM), _program_frame(self._session))
 
 
-def patch_alarm(session: Session, scheduler: Scheduler) -> None:
-    """Replace the functions of `signal` that set an alarm, wait for one, or set and return its handler."""
-    alarm = Alarm(session, scheduler)
-    real_signal, real_getsignal, real_getitimer = wallclock.set_signal, wallclock.signals.getsignal, signal.getitimer
+class Interrupt:
+    """The interrupt of a program, otherwise sent by a terminal: it reaches the main thread at a fixed instant.
+
+    Args:
+        session: Knows the program's lines.
+        scheduler: Calls the handler in the main thread.
+    """
+
+    def __init__(self, session: Session, scheduler: Scheduler) -> None:
+        self._session, self._scheduler = session, scheduler
+        self.handler: Any = signal.default_int_handler
+        """The program's handler, or the number of a standard action."""
+
+    def send(self) -> None:
+        """Call the handler at once in the main thread; otherwise as soon as that waits."""
+        if self.handler in (signal.SIG_IGN, None):
+            return
+        if self._scheduler.current is self._scheduler.main:
+            self._call()
+        else:
+            self._scheduler.interrupt_main(self._call)
+
+    def _call(self) -> None:
+        if self.handler == signal.SIG_DFL:
+            wallclock.set_signal(signal.SIGINT, self.handler)
+            wallclock.signals.raise_signal(signal.SIGINT)
+        self.handler(int(signal.SIGINT), _program_frame(self._session))
+
+
+def _program_frame(session: Session) -> types.FrameType | None:
+    frame: types.FrameType | None = _getframe(1)
+    while frame is not None and frame.f_code.co_filename != session.program_file:
+        frame = frame.f_back
+    return frame
+
+
+def patch_signals(session: Session, scheduler: Scheduler) -> None:
+    """Replace the functions of `signal`, `os` and `_thread` that have to do with alarms and interrupts."""
+    alarm, interrupt = Alarm(session, scheduler), Interrupt(session, scheduler)
+    _patch_alarm(alarm, scheduler)
+    _patch_interrupt(interrupt)
+    _patch_handlers({signal.SIGALRM: alarm, signal.SIGINT: interrupt})
+
+
+def _patch_alarm(alarm: Alarm, scheduler: Scheduler) -> None:
+    real_getitimer = signal.getitimer
 
     def set_alarm(seconds: Any) -> int:
         length = operator.index(seconds) % 2**32
@@ -99,24 +140,54 @@ def patch_alarm(session: Session, scheduler: Scheduler) -> None:
         alarm.set(*lengths)
         return before
 
-    def set_handler(number: Any, handler: Any) -> Any:
-        before = real_signal(number, handler)
-        if number != signal.SIGALRM:
-            return before
-        # The handler was valid for the signal, which the runtime itself uses.
-        real_signal(number, before)
-        before, alarm.handler = alarm.handler, handler
-        return before
-
-    def handler_of(number: Any) -> Any:
-        return alarm.handler if number == signal.SIGALRM else real_getsignal(number)
-
     replace(signal, "alarm", set_alarm, (1, 1))
     replace(signal, "setitimer", setitimer, (2, 3))
     replace(signal, "getitimer", getitimer, (1, 1))
     replace(signal, "pause", scheduler.pause, (0, 0))
+
+
+def _patch_interrupt(interrupt: Interrupt) -> None:
+    real_kill, real_raise, real_interrupt = os.kill, wallclock.signals.raise_signal, _thread.interrupt_main
+
+    def kill(pid: Any, number: Any) -> None:
+        if number == signal.SIGINT and pid == wallclock.getpid():
+            interrupt.send()
+        else:
+            real_kill(pid, number)
+
+    def raise_signal(number: Any) -> None:
+        if number == signal.SIGINT:
+            interrupt.send()
+        else:
+            real_raise(number)
+
+    def interrupt_main(number: Any = signal.SIGINT) -> None:
+        if number == signal.SIGINT:
+            interrupt.send()
+        else:
+            real_interrupt(number)
+
+    replace(os, "kill", kill, (2, 2))
+    replace(signal, "raise_signal", raise_signal, (1, 1))
+    replace(_thread, "interrupt_main", interrupt_main, (0, 1))
+
+
+def _patch_handlers(simulated: Mapping[int, Alarm | Interrupt]) -> None:
+    real_signal, real_getsignal = wallclock.set_signal, wallclock.signals.getsignal
+
+    def set_handler(number: Any, handler: Any) -> Any:
+        before = real_signal(number, handler)
+        if number not in simulated:
+            return before
+        # The handler was valid for the signal, which the runtime itself uses.
+        real_signal(number, before)
+        one = simulated[number]
+        before, one.handler = one.handler, handler
+        return before
+
+    def handler_of(number: Any) -> Any:
+        return simulated[number].handler if number in simulated else real_getsignal(number)
+
     # Those of `signal` call them, and convert numbers to enum members and back.
     replace(wallclock.signals, "signal", set_handler, (2, 2))
-    replace(
-        wallclock.signals, "getsignal", lambda n: alarm.handler if n == signal.SIGALRM else real_getsignal(n), (1, 1)
-    )
+    replace(wallclock.signals, "getsignal", handler_of, (1, 1))

@@ -262,6 +262,7 @@ def loop_hook(session: Session, turns: int, cost_ns: int) -> Callable[[], None]:
         if left:
             return
         left = turns
+        session.output.drain()
         if session.now == mark:
             session.spend(cost_ns)
         mark = session.now

@@ -65,7 +65,7 @@ def replacement_for(real: Any, does: Callable[..., Any], takes: tuple[int, int] 
                 return real(*given, **named)
             return does(*given)
 
-    return type(type(real).__name__, (_Replacement,), {"__call__": staticmethod(call)})(real)
+    return type(real.__class__.__name__, (_Replacement,), {"__call__": staticmethod(call)})(real)
 
 
 def replace(

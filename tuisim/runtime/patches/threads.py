@@ -10,13 +10,18 @@ from typing import Any
 
 from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.scheduler import FOREVER, ScheduledThread, Scheduler, SimulatedLock
+from tuisim.runtime.session import StopProgram
 from tuisim.shim.waits import Wait, waits_for
 
 
-def patch_threads(scheduler: Scheduler) -> None:
+def patch_threads(scheduler: Scheduler, ended_by: Callable[[Callable[..., object], BaseException], None]) -> None:
     """Replace the lock and start functions, then import `threading` over them.
 
     Must run before anything imports `threading`.
+
+    Args:
+        scheduler: Runs the threads.
+        ended_by: Shows the error that has ended a thread that `threading` does not know.
     """
     low: Any = _thread
 
@@ -30,8 +35,7 @@ def patch_threads(scheduler: Scheduler) -> None:
             raise TypeError("cannot pickle '_thread.lock' object")
 
         def __repr__(self) -> str:
-            # As Python's own, without the address, which differs in every run.
-            return f"<{'locked' if self.locked() else 'unlocked'} _thread.lock object>"
+            return f"<{'locked' if self.locked() else 'unlocked'} _thread.lock object at {id(self):#x}>"
 
     LockType.__module__, LockType.__name__, LockType.__qualname__ = "_thread", "lock", "lock"
 
@@ -42,7 +46,17 @@ def patch_threads(scheduler: Scheduler) -> None:
             raise TypeError("2nd arg must be a tuple")
         if not isinstance(kwargs, dict | None):
             raise TypeError("optional 3rd arg must be a dictionary")
-        task = scheduler.spawn(lambda: _run_bare(function, args, kwargs or {}), daemon=True)
+
+        def run_bare() -> None:
+            try:
+                function(*args, **kwargs or {})
+            except (SystemExit, StopProgram):
+                # As in Python: it ends the thread silently.
+                raise
+            except BaseException as error:  # as in Python, the thread ends and the program continues
+                ended_by(function, error)
+
+        task = scheduler.spawn(run_bare, daemon=True)
         # The library busy-waits until its new thread has started: let it start.
         scheduler.give_way()
         return task.ident
@@ -63,16 +77,6 @@ def patch_threads(scheduler: Scheduler) -> None:
     module._CRLock = None
     module.RLock = module._RLock = module._PyRLock
     _patch_thread_class(scheduler, module.Thread)
-
-
-def _run_bare(function: Callable[..., Any], args: tuple[Any, ...], kwargs: Any) -> None:
-    try:
-        function(*args, **kwargs)
-    except SystemExit:
-        # As in Python: it ends the thread silently.
-        pass
-    except Exception as error:  # as in Python, the thread ends and the program continues
-        sys.excepthook(type(error), error, error.__traceback__)
 
 
 def _patch_thread_class(scheduler: Scheduler, thread: Any) -> None:

@@ -1,0 +1,136 @@
+"""What is written below Python's streams: by `os.write(1, ...)`, by a file opened on 1 or 2, by C, by a forked copy.
+
+Descriptors 1 and 2 are files in memory of a fixed size. So a write never blocks, an endless one comes to an end, and
+nothing outside this process sees it. What is in them is taken at fixed instants of the program, which makes a run
+with such output as reproducible as any other.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import mmap
+import os
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+CAPACITY_BYTES = 16 << 20
+"""What is written beyond this between two instants is refused."""
+_LEAST_FD = 200
+"""Our own descriptors are beyond those that programs count through."""
+_LINE_BUFFERED = 1
+
+
+def silence_descriptors() -> None:
+    """Lose what is written from now on: this process is a copy, and shares the files with the original."""
+    with suppress(OSError):
+        null = os.open(os.devnull, os.O_WRONLY)
+        for fd in (1, 2):
+            os.dup2(null, fd)
+
+
+class RawFile:
+    """One of the descriptors.
+
+    Args:
+        fd: 1 or 2.
+        take: Receives what was written.
+
+    Raises:
+        OSError, AttributeError: this system has no such files, or no descriptors left.
+    """
+
+    def __init__(self, fd: int, take: Callable[[bytes], object]) -> None:
+        self._take = take
+        made = os.memfd_create(f"output {fd}", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
+        try:
+            os.ftruncate(made, CAPACITY_BYTES)
+            fcntl.fcntl(made, fcntl.F_ADD_SEALS, fcntl.F_SEAL_GROW | fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_SEAL)
+            self._fd = fcntl.fcntl(made, fcntl.F_DUPFD_CLOEXEC, _LEAST_FD)
+            os.dup2(made, fd)
+        finally:
+            os.close(made)
+        self._identity = os.fstat(self._fd)
+        # Reading one byte of memory shows whether there is anything: asking the system would take much longer.
+        self._first = mmap.mmap(self._fd, mmap.PAGESIZE)
+
+    def has_bytes(self) -> bool:
+        """Return whether something seems to have been written: what begins with a null byte is not seen."""
+        return self._first[0] != 0
+
+    def drain(self) -> int:
+        """Pass on what was written; return its length."""
+        try:
+            length = min(os.lseek(self._fd, 0, os.SEEK_CUR), CAPACITY_BYTES)
+            if not length or not os.path.samestat(os.fstat(self._fd), self._identity):
+                # Or the program has closed it, and opened another file in its place.
+                return 0
+            data = os.pread(self._fd, length, 0)
+            os.lseek(self._fd, 0, os.SEEK_SET)
+        except OSError:
+            return 0
+        self._first[0] = 0
+        self._take(data)
+        return length
+
+
+class RawOutput:
+    """Both descriptors.
+
+    Args:
+        stdout: Receives what was written to descriptor 1.
+        stderr: Receives what was written to descriptor 2.
+    """
+
+    def __init__(self, stdout: Callable[[bytes], object], stderr: Callable[[bytes], object]) -> None:
+        self._takers = {1: stdout, 2: stderr}
+        self._files: list[RawFile] = []
+        self._busy = False
+        self._flush_c: Callable[[], object] = lambda: None
+        self._write = os.write
+
+    def open(self) -> None:
+        """Take over the descriptors, as far as this system can."""
+        with suppress(OSError, AttributeError):
+            self._files += [RawFile(fd, take) for fd, take in self._takers.items()]
+
+    def drain(self) -> None:
+        """Pass on what was written, if it is seen at once."""
+        for file in self._files:
+            if file.has_bytes():
+                self.drain_all()
+                return
+
+    def drain_all(self) -> int:
+        """Pass on everything that was written; return its length."""
+        if self._busy:
+            return 0
+        self._busy = True
+        try:
+            return sum(file.drain() for file in self._files)
+        finally:
+            self._busy = False
+
+    def finish(self) -> None:
+        """Pass on everything, also what C has not written yet."""
+        self._flush_c()
+        self.drain_all()
+
+    def write(self, fd: int, data: Any) -> int:
+        """Replacement for os.write(): what is output is passed on at once."""
+        count = self._write(fd, data)
+        drained = self.drain_all()
+        size = memoryview(data).nbytes
+        while drained and count < size:
+            # More than the file can take.
+            count += self._write(fd, memoryview(data).cast("B")[count:])
+            drained = self.drain_all()
+        return count
+
+    def finish_ctypes(self, module: Any) -> None:
+        """Let C write its lines at once, as to a terminal: nobody calls the functions that would write them later."""
+        # Where C has other names for this, its output comes at the end.
+        with suppress(OSError, ValueError, AttributeError):
+            c = module.CDLL(None)
+            self._flush_c = lambda: c.fflush(None)
+            c.setvbuf(module.c_void_p.in_dll(c, "stdout"), None, _LINE_BUFFERED, 0)
