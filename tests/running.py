@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import subprocess
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 from tuisim.protocol import Ended, Message
 from tuisim.runs.handle import RunHandle
 
 PATIENCE_S = 120.0
 """How long a test waits before it fails: what never comes must not pass, and what comes late on a busy machine must."""
+
+SIGNALLED = 128
+"""A shell reports this much more than the number of the signal that ended a program."""
 
 
 def told(done: subprocess.CompletedProcess[str]) -> list[str]:
@@ -77,3 +82,26 @@ def until(run: RunHandle, ready: Callable[[], bool], seen: list[Message] | None 
 def until_tick(run: RunHandle, tick: int) -> None:
     """Pump until a tick is recorded, or the run is over."""
     until(run, lambda: run.telemetry.count > tick or run.ended is not None)
+
+
+@dataclass(frozen=True)
+class AsPython:
+    """What Python itself makes of a program."""
+
+    stdout: str
+    stderr: str
+    exit_code: int
+    """As a shell reports it."""
+
+
+def as_python(text: str, folder: Path) -> AsPython:
+    """Run a program by Python itself, as `program.py` in a folder."""
+    (folder / "program.py").write_text(text, encoding="utf-8", newline="")
+    environment = {"PYTHONUTF8": "1", "PYTHONHASHSEED": "0", "PYTHONIOENCODING": "utf-8:backslashreplace"}
+    # Without a buffer, which a program that ends at once would lose.
+    done = subprocess.run(
+        [sys.executable, "-u", "program.py"], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+        capture_output=True, timeout=PATIENCE_S, start_new_session=True,
+    )  # fmt: skip
+    out, err = (data.decode(errors="replace").removesuffix("\n") for data in (done.stdout, done.stderr))
+    return AsPython(out, err, done.returncode if done.returncode >= 0 else SIGNALLED - done.returncode)

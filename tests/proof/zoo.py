@@ -6,8 +6,6 @@ import ctypes
 import os
 import re
 import shutil
-import subprocess
-import sys
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
@@ -18,7 +16,7 @@ from tests.proof import zoo_oddities as odd
 from tests.proof import zoo_programs as plain
 from tests.proof.kind import FaultError, Kind
 from tests.proof.zoo_programs import ENDINGS, Ending, Piece
-from tests.running import PATIENCE_S
+from tests.running import PATIENCE_S, as_python
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.protocol import End, Ended
@@ -263,15 +261,8 @@ def _check_like_python(piece: Piece, ending: Ending, folder: Path) -> None:
     rows = {stream: [row.text for row in run.output.all_rows() if row.stream == stream] for stream in Stream}
     shutil.rmtree(folder)
     folder.mkdir()
-    (folder / "program.py").write_text(_text(piece, ending), newline="")
-    environment = {"PYTHONUTF8": "1", "PYTHONHASHSEED": "0", "PYTHONIOENCODING": "utf-8:backslashreplace"}
-    # Without a buffer, which a program that ends at once would lose.
-    done = subprocess.run(
-        [sys.executable, "-u", "program.py"], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
-        capture_output=True, timeout=PATIENCE_S, start_new_session=True,
-    )  # fmt: skip
-    out, err = done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
-    wanted = out.removesuffix("\n").split("\n"), sorted(_errors(err)), done.returncode
+    python = as_python(_text(piece, ending), folder)
+    wanted = python.stdout.split("\n"), sorted(_errors(python.stderr)), python.exit_code
     found = rows[Stream.STDOUT], sorted(_errors("\n".join(rows[Stream.STDERR]))), ended.exit_code & 0xFF
     for what, one, other in zip(("stdout", "errors", "exit code"), found, wanted, strict=True):
         if one != other:

@@ -41,7 +41,6 @@ IMPORTS: Mapping[str, Piece] = {
         "import builtins\nfor n in ('len', 'isinstance', 'getattr', 'hasattr', 'range', 'open', 'str', 'int',"
         " 'type', 'dict'):\n"
         "    setattr(builtins, n, None)",
-        breaks=True,
     ),
     "print": Piece("import builtins\nold = print\nbuiltins.print = lambda *a, **k: old('<', *a, '>', **k)", loses=True),
     "import": Piece(

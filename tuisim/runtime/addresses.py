@@ -2,50 +2,124 @@
 
 from __future__ import annotations
 
+import gc
 import re
 import sys
+import types
+import weakref
+from collections.abc import Callable, Mapping
 from contextlib import suppress
-from functools import cached_property
+from functools import cached_property, partial
+from typing import Any, NamedTuple
 
 _ADDRESS = re.compile(
     r"(?P<before> at 0x)(?P<hex>[0-9a-f]{5,16})\b"
     # A thread's identifier is an address, too: <Thread(Thread-1, started 139862347318016)>.
-    r"|(?P<thread>, (?:started|stopped)(?: daemon)? )(?P<number>[0-9]{5,20})(?=\)>)"
+    r"|(?P<thread>\([^()]*(?:\([^()]*\))?, (?:started|stopped)(?: daemon)? )(?P<number>[0-9]{5,20})(?=\)>)"
 )
 _FIRST, _STEP = 0x7F0000000010, 0x10
 _LOWEST = 1 << 32 if sys.maxsize > 1 << 32 else 1 << 20
 """Addresses are at least this, except those of the heap."""
+_TEXT_BEFORE = 200
+"""The name of an object's type is at most this far before its address."""
+_MOST_SEARCHED = 20_000_000
+"""Objects that are looked at in vain before no more are: a few real seconds."""
+_STEPS, _MOST_REACHED = 3, 1_000
+"""From the program's names: so many steps, each from at most so many objects."""
+_HEAP_TYPE = 1 << 9
+"""A class that was made by a program: Py_TPFLAGS_HEAPTYPE."""
+_NEVER_KEPT = (types.FrameType, types.TracebackType)
+"""To keep one would keep all that it refers to."""
+
+
+class _Given(NamedTuple):
+    """What stands for an address."""
+
+    number: int
+    is_same: Callable[[], object]
+    """Whether the object is still there, so that no other one can have this address."""
 
 
 class Addresses:
-    """Gives each address that is printed the next of a fixed sequence, in the order of their first appearance.
+    """Gives each object whose address is printed the next of a fixed sequence, in the order of first appearance.
 
     Only the texts are changed that Python itself writes: ` at 0x…`, and the identifiers of threads. A number that
-    cannot be an address stays as it is.
+    cannot be an address stays as it is. Which memory is used again depends on the machine: so an address stands for
+    the same object only as long as that exists, and for another one afterwards.
+
+    Args:
+        names: Returns the program's global names.
     """
 
-    def __init__(self) -> None:
-        self._given: dict[int, int] = {}
+    def __init__(self, names: Callable[[], Mapping[str, object]]) -> None:
+        self._names = names
+        self._given: dict[int, _Given] = {}
+        self._threads: dict[str, int] = {}
+        self._count = 0
+        self._searched = 0
 
-    def stable(self, text: str) -> str:
-        """Return a text with its addresses replaced; doing that again changes nothing."""
-        if " at 0x" not in text and ", st" not in text:
-            return text
-        return _ADDRESS.sub(self._replace, text)
+    def stable(self, *texts: str) -> tuple[str, ...]:
+        """Return texts of one instant with their addresses replaced; doing that again changes nothing."""
+        here: dict[int, int] = {}
 
-    def _replace(self, match: re.Match[str]) -> str:
-        if match["hex"]:
-            return f"{match['before']}{self._of(int(match['hex'], 16)):x}"
-        return f"{match['thread']}{self._of(int(match['number']))}"
+        def replace(match: re.Match[str]) -> str:
+            if match["hex"]:
+                before = match.string[max(0, match.start() - _TEXT_BEFORE) : match.start()]
+                return f"{match['before']}{self._of(int(match['hex'], 16), before, here):x}"
+            return match["thread"] + str(self._of_thread(match["thread"], int(match["number"])))
 
-    def _of(self, real: int) -> int:
-        if real in self._given:
-            return self._given[real]
-        following = _FIRST + len(self._given) * _STEP
-        if _FIRST <= real < following or (real < _LOWEST and real not in self._heap):
+        return tuple(_ADDRESS.sub(replace, text) for text in texts)
+
+    def _of(self, real: int, before: str, here: dict[int, int]) -> int:
+        if real in here:
+            return here[real]
+        if self._is_given(real) or (real < _LOWEST and real not in self._heap):
             return real
-        self._given[real] = following
-        return following
+        known = self._given.get(real)
+        if known is None or not known.is_same():
+            known = self._given[real] = _Given(self._next(), _watch(self._find(real, before)))
+        here[real] = known.number
+        return known.number
+
+    def _of_thread(self, text: str, real: int) -> int:
+        if self._is_given(real):
+            return real
+        name = f"{text.rpartition(', ')[0]} {real}"
+        if name not in self._threads:
+            self._threads[name] = self._next()
+        return self._threads[name]
+
+    def _next(self) -> int:
+        self._count += 1
+        return _FIRST + (self._count - 1) * _STEP
+
+    def _is_given(self, number: int) -> bool:
+        return _FIRST <= number < _FIRST + self._count * _STEP
+
+    def _find(self, real: int, before: str) -> object:
+        """Return the object at an address, if there is one of which the text can be; None otherwise."""
+        if self._searched > _MOST_SEARCHED:
+            return None
+        # Not all objects are known to the collector, and those that were made before the program are left out.
+        by_age = [partial(gc.get_objects, generation) for generation in range(3)]
+        searches: list[Callable[[], list[Any]]] = [*by_age, self._reached]
+        for search in searches:
+            objects = search()
+            self._searched += len(objects)
+            for at, address in enumerate(map(id, objects)):
+                if address == real and _is_meant(objects[at], before):
+                    return objects[at]
+        return None
+
+    def _reached(self) -> list[object]:
+        """Return what the program's names refer to, as far as a few steps reach."""
+        left_out = (types.ModuleType, type)
+        level = [one for one in self._names().values() if not isinstance(one, left_out)]
+        found = level
+        for _ in range(_STEPS):
+            level = [one for one in gc.get_referents(*level[:_MOST_REACHED]) if not isinstance(one, left_out)]
+            found = found + level
+        return found
 
     @cached_property
     def _heap(self) -> range:
@@ -57,3 +131,24 @@ class Addresses:
                     # It grows later on.
                     return range(start, max(end, _LOWEST))
         return range(0)
+
+
+def _is_meant(one: object, before: str) -> bool:
+    """Return whether a text that ends before an address can be about an object, not about one that was there before."""
+    kind = type(one)
+    # Its own text may name it otherwise.
+    is_own = kind.__flags__ & _HEAP_TYPE and not str(kind.__module__).startswith("tuisim")
+    return bool(is_own) or kind.__name__ in before
+
+
+def _watch(one: object) -> Callable[[], object]:
+    """Return a function that tells whether an object still exists; such objects as cannot be watched are kept."""
+    if one is None:
+        return lambda: False
+    if isinstance(one, _NEVER_KEPT):
+        return lambda: True
+    try:
+        watched = weakref.ref(one)
+    except TypeError:
+        return lambda: one is not None
+    return lambda: watched() is not None

@@ -61,8 +61,8 @@ class ErrorHooks:
             point_at_package(error)
             point_at_gamepads(error)
         report = report_error(error, self._session.program_file, self._source(), alone)
-        stable = self._output.addresses.stable
-        return ErrorReport(stable(report.text), report.line, stable(report.summary))
+        text, summary = self._output.stable(report.text, report.summary)
+        return ErrorReport(text, report.line, summary)
 
     def show_uncaught(self, error: BaseException) -> ErrorReport:
         """Show the error that ended the program, as its hook wants it; return the report of it.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import codecs
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from tuisim.runs.records import MAX_OUTPUT_BYTES, TEXT_STREAMS, OutputWriter, Stream
@@ -25,17 +25,24 @@ class Output:
         """Writes first what was written below Python's streams."""
         self.watch: Callable[[str, Stream], None] | None = None
         """If set, called with text and stream of each written row."""
-        self.addresses = Addresses()
+        self.names: Callable[[], Mapping[str, object]] = dict
+        """Returns the program's global names; set once there is a program."""
+        self._addresses = Addresses(lambda: self.names())
 
     def row(self, text: str, stream: Stream) -> None:
         """Write one row."""
         self.drain()
         tick, now, line = self.place()
-        if stream in TEXT_STREAMS:
-            text = self.addresses.stable(text)
+        if (" at 0x" in text or ", st" in text) and stream in TEXT_STREAMS:
+            # Asked here first: most rows have no address.
+            (text,) = self.stable(text)
         self.writer.write(text.encode("utf-8", "backslashreplace"), tick, now, line, stream)
         if self.watch is not None:
             self.watch(text, stream)
+
+    def stable(self, *texts: str) -> tuple[str, ...]:
+        """Return texts of one instant as they are written: with addresses that are the same in every run."""
+        return self._addresses.stable(*texts)
 
     def row_at(self, text: str, stream: Stream, tick: int, time_ns: int, line: int) -> None:
         """Write one row that belongs to a tick, not to a time between two."""

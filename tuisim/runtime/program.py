@@ -93,6 +93,7 @@ class ProgramRunner:
         """The program; None before it is compiled."""
         self.names = self._module.__dict__
         """The program's global names."""
+        output.names = lambda: self.names
         self._loop_hook = loop_hook
 
     def prepare(self, prelude: str) -> None:
@@ -286,7 +287,7 @@ class ProgramRunner:
     def _input(self, prompt: object = "") -> str:
         """Replacement for input(): returns scripted answers, or the user's."""
         self.stdout.write(str(prompt))
-        asked = self._output.addresses.stable(self.stdout.take_part())
+        (asked,) = self._output.stable(self.stdout.take_part())
         answer: str | None
         if self._answers:
             answer = self._answers.pop(0)

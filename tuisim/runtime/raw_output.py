@@ -14,7 +14,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
-CAPACITY_BYTES = 16 << 20
+CAPACITY_BYTES = 4 << 20
 """What is written beyond this between two instants is refused."""
 _LEAST_FD = 200
 """Our own descriptors are beyond those that programs count through."""
@@ -52,11 +52,8 @@ class RawFile:
             os.close(made)
         self._identity = os.fstat(self._fd)
         # Reading one byte of memory shows whether there is anything: asking the system would take much longer.
-        self._first = mmap.mmap(self._fd, mmap.PAGESIZE)
-
-    def has_bytes(self) -> bool:
-        """Return whether something seems to have been written: what begins with a null byte is not seen."""
-        return self._first[0] != 0
+        self.first = mmap.mmap(self._fd, mmap.PAGESIZE)
+        """Begins with 0 unless something has been written; what begins with a null byte is not seen."""
 
     def drain(self) -> int:
         """Pass on what was written; return its length."""
@@ -69,7 +66,7 @@ class RawFile:
             os.lseek(self._fd, 0, os.SEEK_SET)
         except OSError:
             return 0
-        self._first[0] = 0
+        self.first[0] = 0
         self._take(data)
         return length
 
@@ -85,6 +82,7 @@ class RawOutput:
     def __init__(self, stdout: Callable[[bytes], object], stderr: Callable[[bytes], object]) -> None:
         self._takers = {1: stdout, 2: stderr}
         self._files: list[RawFile] = []
+        self._firsts: list[mmap.mmap] = []
         self._busy = False
         self._flush_c: Callable[[], object] = lambda: None
         self._write = os.write
@@ -92,12 +90,14 @@ class RawOutput:
     def open(self) -> None:
         """Take over the descriptors, as far as this system can."""
         with suppress(OSError, AttributeError):
-            self._files += [RawFile(fd, take) for fd, take in self._takers.items()]
+            for fd, take in self._takers.items():
+                self._files.append(RawFile(fd, take))
+        self._firsts = [file.first for file in self._files]
 
     def drain(self) -> None:
         """Pass on what was written, if it is seen at once."""
-        for file in self._files:
-            if file.has_bytes():
+        for first in self._firsts:
+            if first[0]:
                 self.drain_all()
                 return
 

@@ -190,6 +190,7 @@ class Session:
         elif until < self._due:
             self.now = until
         else:
+            self.output.drain()
             sim = self.sim
             sim.line = self.program_line()
             # Most readings make exactly one tick due, and whole tick lengths can be added up.

@@ -118,6 +118,9 @@ def _patch_thread_class(scheduler: Scheduler, thread: Any) -> None:
         if not self._started.is_set():
             return False
         task = tasks.get(id(self))
+        if task is not None and task.done:
+            # Its text says so.
+            self._is_stopped = True
         return task is None or not task.done
 
     thread.start, thread.join, thread.is_alive = start, join, is_alive
