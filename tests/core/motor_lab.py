@@ -151,7 +151,7 @@ def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict
     patch_time(session)
     # The program's own must be imported again, with locks of the scheduler.
     del sys.modules["threading"]
-    patch_threads(scheduler)
+    patch_threads(scheduler, lambda *ended: runner.hooks.show_end_of_bare_thread(*ended))
     install(session, OpenFiles(), {}, put_in_place, lambda file: False)
 
     def leave(outcome: Outcome) -> NoReturn:

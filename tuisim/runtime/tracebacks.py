@@ -6,7 +6,7 @@ import io
 import linecache
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -126,10 +126,7 @@ def _show_as_python(trace: Trace, error: SyntaxError) -> None:
         setattr(bare, name, getattr(error, name, None))
     shown = _shown(bare)
 
-    def lines(_kind: str) -> Iterator[str]:
-        yield from shown.splitlines(keepends=True)
-
-    trace._format_syntax_error = lines
+    trace._format_syntax_error = lambda _kind: [shown]
 
 
 def _shown(error: BaseException) -> str:

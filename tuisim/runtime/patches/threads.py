@@ -13,8 +13,11 @@ from tuisim.runtime.scheduler import FOREVER, ScheduledThread, Scheduler, Simula
 from tuisim.runtime.session import StopProgram
 from tuisim.shim.waits import Wait, waits_for
 
+EndedBy = Callable[[Callable[..., object], BaseException], None]
+"""Called with the function of a thread and the error that has ended it."""
 
-def patch_threads(scheduler: Scheduler, ended_by: Callable[[Callable[..., object], BaseException], None]) -> None:
+
+def patch_threads(scheduler: Scheduler, ended_by: EndedBy) -> None:
     """Replace the lock and start functions, then import `threading` over them.
 
     Must run before anything imports `threading`.
@@ -39,6 +42,27 @@ def patch_threads(scheduler: Scheduler, ended_by: Callable[[Callable[..., object
 
     LockType.__module__, LockType.__name__, LockType.__qualname__ = "_thread", "lock", "lock"
 
+    for name in ("allocate_lock", "allocate"):
+        replace(low, name, LockType, (0, 0))
+    for name in ("start_new_thread", "start_new"):
+        replace(low, name, _starter(scheduler, ended_by), (2, 3))
+    low.LockType = LockType
+    if hasattr(low, "lock"):
+        low.lock = LockType
+    # Without the C queue, `queue` falls back to its own locks, which are simulated.
+    sys.modules["_queue"] = None  # type: ignore[assignment]
+
+    import threading
+
+    module: Any = threading
+    module._CRLock = None
+    module.RLock = module._RLock = module._PyRLock
+    _patch_thread_class(scheduler, module.Thread)
+
+
+def _starter(scheduler: Scheduler, ended_by: EndedBy) -> Callable[..., int]:
+    """Return what starts a thread of `_thread`."""
+
     def start_new_thread(function: Any, args: Any, kwargs: Any = None) -> int:
         if not callable(function):
             raise TypeError("first arg must be callable")
@@ -61,22 +85,7 @@ def patch_threads(scheduler: Scheduler, ended_by: Callable[[Callable[..., object
         scheduler.give_way()
         return task.ident
 
-    for name in ("allocate_lock", "allocate"):
-        replace(low, name, LockType, (0, 0))
-    for name in ("start_new_thread", "start_new"):
-        replace(low, name, start_new_thread, (2, 3))
-    low.LockType = LockType
-    if hasattr(low, "lock"):
-        low.lock = LockType
-    # Without the C queue, `queue` falls back to its own locks, which are simulated.
-    sys.modules["_queue"] = None  # type: ignore[assignment]
-
-    import threading
-
-    module: Any = threading
-    module._CRLock = None
-    module.RLock = module._RLock = module._PyRLock
-    _patch_thread_class(scheduler, module.Thread)
+    return start_new_thread
 
 
 def _patch_thread_class(scheduler: Scheduler, thread: Any) -> None:
