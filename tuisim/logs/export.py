@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 from tuisim.atomic import replacing
 from tuisim.core.spec import to_plain
 from tuisim.errors import ConfigError, ExportError
+from tuisim.logs.csv_cells import write_csv
 from tuisim.logs.units import TIMEDELTA, WHOLE, unit_of
 from tuisim.runs.frames import samples_frame, telemetry_frame
 from tuisim.runs.run_folder import StoredRun
@@ -232,8 +233,7 @@ class Exporter(NamedTuple):
 
 
 def _write_csv(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> None:
-    # Floats are written as their shortest exact text, time spans as pandas prints them.
-    frame.to_csv(handle, index=False, lineterminator="\n", encoding="utf-8", mode="wb")
+    write_csv(frame, handle)
 
 
 def _write_jsonl(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> None:

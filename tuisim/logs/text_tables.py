@@ -18,6 +18,7 @@ import pyarrow.csv as pa_csv
 
 from tuisim.logs.arrow import texts_array, unique_names
 from tuisim.logs.blocks import Block
+from tuisim.logs.csv_cells import WRITTEN, restored
 from tuisim.logs.dates import is_date, is_moment
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
@@ -437,7 +438,8 @@ def exported_csv(text: bytes) -> pa.Table:
     names = next(csv.reader(io.StringIO(text.decode("utf-8"), newline="")), [])
     texts = _parsed_csv(text, dict.fromkeys(names, pa.string()), pa_csv.ParseOptions(newlines_in_values=True)).slice(1)
     columns = [texts.column(name) if name in (*TIMEDELTA, *TEXT) else _exact(texts.column(name)) for name in names]
-    return pa.Table.from_arrays(columns, names)
+    columns = [pc.replace_substring_regex(one, WRITTEN, r"\1") if one.type == pa.string() else one for one in columns]
+    return pa.Table.from_arrays(columns, list(map(restored, names)))
 
 
 def _exact(texts: pa.ChunkedArray) -> pa.ChunkedArray:

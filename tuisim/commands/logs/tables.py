@@ -18,6 +18,7 @@ from tuisim.logs import signals
 from tuisim.logs.arrow import numbers_of, unique_names
 from tuisim.logs.bands import band_report, in_words
 from tuisim.logs.columns import is_numeric
+from tuisim.logs.csv_cells import write_csv
 from tuisim.logs.derived import reckoned_series
 from tuisim.logs.export import check_target, export_frame, export_log
 from tuisim.logs.expressions import evaluate
@@ -245,7 +246,7 @@ def show_frame(frame: pd.DataFrame, arguments: Arguments) -> None:
     elif arguments.json:
         _print_json(frame)
     else:
-        frame.to_csv(CsvOut(), index=False, lineterminator="\n")
+        write_csv(frame, CsvOut())
 
 
 def _print_json(frame: pd.DataFrame) -> None:

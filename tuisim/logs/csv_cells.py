@@ -1,0 +1,53 @@
+"""Texts in cells of CSV that a spreadsheet would take for formulas: written with an apostrophe, and read without it."""
+
+from __future__ import annotations
+
+import csv
+import re
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_SIGNS = "=+@\uff1d\uff0b\uff0d\uff20-"
+"""What a formula begins with, also in full width."""
+_RISKY = rf"'*(?:[ \f\v]*[{_SIGNS}]|[\t\r\n])"
+"""How a cell begins that a spreadsheet computes. Those with apostrophes count too, so that reading can undo writing."""
+WRITTEN = f"^'({_RISKY})"
+"""How such a cell begins in a file; the group is what it begins with when it is read."""
+
+_is_risky = re.compile(_RISKY).match
+_is_number = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?").fullmatch
+
+
+def harmless(text: str) -> str:
+    """Return a text as a spreadsheet shows it and does not compute it; numbers stay numbers."""
+    return f"'{text}" if _is_risky(text) and not _is_number(text) else text
+
+
+def restored(text: str) -> str:
+    """Return the text that `harmless` was given."""
+    return re.sub(WRITTEN, r"\1", text)
+
+
+def write_csv(frame: pd.DataFrame, handle: Any) -> None:
+    """Write a frame as CSV in which no text, also of its heading, is a formula.
+
+    Args:
+        handle: An open file, of text or of bytes.
+    """
+    found = frame.copy(deep=False)
+    quoting = csv.QUOTE_MINIMAL
+    for at in range(len(frame.columns)):
+        column = frame.iloc[:, at]
+        if column.dtype.kind in "biufmM":
+            continue
+        texts = [text for text in column.unique() if isinstance(text, str)]
+        if any("\r" in text for text in texts):
+            # Not quoted by itself, although a carriage return ends a row.
+            quoting = csv.QUOTE_NONNUMERIC
+        if changed := {text: safe for text in texts if (safe := harmless(text)) != text}:
+            found.isetitem(at, [changed.get(cell, cell) for cell in column.tolist()])
+    heading = [harmless(str(name)) for name in frame.columns]
+    # Floats are written as their shortest exact text, time spans as pandas prints them.
+    found.to_csv(handle, header=heading, index=False, quoting=quoting, lineterminator="\n", encoding="utf-8")
