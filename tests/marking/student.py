@@ -16,6 +16,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from tuisim.errors import printable
+
 GOAL_POINTS: Mapping[str, float] = {"levels": 4, "place": 3, "heading": 1, "wall": 1, "done": 1}
 """The goals by name, with their points:
 
@@ -45,6 +47,11 @@ class Student:
     """Why these marks are expected."""
     line: int = 0
     """The line of the main program that the reason of failure names; 0 if it names none, or no particular one."""
+
+    @property
+    def row(self) -> str:
+        """Its name in the marks."""
+        return printable(self.name.removesuffix(".py"))
 
     @property
     def points(self) -> float:

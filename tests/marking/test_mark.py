@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import signal
 import subprocess
@@ -17,12 +18,13 @@ import pytest
 
 from tests.conftest import ROOT, Command
 from tests.marking.student import GOAL_POINTS, Student
+from tests.marking.test_sheet import LONG_SHEET
 from tests.marking.the_class import CLASS, write_class
 from tests.running import PATIENCE_S
 from tuisim.batch import execute
 from tuisim.cli import run_command
 from tuisim.commands import mark
-from tuisim.errors import HostError, printable
+from tuisim.errors import HostError
 from tuisim.marks.outcome import Outcome
 from tuisim.runs.handle import RunHandle
 
@@ -81,7 +83,7 @@ def test_every_student_of_the_class_has_the_expected_marks(marked: Path) -> None
     frame = pd.read_parquet(marked / "marks.parquet").set_index("student")
     wrong = []
     for student in CLASS:
-        row = frame.loc[printable(student.name)]
+        row = frame.loc[student.row]
         points = tuple(row[f"goal_{goal}"] for goal in GOAL_POINTS)
         expected = tuple(0.0 if goal in student.missed else float(most) for goal, most in GOAL_POINTS.items())
         line = row["line"] if student.line else 0
@@ -155,19 +157,32 @@ def test_a_class_is_marked_as_a_table(tmp_path: Path, here: Command) -> None:
     assert (done.returncode, done.stdout.splitlines()) == (
         0,
         [
-            "student    points  robust  levels  place  heading  wall  done  reason",
-            "ada.py     10      100%    4       3      1        1     1",
-            "gustav.py  7       0%      4       0      1        1     1     "
+            "student  points  robustness  levels  place  heading  wall  done  reason",
+            "ada      10      100%        4       3      1        1     1",
+            "gustav   7       0%          4       0      1        1     1     "
             "line 5: At the end the robot was 46 mm from (1750, 500).",
-            "raises.py  0       0%      0       0      0        0     0     "
+            "raises   0       0%          0       0      0        0     0     "
             "ZeroDivisionError: division by zero (line 5)",
-            "zip.py     0       0%      0       0      0        0     0     zip.py: is not Python text: invalid or "
+            "zip      0       0%          0       0      0        0     0     zip.py: is not Python text: invalid or "
             "missing encoding declaration (save it as UTF-8)",
             "",
             "4 students, 1 seed: mean 4.25 of 10 points; 1 with all points",
         ],
     )
     assert done.stderr == "note: not marked, because they are no Python programs: notes.doc\n"
+
+
+def test_a_long_name_leaves_the_marks_on_the_screen(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    screen = Terminal()
+    monkeypatch.setattr(sys, "stdout", screen)
+    monkeypatch.setenv("COLUMNS", "80")
+    mark._print(LONG_SHEET, ())
+    heading, row, *_ = screen.getvalue().split("\n")
+    assert (len(heading) <= 80, row.split()[1:]) == (True, ["0", "0%", "0", "0", "0"])
 
 
 BAD = {
@@ -204,7 +219,7 @@ def test_the_world_of_the_goals_replaces_that_of_a_magic_line(tmp_path: Path, he
     cheat = "# %%sim_magic_preloaded -b Empty_Map -x 1750 -y 500\n"
     (tmp_path / "class" / "cheat.py").write_text(cheat)
     done = here("mark", GOALS, "class", "--seeds", "0", "--jobs", "1", "--keep", "none")
-    assert done.stdout.splitlines()[1].split()[:2] == ["cheat.py", "0"]
+    assert done.stdout.splitlines()[1].split()[:2] == ["cheat", "0"]
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["int", "term"])
@@ -213,7 +228,7 @@ def test_a_signal_ends_a_marking_in_good_order(
 ) -> None:
     def interrupted(*_: object) -> Iterator[tuple[str, Outcome]]:
         os.kill(os.getpid(), number)
-        yield "ada.py", Outcome(0, "finished")
+        yield "ada", Outcome(0, "finished")
 
     write_class(tmp_path / "class", _few("ada.py"))
     # Where the command does not handle it, the signal must not end the tests.
@@ -243,8 +258,8 @@ def test_a_run_that_could_not_be_started_is_missing_in_the_marks_until_it_is_res
     monkeypatch.setattr(execute, "RunHandle", started)
     assert run_command(words) == 1
     said = capsys.readouterr()
-    assert "ada.py   10      100%" in said.out
-    assert "this machine could not make 1 run; the marks are without: ada.py with seed 1" in said.err
+    assert "ada      10      100%" in said.out
+    assert "this machine could not make 1 run; the marks are without: ada with seed 1" in said.err
     assert "Too many open files; the same command with --resume" in said.err
 
     assert run_command([*words, "--resume"]) == 0

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import shutil
+import subprocess
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
@@ -11,6 +13,7 @@ from typing import Any
 import pytest
 
 from tests.marking.hazards import EVIL
+from tests.running import PATIENCE_S
 from tuisim.config.program_file import ProgramSource
 from tuisim.errors import printable
 from tuisim.marks.feedback import feedback_of, file_stems, write_feedback
@@ -80,13 +83,40 @@ def test_in_a_task_without_points_a_run_is_complete_if_it_meets_every_goal() -> 
 
 def test_a_table_has_a_column_a_goal_and_names_the_line() -> None:
     heads, rows = lines_of(SHEET)
-    assert heads == ["student", "points", "robust", "place", "wall", "reason"]
+    assert heads == ["student", "points", "robustness", "place", "wall", "reason"]
     assert rows[:3] == [
         ["ada", "10", "100%", "7", "3", ""],
         ["ben", "8.25", "75%", "5.25", "3", "line 2: it stopped 40 mm away"],
         ["cleo", "0", "0%", "0", "0", "stuck in line 1"],
     ]
     assert summary_of(SHEET) == "5 students, 4 seeds: mean 4.25 of 10 points; 1 with all points for every seed"
+
+
+LONG = "n" * 95 + "-" + "m" * 94
+LONG_SHEET = sheet_of("", [*COLUMNS, replace(COLUMNS[0], name="g" * 60)], range(4), [_student(LONG)], {})
+
+
+def test_a_long_name_pushes_no_mark_off_the_table() -> None:
+    heads, (row,) = lines_of(LONG_SHEET, 12, 6)
+    assert (heads[-2], row[0], len(row[0])) == ("ggg…gg", "nnnnnnn…mmmm", 12)
+    assert len(lines_of(LONG_SHEET)[1][0][0]) == 40
+
+
+GEOMETRY = """<script>
+const edge = Math.max(...[...document.querySelectorAll("td.number")].map(one => one.getBoundingClientRect().right));
+document.title = edge <= innerWidth ? "all in view" : "marks end at " + edge;
+</script>"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="needs a browser: chromium")
+@pytest.mark.parametrize("width", [800, 1400])
+def test_a_long_name_pushes_no_mark_off_the_page(tmp_path: Path, width: int) -> None:
+    (tmp_path / "marks.html").write_text(page_of(LONG_SHEET).replace("</body>", f"{GEOMETRY}</body>"))
+    command = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path}/browser"]
+    words = [f"--window-size={width},800", "--dump-dom", str(tmp_path / "marks.html")]
+    done = subprocess.run([*command, *words], capture_output=True, text=True, check=True, timeout=PATIENCE_S)
+    assert "<title>all in view</title>" in done.stdout
 
 
 TAGS = {
@@ -168,8 +198,15 @@ def test_each_student_has_a_feedback_file_of_a_plain_name(tmp_path: Path) -> Non
     names = sorted(path.name for path in (tmp_path / "feedback").iterdir())
     assert len(names) == len(STUDENTS) and {"ada.txt", "ben.txt", "cleo.txt", "empty.txt"} < set(names)
     assert file_stems(["ada", "ada.py", "Ada", "a/b", "\x1b[2J", "..", ""]) == [
-        "ada", "ada-2", "Ada-3", "a_b", "_[2J", "student", "student-2",
+        "ada", "ada.py", "Ada-2", "a_b", "_[2J", "student", "student-2",
     ]  # fmt: skip
+
+
+def test_files_of_the_longest_name_can_be_written(tmp_path: Path) -> None:
+    sheet = sheet_of("", COLUMNS, range(1), [_student("\U0001f40d" * 63)], {})
+    write_feedback(tmp_path, sheet, [TEXT])
+    (written,) = tmp_path.iterdir()
+    assert len(f"{written.stem}-seed-{2**63 - 1}.html".encode()) <= 255
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet", ".jsonl", ".arrow"])

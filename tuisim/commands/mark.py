@@ -276,14 +276,28 @@ def _write(sheet: Sheet, students: Sequence[Student], ignored: Sequence[str], ar
         write_feedback(Path(arguments.feedback), sheet, [student.text for student in students])
 
 
+_NARROWER = ((40, 60), (24, 20), (16, 10), (12, 6))
+"""Characters of the names of students and goals, from wide terminals to narrow ones."""
+
+
 def _print(sheet: Sheet, ignored: Sequence[str]) -> None:
+    columns = shutil.get_terminal_size().columns if sys.stdout.isatty() else 0
     heads, rows = lines_of(sheet)
     text = table(heads, rows)
-    if sys.stdout.isatty() and max(map(len, text.split("\n"))) > shutil.get_terminal_size().columns:
+    if columns and _width(text) > columns:
+        for most_name, most_goal in _NARROWER:
+            heads, rows = lines_of(sheet, most_name, most_goal)
+            text = table(heads[:-1], [row[:-1] for row in rows])
+            if _width(text) <= columns:
+                break
         reasons = [f"{row[0]}: {row[-1]}" for row in rows if row[-1]]
-        text = "\n".join([table(heads[:-1], [row[:-1] for row in rows]), "", *reasons])
+        text = "\n".join([text, "", *reasons])
     echo_lines(text)
     echo()
     echo(summary_of(sheet))
     if ignored:
         echo_error(f"note: not marked, because they are no Python programs: {listed(ignored)}")
+
+
+def _width(text: str) -> int:
+    return max(map(len, text.split("\n")))

@@ -15,6 +15,8 @@ from tuisim.source import source_lines
 SUFFIX = ".txt"
 WIDTH = 88
 MOST_ERROR_LINES = 20
+MOST_NAME_BYTES = 160
+"""Longer names of files are cut off: with seed and suffix they must fit into the 255 bytes of common file systems."""
 _FORBIDDEN = frozenset('/\\:*?"<>|')
 """Characters that some file systems, or links of a page, do not take in a name."""
 
@@ -24,9 +26,8 @@ def file_stems(names: Iterable[str]) -> list[str]:
     found: list[str] = []
     taken: set[str] = set()
     for name in names:
-        plain = name.removesuffix(".py")
-        stem = "".join("_" if one in _FORBIDDEN or not one.isprintable() else one for one in plain)[:80].strip(" .")
-        stem = stem or "student"
+        plain = "".join("_" if one in _FORBIDDEN or not one.isprintable() else one for one in name)
+        stem = plain.encode()[:MOST_NAME_BYTES].decode(errors="ignore").strip(" .") or "student"
         number, candidate = 1, stem
         while candidate.casefold() in taken:
             number += 1

@@ -16,6 +16,9 @@ body { max-width: 90rem; }
 .part { background: #c98a0033; }
 .missed { background: #c0392b2b; }
 td.number, th.number, td:last-child, th:last-child { padding-left: .7rem; }
+.student { min-width: 6rem; max-width: 14rem; overflow-wrap: anywhere; }
+.head { white-space: normal; overflow-wrap: anywhere; max-width: 9rem; }
+td:last-child { min-width: 16rem; }
 tbody tr:hover { background: var(--area); }
 details pre { margin: .3rem 0; }
 code { font: .85rem ui-monospace, monospace; }
@@ -44,9 +47,9 @@ def page_of(sheet: Sheet, links: Links = MappingProxyType({}), ignored: Sequence
 
 
 def _students(sheet: Sheet, links: Links) -> str:
-    heads = ("student", "points", "robust", *(column.name for column in sheet.columns), "reason")
+    heads = ("student", "points", "robustness", *(column.name for column in sheet.columns), "reason")
     numbers = range(1, len(heads) - 1)
-    head = "".join(f'<th class="{"number" if at in numbers else "name"}">{clean(text)}</th>'
+    head = "".join(f'<th class="{"number head" if at in numbers else ""}">{clean(text)}</th>'
                    for at, text in enumerate(heads))  # fmt: skip
     rows = [_row(row, sheet, links) for row in sheet.rows]
     return "\n".join((
@@ -57,7 +60,7 @@ def _students(sheet: Sheet, links: Links) -> str:
 def _row(row: Row, sheet: Sheet, links: Links) -> str:
     level = _level(row.points, sheet.most_points) if sheet.most_points else _level(row.robustness, 1.0)
     cells = (
-        f'<th class="name" scope="row">{clean(row.name)}</th>',
+        f'<th class="student" scope="row">{clean(row.name)}</th>',
         f'<td class="number {level}">{in_words(row.points)}</td>',
         f'<td class="number">{row.robustness:.0%}</td>',
         *(_cell(cell, column, row) for cell, column in zip(row.cells, sheet.columns, strict=True)),

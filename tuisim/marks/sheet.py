@@ -180,15 +180,26 @@ def in_words(points: float) -> str:
     return f"{points:.2f}".rstrip("0").rstrip(".")
 
 
-def lines_of(sheet: Sheet) -> tuple[list[str], list[list[str]]]:
-    """Return heads and rows of the text table; the reason comes last."""
-    heads = ["student", "points", "robust", *(column.name for column in sheet.columns), "reason"]
+def lines_of(sheet: Sheet, most_name: int = 40, most_goal: int = 60) -> tuple[list[str], list[list[str]]]:
+    """Return heads and rows of the text table; the reason comes last.
+
+    Args:
+        most_name, most_goal: Characters of the names of students and goals; the middle of longer ones is left out.
+    """
+    goals = [_without_middle(column.name, most_goal) for column in sheet.columns]
+    heads = ["student", "points", "robustness", *goals, "reason"]
     rows = []
     for row in sheet.rows:
         points = (in_words(row.points), f"{row.robustness:.0%}", *(in_words(cell.points) for cell in row.cells))
         where = f"line {row.line}: " if row.line and f"line {row.line}" not in row.reason else ""
-        rows.append([row.name, *points, f"{where}{row.reason}"])
+        rows.append([_without_middle(row.name, most_name), *points, f"{where}{row.reason}"])
     return heads, rows
+
+
+def _without_middle(name: str, most: int) -> str:
+    # Names of files that belong together differ at either end.
+    end = most // 3
+    return name if len(name) <= most else f"{name[: most - end - 1]}…{name[-end:]}"
 
 
 def summary_of(sheet: Sheet) -> str:

@@ -24,7 +24,7 @@ class Student:
     """What one student has handed in."""
 
     name: str
-    """Name of the file or folder, unique in the class."""
+    """Name of the folder, or of the file without `.py`; unique in the class."""
     path: Path
     """The file or folder."""
     main: str = ""
@@ -97,10 +97,17 @@ def _entries(folder: Path, excluded: Collection[Path]) -> Iterator[Path]:
 
 
 def _named(students: Iterable[tuple[Path, Student]]) -> Iterator[Student]:
-    """Return the students with the names of their folders where a name alone is not unique."""
-    every = list(students)
-    counts = Counter(student.name for _, student in every)
-    full = [f"{_real(folder).name}/{one.name}" if counts[one.name] > 1 else one.name for folder, one in every]
+    """Return the students with names that are unique.
+
+    A file whose name without `.py` is also that of a neighbour keeps the ending. Where names are the same in several
+    folders, they have the name of the folder before them, and otherwise a number after them.
+    """
+    every = [(_real(folder), student) for folder, student in students]
+    beside = Counter((folder, student.name) for folder, student in every)
+    names = [_own_name(one.path) if beside[folder, one.name] > 1 else one.name for folder, one in every]
+    counts = Counter(names)
+    full = [f"{folder.name}/{name}" if counts[name] > 1 else name
+            for (folder, _), name in zip(every, names, strict=True)]  # fmt: skip
     seen: Counter[str] = Counter()
     for name, (_, student) in zip(full, every, strict=True):
         seen[name] += 1
@@ -108,13 +115,14 @@ def _named(students: Iterable[tuple[Path, Student]]) -> Iterator[Student]:
 
 
 def _student(path: Path, program: str) -> Student:
-    # A path such as `.` ends in no name.
-    name = _shown(path.name if path.name not in ("", "..") else _real(path).name)
+    own = _own_name(path)
+    is_file = not os.path.isdir(path)
+    name = own[: -len(SUFFIX)] if is_file and own.lower().endswith(SUFFIX) and own.lower() != SUFFIX else own
     if path.is_symlink():
         return Student(name, path, problem=_LINK)
-    if not os.path.isdir(path):
-        # Its copy has this name.
-        return _read(Student(name, path, name), path)
+    if is_file:
+        # Its copy has the name of the file.
+        return _read(Student(name, path, own), path)
     try:
         if link := _link_out_of(path):
             return Student(name, path, problem=f"{_shown(link)} is a link that leads out of the folder")
@@ -122,6 +130,11 @@ def _student(path: Path, program: str) -> Student:
     except (ConfigError, OSError) as error:
         return Student(name, path, problem=str(error).replace(f"{path}{os.sep}", ""))
     return _read(Student(name, path, main), path / main)
+
+
+def _own_name(path: Path) -> str:
+    """Return the name of a file or folder as it is shown; a path such as `.` ends in none."""
+    return _shown(path.name if path.name not in ("", "..") else _real(path).name)
 
 
 def _link_out_of(folder: Path) -> str:
