@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from tests.conftest import Command
 from tests.goals.recorded import Run, ahead, says, wait, world
@@ -135,6 +136,28 @@ def test_bad_input(words: tuple[str, ...], message: str, task: Path, here: Comma
     done = here("goals", "check", *(word.format(task=task) for word in words))
     assert (done.returncode, done.stdout) == (2, "")
     assert message in done.stderr
+
+
+OWN_MATS = {
+    "an image": "background = 'own.png'",
+    "an image in a folder": "background = 'mats/../own.png'",
+    "a name in a folder of mats": "background = 'other'\nmats = 'mats'",
+}
+
+
+@pytest.mark.parametrize("mat", OWN_MATS.values(), ids=OWN_MATS)
+def test_a_run_on_the_own_mat_of_its_task_is_not_noted(
+    mat: str, task: Path, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mats").mkdir()
+    for path in (tmp_path / "own.png", tmp_path / "mats" / "other.png"):
+        Image.new("RGB", (200, 100), "white").save(path)
+    task.write_text(f"{mat}\n{GOALS}")
+    (tmp_path / "p.py").write_text("print('done')\n")
+    assert here("run", task.name, "p.py").returncode == 0
+    for named in (task.name, str(task)):
+        assert here("goals", "check", named).stderr == ""
 
 
 def test_run_of_another_world_and_by_hand_is_noted(task: Path, here: Command) -> None:

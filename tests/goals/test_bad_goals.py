@@ -92,6 +92,8 @@ BAD = {
     "turn without answer": (goal("dialogue = [{ reply = '5' }]"), "goal[2].dialogue.turns[1].answer: is missing"),
     "no levels": (goal("log = { name = 'a' }"), "line 7: goal[2].log.levels: is missing"),
     "name of no sample": (goal("log = { name = 'a b', levels = [1] }"), "goal[2].log.name: 'a b' cannot be the name"),
+    "a keyword": (goal("use = ['tank_drive.on', 'for']"), "goal[2].use.calls[2]: 'for' is a keyword, which no program"),
+    "a definition": (goal("avoid = 'def'"), "goal[2].avoid.calls[1]: 'def' is a keyword, which no program can call"),
     "name of no call": (goal("use = ['f(x)']"), "goal[2].use.calls[1]: 'f(x)' is not the name of a call"),
     "no line described": (goal("follow = 'left'"), "goal[2].follow: does not describe the line (give darker_than"),
     "nothing that follows": (

@@ -60,10 +60,20 @@ PLACES = {
         "missed",
         2.77,
         "At the end the robot was 99 mm right of x = 800 mm.",
-        4,
+        3,
     ),
     "reach below a line": Case(
-        "reach = { y_mm = 550, at_end = true }", ALONG, "missed", 2.77, "50 mm below y = 550 mm.", 4
+        "reach = { y_mm = 550, at_end = true }", ALONG, "missed", 2.77, "50 mm below y = 550 mm.", 3
+    ),
+    "reach without a move": Case(
+        "reach = { x_mm = 800 }", (wait(1, 2), says("a: 1", 3)), "missed", 1.0, "300 mm left", 0
+    ),
+    "reach away from the start": Case(
+        "reach = { x_mm = 400 }", (wait(1, 2), ahead(200, line=3)), "missed", reason="At its nearest, at 0.00 s", line=3
+    ),
+    "pass without a move": Case("pass = [[800, 500]]", (wait(1, 2),), "missed", 1.0, "no nearer than 300 mm", 0),
+    "inside not from the start": Case(
+        "inside = { x_mm = 0, y_mm = 0, width_mm = 50, height_mm = 50 }", ALONG, "missed", 0.0, "was not in the area", 0
     ),
     "reach at the end": Case("reach = { x_mm = 900, at_end = true }", ALONG, "met", 2.77, line=4),
     "reach and stay": Case("reach = { x_mm = 900, for_s = 0.3 }", ALONG, "met", 2.46, line=4),
@@ -182,8 +192,8 @@ PRINTED = (says("start", 1), wait(1, 2), says("a: 100.0", 3), wait(1, 4), says("
 
 OUTPUT = {
     "print": Case("print = 'do.e'", PRINTED, "met", 2.0, line=6),
-    "print nothing": Case("print = 'x'", (wait(1),), "missed", 1.0, "The program printed nothing."),
-    "print another line": Case("print = '^one$'", PRINTED, "missed", 2.0, "the last of the 4 is 'done'"),
+    "print nothing": Case("print = 'x'", (wait(1, 2),), "missed", 1.0, "The program printed nothing.", 0),
+    "print another line": Case("print = '^one$'", PRINTED, "missed", 2.0, "the last of the 4 is 'done'", 6),
     "print lines": Case("print = ['start', 'done']", PRINTED, "met", 2.0, line=6),
     "print lines in another order": Case(
         "print = ['done', 'start']", PRINTED, "missed", 2.0, "'start' was printed, but not after", 6
@@ -193,12 +203,41 @@ OUTPUT = {
     ),
     "print before": Case("print = 'start'\nbefore = 0.5", PRINTED, "met", 0.0, line=1),
     "print too late": Case(
-        "print = 'done'\nbefore = 1.5", PRINTED, "missed", 1.5, "Not before 1.5 s: no printed line matches 'done'", 4
+        "print = 'done'\nbefore = 1.5", PRINTED, "missed", 1.5, "Not before 1.5 s: no printed line matches 'done'", 3
     ),
     "print after": Case("print = 'a: '\nafter = 1.5", PRINTED, "met", 2.0, line=5),
     "log": Case("log = { name = 'a', levels = [100, 86.3] }", PRINTED, "met", 2.0, line=5),
     "log in another order": Case(
-        "log = { name = 'a', levels = [86.3, 100] }", PRINTED, "missed", 2.0, "1 of 2 levels; no sample followed", 5
+        "log = { name = 'a', levels = [86.3, 100] }",
+        PRINTED,
+        "missed",
+        2.0,
+        "a came near 1 of 2 levels: 100 is next, and no sample followed.",
+        5,
+    ),
+    "log of none of the levels": Case(
+        "log = { name = 'a', levels = [78.4, 86.3] }",
+        PRINTED,
+        "missed",
+        2.0,
+        "a came near none of 2 levels: 78.4 is the first, and the nearest was 86.27 at 2.00 s.",
+        5,
+    ),
+    "log of not all levels, in any order": Case(
+        "log = { name = 'a', levels = [86.3, 90], in_order = false }",
+        PRINTED,
+        "missed",
+        2.0,
+        "a came near 1 of 2 levels: 90 is missing, and the nearest was 86.27 at 2.00 s.",
+        5,
+    ),
+    "log at another time": Case(
+        "log = { name = 'a', levels = [1] }\nafter = 2.5",
+        (*PRINTED, wait(1, 7)),
+        "missed",
+        3.0,
+        "a did not come near 1: no sample was logged in that time.",
+        0,
     ),
     "log in any order": Case("log = { name = 'a', levels = [86.3, 100], in_order = false }", PRINTED, "met", line=5),
     "log not near enough": Case(
@@ -206,8 +245,8 @@ OUTPUT = {
         PRINTED,
         "missed",
         2.0,
-        "but not near 86.3 after 100: the nearest was 86.27 at 2.00 s",
-        3,
+        "a came near 1 of 2 levels: 86.3 is next, and the nearest after 100 was 86.27 at 2.00 s.",
+        5,
     ),
     "log of one level": Case(
         "log = { name = 'a', levels = [50] }",
@@ -215,11 +254,11 @@ OUTPUT = {
         "missed",
         2.0,
         "a did not come near 50: the nearest was 86.27 at 2.00 s",
-        4,
+        5,
     ),
     "log at the tolerance": Case("log = { name = 'a', levels = [86.3], within = 0.03 }", PRINTED, "met", line=5),
     "log another name": Case(
-        "log = { name = 'b', levels = [1] }", PRINTED, "missed", 2.0, "logged no sample b. It logged a."
+        "log = { name = 'b', levels = [1] }", PRINTED, "missed", 2.0, "logged no sample b. It logged a.", 0
     ),
     "finish": Case("finish = true", (wait(1, 9),), "met", 1.0, line=9),
     "finish with an error": Case("finish = true", (wait(1),), "missed", 1.0, "did not finish: raised", end=End.RAISED),
@@ -261,7 +300,7 @@ OUTPUT = {
         "dialogue = [{ answer = '5' }]", (is_told("15", 2),), "missed", 0.0, "no question got answer 1, '5'"
     ),
     "dialogue without a question": Case(
-        "dialogue = [{ answer = '5' }]", PRINTED, "missed", 2.0, "did not ask for input"
+        "dialogue = [{ answer = '5' }]", PRINTED, "missed", 2.0, "did not ask for input", 0
     ),
     "dialogue with another prompt": Case(
         "dialogue = [{ answer = '5', prompt = 'age' }]",

@@ -60,7 +60,7 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
         "log_greys",
         {"time.sleep(0.1)": "time.sleep(1)"},
         {
-            "levels": "Colour came near 3 of 8 levels, but not near 82.7 after 100: the nearest was",
+            "levels": "Colour came near 3 of 8 levels: 82.7 is next, and the nearest after 100 was",
             "black": "right of x = 1490 mm.",
             "straight": "left the area at",
         },

@@ -8,8 +8,9 @@ from dataclasses import asdict
 from typing import Any
 
 from tuisim.commands.echo import Progress, echo, echo_error, echo_json, tell
-from tuisim.config.build import settings_from
+from tuisim.config.build import build_run_spec, settings_from
 from tuisim.config.command_line import AS_JSON, Group, argument, command
+from tuisim.config.options import settings_of
 from tuisim.errors import ConfigError, counted
 from tuisim.goals.files import GoalsFile, example_names, load_goals
 from tuisim.goals.judge import judge
@@ -82,10 +83,12 @@ def _differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
         yield f"run {run.number} was changed while it ran: {counted(len(run.actions), 'action')} of the user"
     try:
         found = settings_from(run.spec)
+        # A mat of one's own is known by its path: the file may name it in another way.
+        of_file = settings_from(build_run_spec(settings_of(file.settings)))
     except ConfigError:
-        # The mat no longer exists.
+        # A mat no longer exists.
         return
-    given = {key: file.settings[key] for key in _WHERE if file.settings.get(key) is not None}
+    given = {key: of_file[key] for key in _WHERE if file.settings.get(key) is not None}
     other = [f"{key} {found[key]}, not {value}" for key, value in given.items() if found[key] != value]
     if other:
         yield f"run {run.number} was not run in the world of {file.path.name}: {', '.join(other)}"

@@ -15,8 +15,8 @@ class Found:
     """None: not up to now."""
     reason: str = ""
     """Why it is not reached, or how it was violated, in one sentence; empty where nothing needs to be said."""
-    line: int = 0
-    """The program's line that the reason is about; 0: the line at the moment."""
+    line: int | None = None
+    """The program's line that this is about; 0: there is none; None: the line at the moment, none without a moment."""
 
 
 def distance_words(distance_mm: float) -> str:

@@ -59,7 +59,8 @@ class _Outcome:
     moment: Moment = START
     """When it was decided; meaningless while it is open."""
     reason: str = ""
-    line: int = 0
+    line: int | None = 0
+    """0: there is none; None: the line at the moment."""
 
 
 def judge(goals: Sequence[Goal], run: JudgedRun, field: Field | None = None) -> tuple[Judgement, ...]:
@@ -94,11 +95,14 @@ class _Judge:
     def judgement(self, goal: Goal) -> Judgement:
         outcome = self._outcome(goal.name)
         if outcome.state is GoalState.OPEN:
-            return Judgement(goal, (), outcome.reason, outcome.line)
+            return Judgement(goal, (), outcome.reason, self._line(outcome))
         tick = max(0, outcome.moment.tick)
         x_mm, y_mm = self._evidence.place_mm(tick)
         change = Change(tick, self._evidence.time_s(outcome.moment), outcome.state, x_mm, y_mm)
-        return Judgement(goal, (change,), outcome.reason, outcome.line or self._evidence.line(outcome.moment))
+        return Judgement(goal, (change,), outcome.reason, self._line(outcome))
+
+    def _line(self, outcome: _Outcome) -> int:
+        return self._evidence.line(outcome.moment) if outcome.line is None else outcome.line
 
     def _outcome(self, name: str, if_missed: str = "") -> _Outcome:
         """Return the outcome of a goal, if it is missed perhaps with another reason."""
@@ -144,7 +148,7 @@ class _Judge:
                 return self._held(goal, found, stop)
             case Kind.FIXED:
                 state = GoalState.MET if found.moment is not None else GoalState.MISSED
-                return _Outcome(state, START, found.reason, found.line)
+                return _Outcome(state, START, found.reason, found.line or 0)
             case Kind.COMBINED:
                 raise AssertionError(condition)
             case _:
@@ -161,31 +165,31 @@ class _Judge:
             return outcome.moment if outcome.state is GoalState.MET else None
         return self._evidence.at_time(limit)
 
-    def _never(self, reason: str, line: int = 0) -> _Outcome:
+    def _never(self, reason: str) -> _Outcome:
         """Return the outcome of what has not happened: open, or missed if the run has ended."""
         if not self._evidence.ended:
             return _Outcome(GoalState.OPEN, reason="")
-        return _Outcome(GoalState.MISSED, self._evidence.last, reason, line)
+        return _Outcome(GoalState.MISSED, self._evidence.last, reason)
 
     def _reached(self, goal: Goal, found: Found, stop: Moment | None) -> _Outcome:
         if found.moment is not None:
             return _Outcome(GoalState.MET, found.moment, line=found.line)
         if stop is not None:
-            return _Outcome(GoalState.MISSED, stop, _too_late(goal, found.reason), found.line)
+            return _Outcome(GoalState.MISSED, stop, _too_late(goal, found.reason), found.line or 0)
         if self._evidence.ended:
-            return _Outcome(GoalState.MISSED, self._evidence.last, found.reason, found.line)
-        return _Outcome(GoalState.OPEN, reason=found.reason, line=found.line)
+            return _Outcome(GoalState.MISSED, self._evidence.last, found.reason, found.line or 0)
+        return _Outcome(GoalState.OPEN, reason=found.reason, line=found.line or 0)
 
     def _held(self, goal: Goal, found: Found, stop: Moment | None) -> _Outcome:
         if found.moment is not None:
             return _Outcome(GoalState.MISSED, found.moment, found.reason, found.line)
         if stop is not None:
-            return _Outcome(GoalState.MET, stop)
+            return _Outcome(GoalState.MET, stop, line=None)
         if not self._evidence.ended:
-            return _Outcome(GoalState.OPEN, reason=found.reason, line=found.line)
+            return _Outcome(GoalState.OPEN, reason=found.reason, line=found.line or 0)
         if isinstance(goal.until, str):
             return _Outcome(GoalState.MISSED, self._evidence.last, f"“{goal.until}” was not met.")
-        return _Outcome(GoalState.MET, self._evidence.last)
+        return _Outcome(GoalState.MET, self._evidence.last, line=None)
 
     def _combined(self, condition: AllOf | AnyOf, goal: Goal) -> _Outcome:
         stop = self._stop(goal, condition.KIND)
@@ -196,7 +200,7 @@ class _Judge:
             parts = [self._outcome(name, "None of its goals was met.") for name in condition.goals]
             outcome = _first_of(parts, GoalState.MET)
         if stop is not None and not (outcome.state is not GoalState.OPEN and outcome.moment < stop):
-            return _Outcome(GoalState.MISSED, stop, _too_late(goal, ""), outcome.line)
+            return _Outcome(GoalState.MISSED, stop, _too_late(goal, ""), self._line(outcome))
         return outcome
 
 

@@ -27,13 +27,15 @@ def _printed(evidence: Evidence, span: Span) -> list[tuple[int, OutputRow]]:
 def find_printed(condition: Print, evidence: Evidence, span: Span) -> Found:
     """Find when the last of the lines was printed."""
     rows = _printed(evidence, span)
-    at, last, line = 0, -1, 0
+    at, last, line = 0, -1, None
     for pattern in condition.lines:
         search = re.compile(pattern).search
         start = at if condition.in_order else 0
         found = next((place for place in range(start, len(rows)) if search(rows[place][1].text)), None)
         if found is None:
-            return Found(None, _no_line(condition, pattern, rows, line != 0), line)
+            # Of the line that the reason quotes.
+            about = rows[-1][1].line if rows and line is None else line
+            return Found(None, _no_line(condition, pattern, rows, line is not None), about)
         at, line = found + 1, rows[found][1].line
         last = max(last, found)
     number, row = rows[last]
@@ -57,14 +59,17 @@ def find_levels(condition: Log, evidence: Evidence, span: Span) -> Found:
         for number, sample in evidence.samples
         if sample.name == condition.name and span.first_row <= number < span.end_row
     ]
-    at, last, line = 0, -1, 0
+    at, last = 0, -1
     for count, level in enumerate(condition.levels):
         start = at if condition.in_order else 0
         fits = (place for place in range(start, len(samples)) if _near(samples[place][1], level, condition))
         found = next(fits, None)
         if found is None:
-            return Found(None, _no_level(condition, count, samples[start:], evidence), line)
-        at, line = found + 1, samples[found][1].line
+            rest = [sample for _, sample in samples[start:]]
+            nearest = min(rest, key=lambda sample: abs(sample.value - level), default=None)
+            about = nearest or (samples[last][1] if last >= 0 else None)
+            return Found(None, _no_level(condition, count, nearest, evidence), about.line if about else 0)
+        at = found + 1
         last = max(last, found)
     number, sample = samples[last]
     return Found(Moment(sample.tick, number), line=sample.line)
@@ -75,19 +80,22 @@ def _near(sample: Sample, level: float, condition: Log) -> bool:
     return abs(sample.value - level) <= condition.within + 1e-9 * max(1.0, abs(level))
 
 
-def _no_level(condition: Log, count: int, rest: list[tuple[int, Sample]], evidence: Evidence) -> str:
+def _no_level(condition: Log, count: int, nearest: Sample | None, evidence: Evidence) -> str:
+    """Return why a level is missing, the one after the first `count`; `nearest` is the sample that came nearest."""
     name, levels = condition.name, condition.levels
     if not any(sample.name == name for _, sample in evidence.samples):
         others = sorted({sample.name for _, sample in evidence.samples})
         logged = f" It logged {', '.join(others[:5])}." if others else ""
         return f"The program logged no sample {name}.{logged}"
-    came = f"{name} came near {count} of {len(levels)} levels" if len(levels) > 1 else ""
-    after = f" after {levels[count - 1]:g}" if count and condition.in_order else ""
-    if not rest:
-        return f"{came}; no sample followed{after}, {levels[count]:g} was next."
-    _, nearest = min(rest, key=lambda each: abs(each[1].value - levels[count]))
-    missed = f"{came}, but not near" if came else f"{name} did not come near"
-    return f"{missed} {levels[count]:g}{after}: the nearest was {nearest.value:.6g} at {nearest.time_ns / 1e9:.2f} s."
+    level, after = f"{levels[count]:g}", f" after {levels[count - 1]:g}" if count and condition.in_order else ""
+    if nearest is not None:
+        near = f"the nearest{after} was {nearest.value:.6g} at {nearest.time_ns / 1e9:.2f} s"
+    else:
+        near = "no sample followed" if count else "no sample was logged in that time"
+    if len(levels) == 1:
+        return f"{name} did not come near {level}: {near}."
+    place = "missing" if not condition.in_order else "next" if count else "the first"
+    return f"{name} came near {count or 'none'} of {len(levels)} levels: {level} is {place}, and {near}."
 
 
 def find_dialogue(condition: Dialogue, evidence: Evidence, span: Span) -> Found:
@@ -155,12 +163,12 @@ def _not_asked(number: int, turn: Turn, asked: int) -> str:
 def find_finish(condition: Finish, evidence: Evidence, span: Span) -> Found:
     """Find when the program finished without an error."""
     if not span.over:
-        return Found(None, "The program was still running.")
+        return Found(None, "The program was still running.", evidence.line(span.stop or evidence.last))
     end = evidence.end
     if end is None:
-        return Found(None, "The run was interrupted.")
+        return Found(None, "The run was interrupted.", evidence.line(evidence.last))
     if end.end is End.FINISHED and not end.exit_code:
         return Found(evidence.last)
     what = f"exit code {end.exit_code}" if end.end is End.FINISHED else end.end.replace("_", " ")
     summary = end.summary.removesuffix(f" (line {end.error_line})").rstrip(".")
-    return Found(None, f"The program did not finish: {summary or what}.", end.error_line)
+    return Found(None, f"The program did not finish: {summary or what}.", evidence.line(evidence.last))

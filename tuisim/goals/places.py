@@ -36,12 +36,12 @@ def find_reach(condition: Reach, evidence: Evidence, span: Span) -> Found:
             return Found(evidence.last)
         words = _off_words(condition, records[-1], away_mm[-1], turned_deg[-1])
         text = f"At the end the robot was {words}." if span.over else f"The robot is {words}."
-        return Found(None, "" if there[-1] else text, evidence.line(Moment(first + len(records) - 1)))
+        return Found(None, "" if there[-1] else text, line_of_motion(records, len(records) - 1))
     if not there.any():
         nearest = int(np.argmin(np.maximum(away_mm / condition.within_mm, turned_deg / condition.within_deg)))
         words = _off_words(condition, records[nearest], away_mm[nearest], turned_deg[nearest])
         text = f"At its nearest, at {evidence.time_words(first + nearest)}, the robot was {words}."
-        return Found(None, text, evidence.line(Moment(first + nearest)))
+        return Found(None, text, line_of_motion(records, nearest))
     times_s = evidence.times_s[span.ticks]
     came = _came_at(there)
     stayed_s = np.where(there, times_s - times_s[came], -1.0)
@@ -50,7 +50,23 @@ def find_reach(condition: Reach, evidence: Evidence, span: Span) -> Found:
         return Found(Moment(first + int(enough[0])))
     longest = int(np.argmax(stayed_s))
     text = f"The robot stayed there for at most {stayed_s[longest]:.2f} s, {condition.for_s:g} s are needed."
-    return Found(None, text, evidence.line(Moment(first + longest)))
+    # What moved it away, else what brought it there.
+    return Found(None, text, line_of_motion(records, longest + 1))
+
+
+def line_of_motion(records: Array, at: int) -> int:
+    """Return the program's line of the last tick up to an index that moved the robot, else of the first after it.
+
+    A robot that stands where it is says nothing about the line at that time: 0, if it never moved.
+    """
+    import numpy as np
+
+    steps = [np.diff(records[name]) != 0 for name in ("x_mm", "y_mm", "heading_deg")]
+    moved = np.flatnonzero(np.logical_or.reduce(steps)) + 1
+    if not len(moved):
+        return 0
+    before = int(np.searchsorted(moved, at, side="right")) - 1
+    return int(records["line"][moved[max(0, before)]])
 
 
 def _came_at(there: Array) -> Array:
@@ -123,7 +139,7 @@ def find_pass(condition: Pass, evidence: Evidence, span: Span) -> Found:
                 f"The robot came no nearer than {distance_words(away_mm[nearest])} to place {count + 1} of "
                 f"{len(condition.places_mm)} ({x_mm:g}, {y_mm:g}){after}, at {evidence.time_words(first + nearest)}."
             )
-            return Found(None, text, evidence.line(Moment(first + nearest)))
+            return Found(None, text, line_of_motion(records, nearest))
         at = start + int(near.argmax())
         last = max(last, at)
     return Found(Moment(first + last))
@@ -180,8 +196,9 @@ def _first(wrong: Array, text: str, at_start: str, evidence: Evidence, span: Spa
         return Found()
     tick = span.first_tick + int(wrong.argmax())
     x_mm, y_mm = evidence.place_mm(tick)
-    what = at_start if tick == 0 else f"{text} at {evidence.time_words(tick)}"
-    return Found(Moment(tick), f"The robot {what}, at x {x_mm:.0f} mm, y {y_mm:.0f} mm.")
+    what = f"{text} at {evidence.time_words(tick)}" if tick else at_start
+    # No line of the program has put it where it is at the start.
+    return Found(Moment(tick), f"The robot {what}, at x {x_mm:.0f} mm, y {y_mm:.0f} mm.", None if tick else 0)
 
 
 def _points(part: Part, records: Array, robot: RobotSpec) -> list[tuple[Array, Array]]:

@@ -8,6 +8,7 @@ from tuisim.core.sensors.color import columns
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
 from tuisim.goals.evidence import Evidence, Moment, Span
 from tuisim.goals.found import Found, share_words
+from tuisim.goals.places import line_of_motion
 from tuisim.goals.spec import Follow
 from tuisim.runs.frames import quiet_color_columns
 
@@ -25,7 +26,8 @@ def find_off_line(condition: Follow, evidence: Evidence, span: Span) -> Found:
     unknown = [name for name in condition.sensors if name not in named]
     if unknown:
         known = ", ".join(named) or "none"
-        return Found(Moment(max(0, span.first_tick)), f"The robot has no colour sensor {unknown[0]}; it has: {known}.")
+        text = f"The robot has no colour sensor {unknown[0]}; it has: {known}."
+        return Found(Moment(max(0, span.first_tick)), text, 0)
     records = evidence.records[span.ticks]
     if not len(records):
         return Found()
@@ -38,14 +40,15 @@ def find_off_line(condition: Follow, evidence: Evidence, span: Span) -> Found:
     share = float(on_line.mean())
     if share >= condition.share:
         return Found()
-    lost = span.first_tick + _longest_gap(on_line)
+    gap = _longest_gap(on_line)
+    lost = span.first_tick + gap
     what = f"The sensor {' or '.join(condition.sensors)}" if condition.sensors else "The robot"
     text = (
         f"{what} was on the line for {share_words(share)} of the time, {share_words(condition.share)} are needed; it "
         f"was off for longest from {evidence.time_words(lost)}."
     )
     decided = span.stop or (evidence.last if span.over else None)
-    return Found(decided, text, evidence.line(Moment(lost)))
+    return Found(decided, text, line_of_motion(records, gap))
 
 
 def _light_at_percent(records: Array, x_mm: float, y_mm: float, evidence: Evidence) -> Array:

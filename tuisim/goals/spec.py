@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from keyword import iskeyword
 from typing import Annotated, ClassVar, TypeAlias
 
 from msgspec import Meta
@@ -273,6 +274,9 @@ class Calls:
             if not all(word.isidentifier() for word in call.removesuffix("()").split(".")):
                 hint = "a name such as tank_drive.on_for_rotations"
                 raise ConfigError(f"{call!r} is not the name of a call", hint, key=f"calls[{number}]")
+            if wrong := next(filter(iskeyword, call.removesuffix("()").split(".")), ""):
+                hint = "a function or method such as tank_drive.on_for_rotations; loops and definitions are no calls"
+                raise ConfigError(f"{wrong!r} is a keyword, which no program can call", hint, key=f"calls[{number}]")
 
 
 @dataclass(frozen=True, slots=True)
