@@ -163,8 +163,8 @@ def test_a_class_is_marked_as_a_table(tmp_path: Path, here: Command) -> None:
             "line 5: At the end the robot was 46 mm from (1750, 500).",
             "raises   0       0%          0       0      0        0     0     "
             "ZeroDivisionError: division by zero (line 5)",
-            "zip      0       0%          0       0      0        0     0     zip.py: is not Python text: invalid or "
-            "missing encoding declaration (save it as UTF-8)",
+            "zip      0       0%          0       0      0        0     0     "
+            "SyntaxError: Non-UTF-8 code starting with '\\xff', but no encoding declared; save it as UTF-8 (line 1)",
             "",
             "4 students, 1 seed: mean 4.25 of 10 points; 1 with all points",
         ],
@@ -212,6 +212,36 @@ def test_bad_input_is_refused_before_anything_is_run(tmp_path: Path, here: Comma
     done = here("mark", *words.split())
     assert (done.returncode, done.stdout, message in done.stderr) == (2, "", True), done.stderr
     assert sorted(tmp_path.rglob("*")) == before
+
+
+UNREADABLE = {
+    "latin-1": "print('grün')\n".encode("latin-1"),
+    "utf-16": "print('grün')\n".encode("utf-16"),
+    "binary": b"\x7fELF\0\1\2\xff",
+    "encoding": b"# coding: klingon\nprint('green')\n",
+    "null": b"print('green')\n\0",
+    "tabs": b"if True:\n\tpass\n        pass\n",
+}
+STILL_GOALS = """
+background = "Empty_Map"
+[[goal]]
+name = "still"
+touch_nothing = true
+[[goal]]
+name = "said"
+print = "green"
+"""
+
+
+def test_a_program_that_cannot_be_read_gets_what_a_syntax_error_gets(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "class").mkdir()
+    for name, content in {**UNREADABLE, "syntax": b"print('green'\n"}.items():
+        (tmp_path / "class" / f"{name}.py").write_bytes(content)
+    (tmp_path / "goals.toml").write_text(STILL_GOALS)
+    done = here("mark", "goals.toml", "class", "--seeds", "0", "--jobs", "1", "--export", "marks.csv")
+    frame = pd.read_csv(tmp_path / "marks.csv").set_index("student")
+    assert (done.returncode, set(frame["points"])) == (0, {1.0}), done.stdout
+    assert all(reason.startswith(("SyntaxError: ", "TabError: ")) for reason in frame["reason"]), done.stdout
 
 
 def test_the_world_of_the_goals_replaces_that_of_a_magic_line(tmp_path: Path, here: Command) -> None:

@@ -26,7 +26,7 @@ def _folder(tmp_path: Path, *files: str) -> Path:
 def test_every_student_of_the_class_is_found(tmp_path: Path) -> None:
     found = find_students([str(write_class(tmp_path / "class"))])
     assert len(found.students) == len(CLASS)
-    assert [one.name for one in found.students if one.source is None] == ["zip"]
+    assert all(one.source for one in found.students)
     assert {one.name: one.main for one in found.students if not one.path.is_file()} == {
         "deletes": "main.py",
         "vera": "main.py",

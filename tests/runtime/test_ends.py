@@ -201,6 +201,15 @@ SUMMARIES = {
         "ExceptionGroup: both (2 sub-exceptions) (line 1)",
     ),
     "syntax": ("x = = 3", "SyntaxError: invalid syntax (line 1)"),
+    "no UTF-8": (
+        "x = 1\ny = 'gr\udcfcn'",
+        "SyntaxError: Non-UTF-8 code starting with '\\xfc', but no encoding declared; save it as UTF-8 (line 2)",
+    ),
+    "null": ("x = 1\n\0", "SyntaxError: source code cannot contain null bytes (line 2)"),
+    "unknown encoding": ("# coding: klingon\nx = 1", "SyntaxError: encoding problem: klingon (line 1)"),
+    "no encoding of text": ("\n# -*- coding: rot13 -*-\nx = 1", "SyntaxError: encoding problem: rot13 (line 2)"),
+    "an encoding": ("# -*- coding: latin-1 -*-\nx = 'grün'", ""),
+    "no declaration": ("x = 1\n# coding: klingon", ""),
     "no message": ("raise ValueError", "ValueError (line 1)"),
 }
 

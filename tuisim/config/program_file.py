@@ -204,8 +204,12 @@ def find_program(word: str) -> Path:
     return path
 
 
-def read_program(path: Path) -> ProgramSource:
+def read_program(path: Path, *, as_python: bool = False) -> ProgramSource:
     """Read a program file; files in its magic line are looked up beside it.
+
+    Args:
+        as_python: Whether a file that is not text is read all the same, its wrong bytes as lone surrogates: when it is
+            run, it raises what Python raises.
 
     Raises:
         ConfigError: it is missing, a directory, not Python text, too large, or its magic line is wrong.
@@ -217,7 +221,7 @@ def read_program(path: Path) -> ProgramSource:
         raise ConfigError(f"is larger than {MAX_PROGRAM_BYTES >> 20} MiB", hint, file=shown)
     if path.suffix == ".ipynb":
         raise ConfigError("is a notebook", hint, file=shown)
-    return program_of_text(_decode(data, shown), path, path.name)
+    return program_of_text(_decode(data, shown, as_python), path, path.name)
 
 
 def program_of_text(text: str, path: Path | None, name: str) -> ProgramSource:
@@ -235,10 +239,15 @@ def program_of_text(text: str, path: Path | None, name: str) -> ProgramSource:
     return replace(source, options=beside(path.parent if path else Path.cwd(), source.options))
 
 
-def _decode(data: bytes, shown: str) -> str:
-    text, _ = decode_source(data, shown)
-    if "\0" in text:
-        raise ConfigError("is not Python text: it contains null characters", "name a Python file", file=shown)
+def _decode(data: bytes, shown: str, as_python: bool) -> str:
+    try:
+        text, _ = decode_source(data, shown)
+        if "\0" in text:
+            raise ConfigError("is not Python text: it contains null characters", "name a Python file", file=shown)
+    except ConfigError:
+        if not as_python:
+            raise
+        text = data.decode("utf-8", "surrogateescape")
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 

@@ -171,7 +171,7 @@ def _shown(name: str) -> str:
 
 def _read(student: Student, path: Path) -> Student:
     try:
-        source = read_program(path)
+        source = read_program(path, as_python=True)
         return replace(student, source=replace(source, program=replace(source.program, name=_shown(path.name))))
     except ConfigError as error:
         return replace(student, problem=printable(str(error).replace(str(path), path.name)))

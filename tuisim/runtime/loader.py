@@ -55,12 +55,55 @@ class _LoopHooks(ast.NodeTransformer):
     visit_For = visit_While = visit_AsyncFor = _hooked  # noqa: N815
 
 
+_FIRST_BYTE, _LAST_BYTE = "\udc80", "\udcff"
+"""The lone surrogates that stand for bytes of a file that are not UTF-8."""
+_MOST_DECLARATION = 1000
+"""Characters at the beginning of a program in which it may declare its encoding."""
+
+
+def _check_encoding(text: str, file: str) -> None:
+    """Raise the SyntaxError that Python raises for a file that is not text in the encoding that it declares."""
+    if "coding" in text[:_MOST_DECLARATION] and (declared := _declared_encoding(text)):
+        number, encoding = declared
+        if not _is_text_encoding(encoding):
+            raise SyntaxError(f"encoding problem: {encoding}", (file, number, None, None))
+    if text.isascii() and "\0" not in text:
+        return
+    for number, line in enumerate(text.split("\n"), start=1):
+        if wrong := next((one for one in line if _FIRST_BYTE <= one <= _LAST_BYTE), ""):
+            byte = f"\\x{ord(wrong) & 0xFF:02x}"
+            what = f"Non-UTF-8 code starting with '{byte}', but no encoding declared; save it as UTF-8"
+            raise SyntaxError(what, (file, number, None, None))
+        if "\0" in line:
+            raise SyntaxError("source code cannot contain null bytes", (file, number, None, None))
+
+
+def _declared_encoding(text: str) -> tuple[int, str] | None:
+    """Return the line of a declaration and its encoding, by the rules of PEP 263; None if there is none."""
+    import re
+
+    for number, line in enumerate(text.split("\n", 2)[:2], start=1):
+        if found := re.match(r"[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)", line, re.ASCII):
+            return number, found[1]
+        if not re.match(r"[ \t\f]*(?:#|$)", line):
+            break
+    return None
+
+
+def _is_text_encoding(name: str) -> bool:
+    try:
+        return b"a\n".decode(name) == "a\n"
+    except (LookupError, ValueError):
+        return False
+
+
 def compile_program(text: str, file: str) -> types.CodeType:
     """Return the program's code, with loop hooks and its own line numbers.
 
     Raises:
         SyntaxError, ValueError: the text is not Python.
     """
+    _check_encoding(text, file)
     tree = ast.parse(text, file)
     return compile(_LoopHooks().visit(tree), file, "exec", dont_inherit=True)
 
