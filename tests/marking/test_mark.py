@@ -214,6 +214,15 @@ def test_bad_input_is_refused_before_anything_is_run(tmp_path: Path, here: Comma
     assert sorted(tmp_path.rglob("*")) == before
 
 
+def test_a_wrong_file_of_a_student_is_named_without_the_path_of_the_class(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "class" / "ada").mkdir(parents=True)
+    (tmp_path / "class" / "ada" / "main.py").write_text("# %%sim_magic -r robot.toml\n")
+    (tmp_path / "class" / "ada" / "robot.toml").write_text("base = 1\n")
+    (tmp_path / "goals.toml").write_text("[[goal]]\nname = 'done'\nfinish = true\n")
+    done = here("mark", "goals.toml", tmp_path / "class", "--seeds", "0")
+    assert ("  robot.toml: base: " in done.stdout, str(tmp_path) in done.stdout) == (True, False), done.stdout
+
+
 UNREADABLE = {
     "latin-1": "print('grün')\n".encode("latin-1"),
     "utf-16": "print('grün')\n".encode("utf-16"),

@@ -7,6 +7,7 @@ from math import nan
 from pathlib import Path
 
 import pytest
+from ev3dev2 import motor
 
 from tuisim.batch.task import Result
 from tuisim.goals.judgement import Change, GoalState, Judgement
@@ -51,6 +52,17 @@ def test_a_traceback_has_no_path_and_a_limited_length() -> None:
     error = f'Traceback\n  File "{FOLDER}/main.py", line 3\n' + "ValueError: " + "y" * 100_000
     found = outcome_of(replace(DONE, end="raised", error=error, error_line=3), 3, FOLDER)
     assert found.error.startswith('Traceback\n  File "main.py", line 3\nValueError: y') and len(found.error) < 5000
+
+
+def test_a_traceback_has_no_path_of_this_machine() -> None:
+    library = f"cannot import name 'MoveTanks' from 'ev3dev2.motor' ({motor.__file__})"
+    found = outcome_of(replace(DONE, end="raised", error="Traceback", summary=f"ImportError: {library}"), 0, FOLDER)
+    assert found.failure == "ImportError: cannot import name 'MoveTanks' from 'ev3dev2.motor' (ev3dev2/motor.py)"
+
+
+def test_a_path_of_the_students_own_stays() -> None:
+    found = outcome_of(replace(DONE, end="raised", summary="FileNotFoundError: '/home/ada/x.csv'"), 0, FOLDER)
+    assert found.failure == "FileNotFoundError: '/home/ada/x.csv'"
 
 
 def test_a_goal_made_of_others_is_missed_for_the_reason_of_the_first_that_is() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import math
+import os
 import shlex
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.model import Model
+from tuisim.analysis.pins import Pin, svg_of_pins
 from tuisim.analysis.source import LogRequest, OpenedLog, opening
 from tuisim.charts.files import FACET_PX, clean, svg_of, write_whole
 from tuisim.charts.layout import Chart, Span, laid_out
@@ -77,13 +79,22 @@ def write_report(opened: OpenedLog, path: Path, names: Sequence[str] = (), searc
 
 
 def report_of(
-    opened: OpenedLog, names: Sequence[str] = (), search: Search = plateaus, title: str = "", *, movie: bool = False
+    opened: OpenedLog,
+    names: Sequence[str] = (),
+    search: Search = plateaus,
+    title: str = "",
+    *,
+    movie: bool = False,
+    pins: Sequence[Pin] = (),
+    parts: Sequence[str] = (),
 ) -> str:
     """Return the page that `write_report` writes; arguments and errors are the same.
 
     Args:
         title: The title of a page that is the same for identical runs: it names no run and no date.
         movie: Whether the page has a movie of each run.
+        pins: Places that are marked on the pictures.
+        parts: Sections, as HTML, that come after the facts.
     """
     opened, remark = _with_rows(opened)
     if title:
@@ -100,7 +111,8 @@ def report_of(
         paragraph(remark, soft=True) if remark else "",
         "</header>",
         section("Facts", facts(known if runs else log_facts(log)), *map(_error, runs)),
-        section("World", *(_world(run, many=len(runs) > 1) for run in runs), *map(_movie, runs if movie else ())),
+        *parts,
+        section("World", *(_world(run, pins, many=len(runs) > 1) for run in runs), *map(_movie, runs if movie else ())),
         section("Chart", *_chart(model)),
         section("Bands", *_bands(model)),
         section("Statistics", _statistics(model)),
@@ -126,16 +138,25 @@ def _error(run: StoredRun) -> str:
     return f"<pre>{clean(run.end.error.rstrip())}</pre>" if run.end and run.end.error else ""
 
 
-def _world(run: StoredRun, *, many: bool) -> str:
+def _world(run: StoredRun, pins: Sequence[Pin], *, many: bool) -> str:
+    mat = _mat(run)
     try:
         picture = _way_picture(run)
     except LogError as error:
-        return paragraph(f"No picture: {error}", soft=True)
-    mat = run.spec.world.background
+        why = str(error).replace(run.spec.world.background, mat)
+        return paragraph(f"No picture: {why}", soft=True)
     said = f"run {run.number}: " if many else ""
     text = clean(f"{said}the mat {mat} and the robot at its end pose; its path in orange, from the ring")
+    text += "; numbers: where goals were met (✓) or missed (✗)" if pins else ""
     size = f'width="{picture.width}" height="{picture.height}"'
-    return f'<figure><img src="{_as_source(picture)}" {size} alt="{text}"><figcaption>{text}</figcaption></figure>'
+    image = f'<img src="{_as_source(picture)}" {size} alt="{text}">'
+    shown = f'<div class="map">{image}{svg_of_pins(pins, run.spec.robot)}</div>' if pins else image
+    return f"<figure>{shown}<figcaption>{text}</figcaption></figure>"
+
+
+def _mat(run: StoredRun) -> str:
+    """Return the name of the mat: a page may be given away, and a path says something about its maker's machine."""
+    return run.spec.world.background.rpartition(os.sep)[2]
 
 
 def _way_picture(run: StoredRun) -> Image:
@@ -324,7 +345,7 @@ _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
     "arguments": lambda run: shlex.join(run.program.arguments),
     "SHA-256": lambda run: run.program.sha256,
     "prelude": lambda run: run.program.prelude,
-    "mat": lambda run: run.spec.world.background,
+    "mat": _mat,
     "obstacles": lambda run: f"{len(run.spec.world.obstacles)}" if run.spec.world.obstacles else "",
     "profile": lambda run: run.spec.profile.name,
     "robot": lambda run: run.spec.robot.name,
@@ -358,6 +379,8 @@ figcaption, .soft { color: var(--soft); font-size: .9rem; }
 figure { margin: .5rem 0; break-inside: avoid; }
 img, svg { display: block; max-width: 100%; height: auto; }
 img { border: 1px solid var(--rule); }
+.map { position: relative; width: fit-content; max-width: 100%; }
+.pins { position: absolute; inset: 0; width: 100%; height: 100%; }
 summary { cursor: pointer; color: var(--soft); font-size: .9rem; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }

@@ -27,6 +27,7 @@ from tuisim.config.program_settings import program_settings
 from tuisim.config.shared_options import shared_options
 from tuisim.errors import ConfigError, ExportError, counted, listed, printable, see_page
 from tuisim.goals.files import GoalsFile, load_goals
+from tuisim.goals.spec import Goal
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
 from tuisim.marks.feedback import write_feedback
 from tuisim.marks.frame import export_marks
@@ -126,7 +127,7 @@ def mark(**given: Any) -> int:
         sheet = sheet_of(task.title, _columns(task), seeds, students, outcomes)
         # First, so that marks are seen also if a file cannot be written.
         _print(sheet, found.ignored)
-        _write(sheet, students, found.ignored, arguments)
+        _write(sheet, task.goals, students, found.ignored, arguments)
     return _tell_missing(outcomes)
 
 
@@ -240,7 +241,10 @@ def _entries(found: Found, task: GoalsFile, arguments: Arguments) -> tuple[list[
                     raise ConfigError("the magic line names a file outside the folder", key=outside)
                 spec = build_run_spec(program_settings(student.source, arguments.settings).settings)
             except ConfigError as error:
-                student = replace(student, source=None, problem=printable(str(error)))
+                # A file of the student's is named as it is in the folder.
+                folder = student.path if student.path.is_dir() else student.path.parent
+                text = str(error).replace(f"{folder}{os.sep}", "")
+                student = replace(student, source=None, problem=printable(text))
         if student.source:
             entries.append(Entry(student, spec))
         students.append(student)
@@ -260,7 +264,9 @@ def _collect(
             tell(f"run {done} of {total}", done, total)
 
 
-def _write(sheet: Sheet, students: Sequence[Student], ignored: Sequence[str], arguments: Arguments) -> None:
+def _write(
+    sheet: Sheet, goals: Sequence[Goal], students: Sequence[Student], ignored: Sequence[str], arguments: Arguments
+) -> None:
     for target in map(Path, arguments.export):
         if target.suffix.lower() in EXPORTERS:
             tell(f"writing {target}")
@@ -268,7 +274,7 @@ def _write(sheet: Sheet, students: Sequence[Student], ignored: Sequence[str], ar
             continue
         kept = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
         links = {}
-        for name, seed, path in write_reports(sheet, target):
+        for name, seed, path in write_reports(sheet, goals, target):
             links[name, seed] = path
             tell(f"report {len(links)} of {kept}", len(links), kept)
         write_whole(target, page_of(sheet, links, ignored).encode())

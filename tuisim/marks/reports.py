@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,9 +13,11 @@ from tuisim.analysis.report import report_of
 from tuisim.analysis.source import LogRequest, opening
 from tuisim.charts.files import write_whole
 from tuisim.errors import ExportError, LogError
+from tuisim.goals.spec import Goal
 from tuisim.marks.feedback import file_stems
 from tuisim.marks.results import portable
 from tuisim.marks.sheet import Sheet
+from tuisim.marks.verdicts import verdicts
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
@@ -28,11 +30,14 @@ def folder_of(page: Path) -> Path:
     return page.with_name(f"{page.stem}-runs")
 
 
-def write_reports(sheet: Sheet, page: Path) -> Iterator[tuple[str, int, str]]:
+def write_reports(sheet: Sheet, goals: Sequence[Goal], page: Path) -> Iterator[tuple[str, int, str]]:
     """Write the reports of kept runs; yield student, seed and path relative to the page.
 
     Runs of a student that recorded the same have one report. Runs that were removed from the store are left out.
     Reports of an earlier page of this name are replaced.
+
+    Args:
+        goals: All goals of the task.
 
     Raises:
         ExportError: a report cannot be written.
@@ -50,7 +55,9 @@ def write_reports(sheet: Sheet, page: Path) -> Iterator[tuple[str, int, str]]:
                 name = f"{stem}-seed-{outcome.seed}.html"
                 *_, opened = opening(LogRequest(runs=(run.id,)))
                 opened = replace(opened, runs=tuple(map(_portable, opened.runs)))
-                _write(folder / name, report_of(opened, title=f"{row.name}, seed {outcome.seed}"))
+                shown, pins = verdicts(sheet.columns, goals, outcome, run)
+                title = f"{row.name}, seed {outcome.seed}"
+                _write(folder / name, report_of(opened, title=title, pins=pins, parts=[shown]))
                 written[recorded] = f"{folder.name}/{name}"
             yield row.name, outcome.seed, written[recorded]
 

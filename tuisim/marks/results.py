@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -12,6 +14,7 @@ from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.goals.spec import AllOf
 from tuisim.marks.outcome import GoalOutcome, Outcome
 from tuisim.protocol import End
+from tuisim.runs.handle import user_python_path
 from tuisim.source import source_lines
 
 _ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{6,}\b")
@@ -51,8 +54,16 @@ def outcome_of(result: Result, seed: int, folder: Path) -> Outcome:
 
 
 def portable(text: str, folder: Path | str) -> str:
-    """Return a text without the path of the folder in which the program ran, and without addresses in memory."""
-    return _ADDRESS.sub("0x…", text.replace(f"{folder}/", ""))
+    """Return a text without addresses in memory, and without what its paths say about this machine.
+
+    Of files in the folder in which the program ran, in those of modules, and of Python, the path in the folder is left.
+    """
+    if "/" in text:
+        modules = {*map(os.path.abspath, (*sys.path, *user_python_path())), sys.prefix, sys.base_prefix} - {"/"}
+        # Inner folders first.
+        places = "|".join(map(re.escape, (str(folder), *sorted(modules, reverse=True))))
+        text = re.sub(rf"(?<![\w/.~-])(?:{places})/", "", text)
+    return _ADDRESS.sub("0x…", text)
 
 
 def _cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Judgement:

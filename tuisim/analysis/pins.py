@@ -1,0 +1,62 @@
+"""Marked places on the picture of a run in a report."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from tuisim.charts.files import clean
+from tuisim.charts.world_image import world_view
+from tuisim.core.spec import RobotSpec
+
+_NEAR_PX = 14.0
+"""Pins nearer than this share a ring: their labels would cover each other."""
+_RING_PX, _TEXT_PX = 7.0, 15.0
+_GOOD, _BAD = "#1f8a4c", "#c0392b"
+
+
+@dataclass(frozen=True, slots=True)
+class Pin:
+    """A place where something was decided."""
+
+    label: str
+    """A few characters."""
+    x_mm: float
+    y_mm: float
+    is_good: bool
+    text: str
+    """What was decided, shown while the mouse is there."""
+
+
+def svg_of_pins(pins: Sequence[Pin], robot: RobotSpec) -> str:
+    """Return the pins as SVG that lies exactly on the picture of the world; empty without pins."""
+    if not pins:
+        return ""
+    view = world_view(robot)
+    rings: list[tuple[float, float, list[Pin]]] = []
+    for pin in pins:
+        x, y = view.to_px(pin.x_mm, pin.y_mm)
+        near = next((ring for ring in rings if abs(ring[0] - x) < _NEAR_PX and abs(ring[1] - y) < _NEAR_PX), None)
+        if near is None:
+            rings.append((x, y, [pin]))
+        else:
+            near[2].append(pin)
+    drawn = "".join(_ring(x, y, pins, view.width_px) for x, y, pins in rings)
+    return f'<svg class="pins" viewBox="0 0 {view.width_px} {view.height_px}" aria-hidden="true">{drawn}</svg>'
+
+
+def _ring(x: float, y: float, pins: Sequence[Pin], width: int) -> str:
+    color = _GOOD if all(pin.is_good for pin in pins) else _BAD
+    right = x > 0.8 * width
+    side, anchor = (-1, "end") if right else (1, "start")
+    labels = " ".join(
+        f'<tspan fill="{_GOOD if pin.is_good else _BAD}">{"✓" if pin.is_good else "✗"}{clean(pin.label)}</tspan>'
+        for pin in pins
+    )
+    said = clean("\n".join(pin.text for pin in pins))
+    return (
+        f'<g><title>{said}</title><circle cx="{x:.1f}" cy="{y:.1f}" r="{_RING_PX:g}" fill="{color}33" '
+        f'stroke="{color}" stroke-width="2.5"/><text x="{x + side * (_RING_PX + 4):.1f}" '
+        f'y="{y - _RING_PX:.1f}" text-anchor="{anchor}" font-size="{_TEXT_PX:g}" font-weight="700" '
+        f'font-family="sans-serif" stroke="#fff" stroke-width="4" paint-order="stroke">{labels}</text></g>'
+    )

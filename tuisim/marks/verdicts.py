@@ -1,0 +1,61 @@
+"""The goals of one run in its report: a table, and the places on the mat where they were decided."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tuisim.analysis.pins import Pin
+from tuisim.analysis.report import section, table
+from tuisim.errors import LogError
+from tuisim.goals.judge import judge
+from tuisim.goals.judgement import Judgement
+from tuisim.goals.spec import Goal, Kind
+from tuisim.marks.outcome import GoalOutcome, Outcome
+from tuisim.marks.sheet import Column, in_words
+from tuisim.protocol import End
+from tuisim.runs.run_folder import StoredRun
+
+_HEADS = ("", "goal", "result", "why", "points")
+
+
+def verdicts(
+    columns: Sequence[Column], goals: Sequence[Goal], outcome: Outcome, run: StoredRun
+) -> tuple[str, list[Pin]]:
+    """Return the section with the goals of a run, and a pin for each goal that was decided at a place.
+
+    Args:
+        columns: The goals that are shown, in their order.
+        goals: All goals of the task.
+        outcome: What the run has achieved.
+    """
+    found = {one.name: one for one in outcome.goals}
+    judged = _judged(goals, outcome, run)
+    rows, pins = [], []
+    for number, column in enumerate(columns, start=1):
+        goal = found.get(column.name, GoalOutcome(column.name, False, outcome.failure))
+        result = "met" if goal.met else "missed"
+        why = f"{goal.reason} (line {goal.line})" if goal.line else goal.reason
+        points = f"{in_words(column.points if goal.met else 0)} of {in_words(column.points)}"
+        if (one := judged.get(column.name)) is not None:
+            (change,) = one.changes
+            result += f" at {change.time_s:.2f} s, x {change.x_mm:.0f}, y {change.y_mm:.0f} mm"
+            said = f"{number}. {column.say} {result}"
+            pins.append(Pin(str(number), change.x_mm, change.y_mm, goal.met, f"{said}: {why}" if why else said))
+        rows.append([str(number), column.say, result, why, points])
+    return section("Goals", table(_HEADS, rows, numbers=len(_HEADS) - 1)), pins
+
+
+def _judged(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str, Judgement]:
+    """Return the judgements of goals that were decided at a time and a place."""
+    if outcome.end == End.FALSIFIED:
+        return {}
+    try:
+        judgements = judge(goals, run)
+    except LogError:
+        # What is known of the run is in its outcome.
+        return {}
+    return {one.goal.name: one for one in judgements if one.changes and not _is_of_the_text(one.goal)}
+
+
+def _is_of_the_text(goal: Goal) -> bool:
+    return all(part.KIND is Kind.FIXED for part in goal.parts)
