@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import queue
 import subprocess
 import sys
 import threading
@@ -110,6 +111,74 @@ def test_nothing_is_drawn_for(
     with Progress("working"):
         tell("more")
     assert terminal.getvalue() == ""
+
+
+class Clock:
+    """Time that passes when the test says so; the work waits for it in a thread."""
+
+    def __init__(self) -> None:
+        self._answers: queue.Queue[bool] = queue.Queue()
+        self.waited_s: list[float] = []
+
+    def wait(self, seconds: float) -> bool:
+        self.waited_s.append(seconds)
+        return self._answers.get(timeout=PATIENCE_S)
+
+    def passes(self) -> None:
+        """Let the time pass that is waited for."""
+        self._answers.put(False)
+
+    def is_over(self) -> None:
+        self._answers.put(True)
+
+
+@pytest.mark.parametrize("change", [NOBODY["a pipe"], NOBODY["a dumb terminal"]], ids=["a pipe", "a dumb terminal"])
+def test_long_work_writes_a_line_a_minute_where_there_is_no_bar(
+    show: Show, monkeypatch: pytest.MonkeyPatch, change: Callable[[pytest.MonkeyPatch, Terminal], Any]
+) -> None:
+    clock, file = Clock(), show()
+    change(monkeypatch, file)
+    with Progress("marking", in_lines=True, wait=clock.wait):
+        clock.passes()
+        file.until("after 1 min: marking\n")
+        tell("run 7 of 40\x1b[2J", 7, 40)
+        tell("run 8 of 40\x1b[2J", 8, 40)
+        clock.passes()
+        file.until("after 2 min")
+        clock.is_over()
+    assert file.getvalue() == "tuisim: after 1 min: marking\ntuisim: after 2 min: run 8 of 40\ufffd[2J\n"
+    assert set(clock.waited_s) == {60.0}
+
+
+def test_short_work_ends_at_once_without_a_line(show: Show, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = show()
+    NOBODY["a pipe"](monkeypatch, file)
+    with Progress("marking", in_lines=True):
+        tell("run 1 of 1", 1, 1)
+    assert file.getvalue() == ""
+
+
+@pytest.mark.parametrize("words", [("batch", "p.py", "--seeds", "0,1"), ("mark", "g.toml", "p.py", "--seeds", "0,1")])
+def test_commands_of_many_runs_tell_their_progress_in_lines(
+    home: object, here: Command, tmp_path: Any, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...]
+) -> None:
+    (tmp_path / "p.py").write_text("print('a: 1')\n")
+    (tmp_path / "g.toml").write_text("[[goal]]\nname = 'done'\nfinish = true\n")
+    heard: list[str] = []
+
+    class Spy(Progress):
+        def __init__(self, what: str, total: float | None = None, *, in_lines: bool = False) -> None:
+            super().__init__(what, total, in_lines=in_lines)
+
+        def tell(self, what: str, done: float, total: float | None = None) -> None:
+            heard.append(what)
+
+    monkeypatch.setattr(f"tuisim.commands.{words[0]}.Progress", Spy)
+    assert here(*words, "--jobs", "1").returncode == 0
+    assert [line[:11].rstrip(",") for line in heard[:2]] in (
+        ["run 1 of 2", "run 2 of 2"],
+        ["1 of 2 runs", "2 of 2 runs"],
+    )
 
 
 COMMANDS = {

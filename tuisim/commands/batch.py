@@ -103,7 +103,7 @@ class _Batch:
         """Run what is not done, write the table, print the results and return the exit code."""
         partly = self._begin()
         plan, code = self.request.plan, 0
-        with Progress(counted(len(plan), "run"), len(plan)):
+        with Progress(counted(len(plan), "run"), len(plan), in_lines=True):
             try:
                 with signals_raise():
                     run_plan(plan, self.rows, workers=self.request.workers, partial=partly, on_row=self._rate())

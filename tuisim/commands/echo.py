@@ -2,7 +2,7 @@
 
 Names, messages and rows come from programs, files and the store, and may contain terminal control sequences, which
 are removed. Only the output of a running program is passed on unchanged, by `relay`. The bar appears when work takes
-more than a second, and only if stderr is a terminal.
+more than a second, and only if stderr is a terminal; long work writes a line a minute elsewhere.
 """
 
 from __future__ import annotations
@@ -113,6 +113,9 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
 SHOWN_AFTER_S = 1.0
 """Shorter work shows no bar."""
 
+LINE_EVERY_S = 60.0
+"""Where no bar can be shown, long work writes a line this often."""
+
 _QUIET_S = 0.3
 """A bar hidden for text reappears after this time without text."""
 _REDRAWS_PER_S = 10
@@ -151,21 +154,32 @@ class Progress:
     Args:
         what: The description, such as `exporting log.csv`.
         total: The amount of work, None if unknown.
+        in_lines: Whether it writes lines where no bar can be shown.
+        wait: Waits for some seconds, or until the work is over, and returns whether it is; None is the real clock.
     """
 
-    def __init__(self, what: str, total: float | None = None) -> None:
+    def __init__(
+        self,
+        what: str,
+        total: float | None = None,
+        *,
+        in_lines: bool = False,
+        wait: Callable[[float], bool] | None = None,
+    ) -> None:
         self._what, self._total, self._done = what, total, 0.0
         self._bar: Bar | None = None
         self._lock = threading.RLock()
         self._over = threading.Event()
+        self._in_lines, self._wait = in_lines, wait or self._over.wait
         self._begun = time.monotonic()
         self._show_at = self._begun + SHOWN_AFTER_S
         self._thread: threading.Thread | None = None
 
     def __enter__(self) -> Self:
-        if is_watched():
+        if is_watched() or self._in_lines:
+            work = self._draw if is_watched() else self._write_lines
             _active.append(self)
-            self._thread = threading.Thread(target=self._draw, daemon=True)
+            self._thread = threading.Thread(target=work, daemon=True)
             self._thread.start()
         return self
 
@@ -186,6 +200,13 @@ class Progress:
             self._hide()
             self._show_at = max(self._show_at, time.monotonic() + _QUIET_S)
             yield
+
+    def _write_lines(self) -> None:
+        minutes = 0.0
+        while not self._wait(LINE_EVERY_S):
+            minutes += LINE_EVERY_S / 60
+            with self._lock:
+                print(f"tuisim: after {minutes:g} min: {printable(self._what)}", file=sys.stderr, flush=True)
 
     def _draw(self) -> None:
         try:

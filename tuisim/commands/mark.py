@@ -117,7 +117,7 @@ def mark(**given: Any) -> int:
         python_path=user_python_path(),
     )
     outcomes: dict[str, list[Outcome]] = {student.name: [] for student in students}
-    with Progress("marking"):
+    with Progress("marking", in_lines=True):
         try:
             with signals_raise(), nullcontext() if plan.isolate else supervised():
                 _collect(entries, plan, journal_of(task.path), outcomes, resumes=arguments.resume)
