@@ -160,6 +160,14 @@ def test_a_run_on_the_own_mat_of_its_task_is_not_noted(
         assert here("goals", "check", named).stderr == ""
 
 
+def test_a_run_from_a_start_of_its_magic_line_is_noted(task: Path, here: Command, tmp_path: Path) -> None:
+    task.write_text(f"background = 'Empty_Map'\n{GOALS}")
+    (tmp_path / "p.py").write_text("# %%sim_magic_preloaded -b Loop -x 600\nprint('done')\n")
+    assert here("run", task, "p.py").returncode == 0
+    noted = "note: run 1 was not run in the world of task.toml: x_mm 600.0, not 100.0\n"
+    assert here("goals", "check", task).stderr == noted
+
+
 def test_run_of_another_world_and_by_hand_is_noted(task: Path, here: Command) -> None:
     task.write_text(f"background = 'Loop'\n{GOALS}[start]\nx_mm = 200\n".replace("[start]", "[start]", 1))
     run = record()

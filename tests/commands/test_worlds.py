@@ -33,7 +33,7 @@ def folder(tmp_path: Path) -> Path:
 # The words of `tuisim run`, and what is then known of the run.
 RUNS: dict[str, tuple[list[object], dict[str, Any]]] = {
     "the world's own program": (["lab.toml"], {"program": "where.py", "background": "Square", "seed": 5, "x_mm": 600}),
-    "the mat's start": (["lab.toml"], {"y_mm": 300, "heading_deg": -90, "robot": "lab"}),
+    "key by key": (["lab.toml"], {"x_mm": 600, "y_mm": 700, "heading_deg": -90, "robot": "lab"}),
     "another program": (["lab.toml", "other.py"], {"program": "other.py", "background": "Square", "seed": 5}),
     "as a switch": (["other.py", "--world", "lab.toml"], {"program": "other.py", "background": "Square", "x_mm": 600}),
     "switches win": (["lab.toml", "-b", "Loop", "-x", 5, "--seed", 9], {"background": "Loop", "seed": 9, "x_mm": 5}),

@@ -360,14 +360,16 @@ def test_an_image_is_written_as_seen_from_the_worlds_folder(
     assert moved.world.background == str(tmp_path / "moved" / name)
 
 
-def test_a_world_with_a_mat_does_not_start_where_the_magic_line_wanted_to_on_another(write: Write) -> None:
+def test_layers_of_settings_are_laid_key_by_key_also_those_of_the_start(write: Write) -> None:
+    write("base.toml", "background = 'Square'\n[start]\nx_mm = 300\n")
     magic = parse_words(["-b", "Loop", "-x", "700", "-N", "5", "-P", "green"])
     world = load_world(write("lab.toml", "background = 'Square'\n[pen]\ncolor = 'blue'")).settings
     asked = settings_of(magic, world, parse_words(["-N", "9"]))
     spec = build_run_spec(asked)
-    assert (spec.world.background, spec.world.start.x_mm) == ("Square", 550)
+    assert (spec.world.background, spec.world.start.x_mm) == ("Square", 700)
     assert (spec.world.noise.light, spec.robot.pen.color) == (9, "blue")
-    assert build_run_spec(settings_of(magic, load_world(write("a.toml", "seed = 3")).settings)).world.start.x_mm == 700
+    based = load_world(write("based.toml", "world = 'base.toml'\nbackground = 'Loop'\n")).settings
+    assert build_run_spec(settings_of(based)).world.start.x_mm == 300
 
 
 @pytest.mark.parametrize(

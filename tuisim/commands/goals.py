@@ -10,7 +10,7 @@ from typing import Any
 from tuisim.commands.echo import Progress, echo, echo_error, echo_json, tell
 from tuisim.config.build import build_run_spec, settings_from
 from tuisim.config.command_line import AS_JSON, Group, argument, command
-from tuisim.config.options import settings_of
+from tuisim.config.options import RobotChoice, Settings, settings_of
 from tuisim.errors import ConfigError, counted
 from tuisim.goals.files import GoalsFile, example_names, load_goals
 from tuisim.goals.judge import judge
@@ -84,14 +84,24 @@ def _differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
     try:
         found = settings_from(run.spec)
         # A mat of one's own is known by its path: the file may name it in another way.
-        of_file = settings_from(build_run_spec(settings_of(file.settings)))
+        of_file = settings_from(build_run_spec(_in_world_of(file, run)))
     except ConfigError:
         # A mat no longer exists.
         return
-    given = {key: of_file[key] for key in _WHERE if file.settings.get(key) is not None}
+    # The mat that the file names has a start of its own.
+    starts = "background" in file.settings and of_file["background"] == found["background"]
+    named = [key for key in _WHERE if starts or key in file.settings]
+    given = {key: of_file[key] for key in named}
     other = [f"{key} {found[key]}, not {value}" for key, value in given.items() if found[key] != value]
     if other:
         yield f"run {run.number} was not run in the world of {file.path.name}: {', '.join(other)}"
+
+
+def _in_world_of(file: GoalsFile, run: StoredRun) -> Settings:
+    """Return the settings of a run in the world of a file, with what moves the mat's start as it was in a run."""
+    world = run.spec.world
+    of_run = {"robot": RobotChoice(run.spec.robot), "profile": run.spec.profile, "walls": world.walls}
+    return settings_of(of_run | {"solid": world.solid}, file.settings)
 
 
 def _plain(run: StoredRun, judgements: Sequence[Judgement]) -> dict[str, Any]:

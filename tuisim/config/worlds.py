@@ -256,7 +256,7 @@ def _resolved(folder: Path, referred: list[Path], word: str) -> str:
 
 
 def _mat(world: Mapping[str, Any], at: Location, resolve: Resolver, mats: str | None) -> dict[str, Any]:
-    """Return mat, fit and start pose. A mat has its own start pose, so it also discards the magic line's."""
+    """Return mat, fit and start pose; a mat's own start pose applies to what neither this nor another layer sets."""
     found: dict[str, Any] = {}
     if "background_fit" in world:
         found["background_fit"] = files.one_of(world["background_fit"], at.at("background_fit"), BACKGROUND_FITS)
@@ -264,7 +264,6 @@ def _mat(world: Mapping[str, Any], at: Location, resolve: Resolver, mats: str | 
         found["mats"] = resolve(world["mats"])
     if "background" in world:
         word = world["background"]
-        found |= dict.fromkeys(_Start.__struct_fields__)
         found["background"] = resolve(word) if os.sep in word or Path(word).suffix else word
         with files.errors_at(at.file, "background"):
             find_mat(found["background"], found.get("mats", mats))
