@@ -4,38 +4,54 @@ from __future__ import annotations
 
 import os
 import signal
+import socket
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 
 from tests.batch.test_pool import LOGS, by_index, task
+from tests.conftest import ROOT
 from tests.running import PATIENCE_S
 from tuisim.batch.cluster import run_on_cluster
 from tuisim.batch.pool import run_many
-from tuisim.errors import ConfigError
+from tuisim.errors import ConfigError, HostError
 
 pytestmark = pytest.mark.slow
 
 
+WITHOUT_TUISIM = """
+import sys
+class Nothing:
+    def find_spec(self, name, *_):
+        if name.partition(".")[0] == "tuisim":
+            raise ModuleNotFoundError("No module named 'tuisim'")
+sys.meta_path.insert(0, Nothing())
+"""
+OF_ANOTHER_VERSION = "import tuisim; tuisim.__version__ = '0.9.0'"
+_DASK = "import sys; from dask.__main__ import main; sys.argv = ['dask', *sys.argv[1:]]; main()"
+
+
 class Department:
-    """A scheduler and two workers, each a process that talks over TCP."""
+    """A scheduler and workers, each a process that talks over TCP."""
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
         self._stack, self._folder = stack, folder
-        file = folder / "scheduler.json"
-        self._start("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file))
-        self._file = file
-        self.workers = [
-            self._start("worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-nanny", "--no-dashboard")
-            for _ in range(2)
-        ]
+        self._file = folder / "scheduler.json"
+        words = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(self._file))
+        self.scheduler = self._start("", "scheduler", *words)
+        self.workers: list[subprocess.Popen[bytes]] = []
 
-    def _start(self, *words: str) -> subprocess.Popen[bytes]:
-        command = [sys.executable, "-m", "dask", *words]
+    def add(self, count: int = 1, first: str = "") -> None:
+        """Start workers, which execute a text of Python first."""
+        words = ("worker", "--scheduler-file", str(self._file), "--nthreads", "1", "--no-nanny", "--no-dashboard")
+        self.workers += [self._start(first, *words) for _ in range(count)]
+
+    def _start(self, first: str, *words: str) -> subprocess.Popen[bytes]:
+        command = [sys.executable, "-c", f"{first}\n{_DASK}", *words]
         process = self._stack.enter_context(
             subprocess.Popen(command, cwd=self._folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         )
@@ -44,11 +60,12 @@ class Department:
 
     @property
     def address(self) -> str:
-        """Where the scheduler listens; blocks until both workers are there."""
+        """Where the scheduler listens; blocks until all workers are there."""
         import distributed
 
         with distributed.Client(scheduler_file=str(self._file), timeout=PATIENCE_S, set_as_default=False) as client:
-            client.wait_for_workers(2, timeout=PATIENCE_S)
+            if self.workers:
+                client.wait_for_workers(len(self.workers), timeout=PATIENCE_S)
             return str(client.scheduler.address)
 
 
@@ -59,12 +76,14 @@ def department(tmp_path: Path) -> Iterator[Department]:
 
 
 def test_a_cluster_gives_the_same_bits(department: Department) -> None:
+    department.add(2)
     tasks = [task(LOGS, index) for index in range(20)]
     expected = by_index(list(run_many(tasks, 1)))
     assert by_index(list(run_on_cluster(tasks, department.address))) == expected
 
 
 def test_a_worker_that_is_killed_loses_nothing(department: Department) -> None:
+    department.add(2)
     tasks = [task(LOGS, index) for index in range(40)]
     expected = by_index(list(run_many(tasks, 1)))
     results = run_on_cluster(tasks, department.address)
@@ -76,6 +95,71 @@ def test_a_worker_that_is_killed_loses_nothing(department: Department) -> None:
 def test_a_cluster_on_this_machine() -> None:
     tasks = [task(LOGS, index) for index in range(8)]
     assert by_index(list(run_on_cluster(tasks, workers=2))) == by_index(list(run_many(tasks, 1)))
+
+
+UNFIT = {
+    "no worker": (None, "the cluster has no worker"),
+    "without tuisim": (WITHOUT_TUISIM, "has no tuisim: No module named 'tuisim'"),
+    "of another version": (OF_ANOTHER_VERSION, "has tuisim 0.9.0, not "),
+}
+
+
+@pytest.mark.parametrize(("first", "message"), UNFIT.values(), ids=UNFIT)
+def test_a_cluster_that_cannot_work_is_told_in_one_line(
+    department: Department, tmp_path: Path, first: str | None, message: str
+) -> None:
+    if first is not None:
+        department.add(1, first)
+    (tmp_path / "p.py").write_text("print('a: 1')\n")
+    command = [sys.executable, "-m", "tuisim", "batch", "p.py", "--seeds", "0..9", "--scheduler", department.address]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(
+        command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=PATIENCE_S, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1), done.stderr
+    assert message in done.stderr
+
+
+def _kill_scheduler(department: Department) -> None:
+    department.scheduler.kill()
+
+
+def _stop_scheduler(department: Department) -> None:
+    department.scheduler.send_signal(signal.SIGSTOP)
+
+
+def _kill_workers(department: Department) -> None:
+    for worker in department.workers:
+        worker.kill()
+
+
+BREAKS = {
+    "scheduler killed": (_kill_scheduler, "the scheduler is lost"),
+    "scheduler stopped": (_stop_scheduler, "the scheduler (does not answer|is lost)"),
+    "workers killed": (_kill_workers, "the cluster has no worker"),
+}
+
+
+@pytest.mark.parametrize(("break_it", "message"), BREAKS.values(), ids=BREAKS)
+def test_a_cluster_that_breaks_is_told(
+    department: Department, break_it: Callable[[Department], None], message: str
+) -> None:
+    department.add(1)
+    tasks = (task(LOGS, index) for index in range(100_000))
+    results = run_on_cluster(tasks, department.address)
+    next(results)
+    break_it(department)
+    with pytest.raises(HostError, match=message):
+        for _ in results:
+            pass
+
+
+def test_what_is_no_scheduler_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tuisim.batch.cluster.CONNECT_S", 0.5)
+    with socket.create_server(("127.0.0.1", 0)) as listens:
+        address = f"tcp://127.0.0.1:{listens.getsockname()[1]}"
+        with pytest.raises(ConfigError, match=f"no scheduler answers at {address}"):
+            next(run_on_cluster([task(LOGS)], address))
 
 
 def test_an_address_without_a_scheduler_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,14 +6,18 @@ a folder that every worker sees under the same path.
 
 from __future__ import annotations
 
+import logging
+import queue
 import re
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
+from tuisim.batch.cluster_watch import Watch, within
 from tuisim.batch.execute import execute
 from tuisim.batch.task import Result, Task
-from tuisim.errors import ConfigError, HostError
+from tuisim.errors import ConfigError, HostError, TuisimError
 from tuisim.runs.child.process import warm_up
 from tuisim.runs.temporary import batch_folder
 
@@ -26,7 +30,8 @@ AHEAD = 400
 """Chunks that the scheduler has at most: it keeps each in memory, and workers may join at any time."""
 MOST_TRIES = 10
 """How many workers may die of a chunk before the batch fails."""
-CONNECT_S = 10
+CONNECT_S = 5.0
+_RESULT_S, _CLOSE_S = 2.0, 1.0
 _ADDRESS = re.compile(r"(\w+://)?[^\s/]+:\d+")
 
 _folders: dict[str, Path] = {}
@@ -45,30 +50,29 @@ def run_on_cluster(tasks: Iterable[Task], scheduler: str = "", workers: int = 0)
 
     Raises:
         ConfigError: Dask is not installed, or there is no scheduler at the address.
-        HostError: the connection to the cluster is lost, or its workers die again and again.
+        HostError: the cluster has no worker, one of them lacks tuisim or has another version, its workers die again and
+            again, or the connection is lost; ten seconds after that at the latest.
     """
     if scheduler and not _ADDRESS.fullmatch(scheduler):
         hint = "its host and port, such as tcp://host:8786"
         raise ConfigError(f"is no address of a scheduler: {scheduler!r}", hint, key="--scheduler")
     distributed = _dask()
+    cluster = None
     try:
         if scheduler:
-            client = distributed.Client(scheduler, timeout=CONNECT_S, set_as_default=False)
+            client = within(CONNECT_S + 1, distributed.Client, scheduler, timeout=CONNECT_S, set_as_default=False)
         else:
             cluster = distributed.LocalCluster(
                 n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None
             )
             client = distributed.Client(cluster, set_as_default=False)
-    except (OSError, ValueError) as error:
-        what = f"no scheduler answers at {scheduler}: {error}"
-        raise ConfigError(what, "start one with `dask scheduler`", key="--scheduler") from error
+    except Exception as error:  # What listens at an address may be anything, and raise anything.
+        raise _no_scheduler(scheduler, error) from None
     try:
-        yield from _results(client, distributed.as_completed(loop=client.loop), iter(tasks))
-    except (distributed.KilledWorker, distributed.CancelledError, OSError) as error:
-        raise HostError(f"the cluster does not answer: {error}", scheduler) from error
+        yield from _results(client, Watch(client, scheduler or "this machine"), iter(tasks))
     finally:
-        client.close()
-        if not scheduler:
+        _close(client)
+        if cluster is not None:
             cluster.close()
 
 
@@ -79,22 +83,59 @@ def _dask() -> Any:
         raise ConfigError(
             "needs Dask", "pip install -e '.[cluster]' in the clone of tuisim", key="--scheduler"
         ) from error
+    # It logs a lost connection with tracebacks; it is told as one error.
+    for name in ("asyncio", *logging.root.manager.loggerDict):
+        if name.partition(".")[0] in ("asyncio", "distributed", "tornado"):
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     return distributed
 
 
-def _results(client: Any, done: Any, tasks: Iterator[Task]) -> Iterator[Result]:
-    while done.count() < AHEAD and (chunk := list(islice(tasks, CHUNK))):
-        done.add(_submit(client, chunk))
-    for future in done:
-        found = future.result()
-        if chunk := list(islice(tasks, CHUNK)):
-            done.add(_submit(client, chunk))
+def _no_scheduler(scheduler: str, error: Exception) -> ConfigError:
+    why = str(error).partition("\n")[0] or type(error).__name__
+    if scheduler:
+        return ConfigError(
+            f"no scheduler answers at {scheduler}: {why}", "start one with `dask scheduler`", key="--scheduler"
+        )
+    return ConfigError(f"no cluster can be started on this machine: {why}", "--jobs needs no Dask", key="--workers")
+
+
+def _close(client: Any) -> None:
+    with suppress(Exception):  # What a lost scheduler raises when it is left does not matter.
+        client.close(timeout=_CLOSE_S)
+
+
+def _results(client: Any, watch: Watch, tasks: Iterator[Task]) -> Iterator[Result]:
+    watch.wait_for_workers()
+    done: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    pending = 0
+    while True:
+        while pending < AHEAD and (chunk := list(islice(tasks, CHUNK))):
+            # Not pure: Dask would look for the same task among those of other batches.
+            future = client.submit(_execute_all, chunk, pure=False, retries=MOST_TRIES)
+            future.add_done_callback(done.put)
+            pending += 1
+        if not pending:
+            return
+        watch.look()
+        try:
+            future = done.get(timeout=watch.EVERY_S)
+        except queue.Empty:
+            continue
+        try:
+            found = future.result(timeout=_RESULT_S)
+        except TimeoutError:
+            # The worker that has the result died: another one makes it again.
+            done.put(future)
+            continue
+        except TuisimError:
+            raise
+        except Exception as error:  # Workers die, and packages on them may be wrong, in any manner.
+            # A lost scheduler cancels what is pending: then this tells it.
+            watch.explain()
+            why = str(error).partition("\n")[0]
+            raise HostError(f"{watch.name}: a worker failed: {type(error).__name__}: {why}") from None
+        pending -= 1
         yield from found
-
-
-def _submit(client: Any, chunk: list[Task]) -> Any:
-    # Not pure: Dask would look for the same task among those of other batches.
-    return client.submit(_execute_all, chunk, pure=False, retries=MOST_TRIES)
 
 
 def _execute_all(tasks: list[Task]) -> list[Result]:

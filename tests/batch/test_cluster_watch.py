@@ -1,0 +1,124 @@
+"""What a watch on a cluster tells, by a client and a clock made for the test."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from tuisim import __version__
+from tuisim.batch import cluster_watch
+from tuisim.batch.cluster_watch import Watch, within
+from tuisim.errors import HostError
+
+NOBODY = ModuleNotFoundError("No module named 'tuisim'")
+
+
+class Cluster:
+    """A client of a cluster that takes each state of a list in turn, and stays in the last."""
+
+    def __init__(self, *states: dict[str, Any] | str | Exception) -> None:
+        self._states = list(states)
+        self.now = 0.0
+        self.asked: list[list[str]] = []
+
+    @property
+    def status(self) -> str:
+        return "connecting" if self._states[0] == "lost" else "running"
+
+    def nthreads(self) -> dict[str, int]:
+        state = self._states[0]
+        if isinstance(state, Exception):
+            raise state
+        assert isinstance(state, dict)
+        return dict.fromkeys(state, 1)
+
+    def run(self, _call: Callable[..., object], _text: str, workers: list[str], on_error: str) -> dict[str, Any]:
+        assert on_error == "return"
+        self.asked.append(workers)
+        state = self._states[0]
+        assert isinstance(state, dict)
+        return {worker: state[worker] for worker in workers}
+
+    def sleep(self, seconds: float) -> None:
+        self.now += seconds
+        if len(self._states) > 1:
+            del self._states[0]
+
+    def watch(self) -> Watch:
+        return Watch(self, "tcp://lab:8786", lambda: self.now, self.sleep)
+
+
+CANNOT_WORK = {
+    "no worker": (({},), "tcp://lab:8786: the cluster has no worker (start one with `dask worker tcp://lab:8786`)"),
+    "no worker any more": (
+        ({"a": __version__}, {}),
+        "tcp://lab:8786: the cluster has no worker (with --out, --resume goes on with the rows so far)",
+    ),
+    "no tuisim": (
+        ({"a": __version__, "b": NOBODY},),
+        "the worker b has no tuisim: No module named 'tuisim' (all need the same version)",
+    ),
+    "another version": (
+        ({"a": "0.9.0", "b": "0.8.0", "c": __version__},),
+        f"the worker a has tuisim 0.9.0, not {__version__} (and 1 other worker) (all need the same version)",
+    ),
+    "a worker that joins late": (
+        ({"a": __version__}, {"a": __version__, "b": "0.9.0"}),
+        f"the worker b has tuisim 0.9.0, not {__version__} (all need the same version)",
+    ),
+    "lost": (
+        ({"a": __version__}, "lost"),
+        "tcp://lab:8786: the scheduler is lost (with --out, --resume goes on with the rows so far)",
+    ),
+    "a scheduler that hangs": (
+        ({"a": __version__}, TimeoutError()),
+        "tcp://lab:8786: the scheduler does not answer (with --out, --resume goes on with the rows so far)",
+    ),
+}
+
+
+@pytest.mark.parametrize(("states", "message"), CANNOT_WORK.values(), ids=CANNOT_WORK)
+def test_a_cluster_that_cannot_work_is_told_within_ten_seconds(states: tuple[Any, ...], message: str) -> None:
+    cluster = Cluster(*states)
+    watch = cluster.watch()
+    with pytest.raises(HostError) as told:
+        watch.wait_for_workers()
+        while cluster.now < 60:
+            cluster.sleep(0.5)
+            watch.look()
+    assert (str(told.value), cluster.now < 10) == (message, True)
+
+
+def test_a_worker_may_come_late_and_a_connection_may_break_for_a_moment() -> None:
+    cluster = Cluster({}, {}, {"a": __version__}, "lost", "lost", {"a": __version__})
+    watch = cluster.watch()
+    watch.wait_for_workers()
+    for _ in range(20):
+        cluster.sleep(1)
+        watch.look()
+    # A worker that is known is not asked again.
+    assert cluster.asked == [["a"]]
+
+
+def test_workers_that_do_not_answer_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def hangs(_seconds: float, call: Callable[..., Any], *words: Any, **named: Any) -> Any:
+        if words:
+            raise TimeoutError
+        return call()
+
+    monkeypatch.setattr(cluster_watch, "within", hangs)
+    with pytest.raises(HostError, match="workers do not answer: 2 of 2"):
+        Cluster({"a": __version__, "b": __version__}).watch().wait_for_workers()
+
+
+def test_a_call_is_given_up_or_answered() -> None:
+    over = threading.Event()
+    with pytest.raises(TimeoutError, match="no answer within"):
+        within(0.001, over.wait)
+    over.set()
+    assert within(60, divmod, 7, 2) == (3, 1)
+    with pytest.raises(ZeroDivisionError):
+        within(60, divmod, 7, 0)

@@ -1,0 +1,138 @@
+"""Whether a Dask cluster can work: a cluster that cannot would be waited for in silence."""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time
+from collections.abc import Callable
+from typing import Any, ClassVar, TypeVar
+
+from tuisim import __version__
+from tuisim.errors import HostError, counted
+
+_Found = TypeVar("_Found")
+
+PATIENCE_S = 4.0
+"""How long scheduler and workers may take for an answer, and how long a cluster may be without a worker."""
+_VERSION = "__import__('tuisim').__version__"
+"""Evaluated by a worker, which may know nothing of tuisim."""
+_GOES_ON = "with --out, --resume goes on with the rows so far"
+
+
+def within(seconds: float, call: Callable[..., _Found], *args: Any, **named: Any) -> _Found:
+    """Return what a call returns.
+
+    Raises:
+        TimeoutError: it takes longer; it goes on in a thread.
+    """
+    found: queue.SimpleQueue[tuple[_Found | None, BaseException | None]] = queue.SimpleQueue()
+
+    def work() -> None:
+        try:
+            found.put((call(*args, **named), None))
+        except BaseException as error:  # Raised again in the thread that waits.
+            found.put((None, error))
+
+    threading.Thread(target=work, daemon=True).start()
+    try:
+        result, error = found.get(timeout=seconds)
+    except queue.Empty:
+        raise TimeoutError(f"no answer within {seconds:g} s") from None
+    if error is not None:
+        raise error
+    return result  # type: ignore[return-value]
+
+
+class Watch:
+    """Looks from time to time at a cluster.
+
+    Args:
+        client: Its client.
+        name: Its address, for errors.
+        clock: The time in seconds.
+        sleep: Waits for some seconds.
+    """
+
+    EVERY_S: ClassVar[float] = 1.0
+
+    def __init__(
+        self,
+        client: Any,
+        name: str,
+        clock: Callable[[], float] = time.monotonic,
+        sleep: Callable[[float], object] = time.sleep,
+    ) -> None:
+        self.name = name
+        self._client, self._clock, self._sleep = client, clock, sleep
+        self._known: set[str] = set()
+        self._look_at = 0.0
+        self._wrong_since: float | None = None
+
+    def wait_for_workers(self) -> None:
+        """Block until there is a worker, and all workers have been checked.
+
+        Raises:
+            HostError: as `look`.
+        """
+        while True:
+            self.look()
+            if self._known:
+                return
+            self._sleep(self.EVERY_S)
+
+    def look(self) -> None:
+        """Look at the cluster, unless it was looked at just before.
+
+        Raises:
+            HostError: it has had no scheduler or no worker for a while, or a worker has no tuisim or another version.
+        """
+        begun = self._clock()
+        if begun < self._look_at:
+            return
+        wrong, hint = self._wrong()
+        now = self._clock()
+        self._look_at = now + self.EVERY_S
+        if not wrong:
+            self._wrong_since = None
+            return
+        if self._wrong_since is None:
+            self._wrong_since = begun
+        if now - self._wrong_since >= PATIENCE_S:
+            raise HostError(f"{self.name}: {wrong}", hint)
+
+    def explain(self) -> None:
+        """Raise HostError if the cluster cannot work at this moment."""
+        wrong, hint = self._wrong()
+        if wrong:
+            raise HostError(f"{self.name}: {wrong}", hint)
+
+    def _wrong(self) -> tuple[str, str]:
+        """Return why the cluster cannot work at this moment, and what helps; empty texts if it can."""
+        if self._client.status != "running":
+            return "the scheduler is lost", _GOES_ON
+        try:
+            workers = set(within(PATIENCE_S, self._client.nthreads))
+        except OSError:
+            # `TimeoutError` and all errors of connections.
+            return "the scheduler does not answer", _GOES_ON
+        if not workers:
+            hint = f"start one with `dask worker {self.name}`" if not self._known else _GOES_ON
+            return "the cluster has no worker", hint
+        if new := workers - self._known:
+            try:
+                self._check(sorted(new))
+            except OSError:
+                return f"workers do not answer: {len(new)} of {len(workers)}", _GOES_ON
+            self._known |= new
+        return "", ""
+
+    def _check(self, workers: list[str]) -> None:
+        """Raise HostError if a worker has no tuisim, or another version."""
+        run = self._client.run
+        found = within(PATIENCE_S, run, eval, _VERSION, workers=workers, on_error="return")
+        wrong = {worker: version for worker, version in found.items() if version != __version__}
+        for worker, version in sorted(wrong.items()):
+            has = f"tuisim {version}, not {__version__}" if isinstance(version, str) else f"no tuisim: {version}"
+            more = f" (and {counted(len(wrong) - 1, 'other worker')})" if len(wrong) > 1 else ""
+            raise HostError(f"the worker {worker} has {has}{more}", "all need the same version")
