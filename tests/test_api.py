@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import tuisim
 from tests.conftest import ROOT
-from tuisim.errors import ConfigError
+from tuisim.errors import ConfigError, LogError
 from tuisim.guide.catalogue import find_page
 
 LOGGER = """\
@@ -77,6 +79,64 @@ def test_the_guides_example_does_as_it_says(tmp_path: Path, monkeypatch: pytest.
     exec(example, names)
     assert names["run"].state == "finished"
     assert (tmp_path / "world.png").stat().st_size > 1000
+
+
+LAB = """
+background = "Loop"
+arguments = ["fast"]
+[start]
+x_mm = 400
+heading_deg = 45
+[noise]
+motor = 20
+"""
+POSE = "# %%sim_magic -x 100 -y 300\nimport sys\nprint(sys.argv[1:])\n"
+
+
+def test_a_program_runs_in_a_world_file(tmp_path: Path) -> None:
+    (tmp_path / "lab.toml").write_text(LAB)
+    run = tuisim.simulate(POSE, world=tmp_path / "lab.toml", angle=-90)
+    start = run.stored.spec.world.start
+    assert (start.x_mm, start.y_mm, start.heading_deg) == (400, 300, -90)
+    assert (run.stored.spec.world.background, run.output) == ("Loop", "['fast']\n")
+    assert tuisim.simulate(POSE, arguments=["slow"], world=tmp_path / "lab.toml").output == "['slow']\n"
+
+
+def test_an_experiment_takes_place_in_a_world_file_instead_of_that_of_its_goals(tmp_path: Path) -> None:
+    (tmp_path / "lab.toml").write_text(LAB)
+    (tmp_path / "goals.toml").write_text("background = 'Square'\n[[goal]]\nname = 'done'\nfinish = true\n")
+    frame = tuisim.experiment(POSE, seeds=[1, 2], world=tmp_path / "lab.toml", goals=tmp_path / "goals.toml", jobs=1)
+    assert (frame["x_mm"].tolist(), frame["goal.done"].tolist()) == ([400, 400], [True, True])
+
+
+def test_a_wrong_world_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"nowhere\.toml: there is no such file"):
+        tuisim.simulate(POSE, world=tmp_path / "nowhere.toml")
+
+
+def test_a_stored_run_is_loaded_by_its_number() -> None:
+    made = tuisim.simulate("print('A: 1')\n").stored
+    number = tuisim.load_run("last").number
+    names: list[Any] = [number, str(number), np.int64(number), made.folder]
+    for name in names:
+        assert tuisim.load_run(name).id == made.id
+
+
+NO_RUNS = {
+    "number": (99999, "no run '99999'"),
+    "negative": (-1, "no run '-1'"),
+    "many digits": (10**5000, "no run has a number as large as this"),
+    "nothing": (None, "this names no run: None (its number"),
+    "fraction": (1.5, "this names no run: 1.5"),
+    "bytes": (b"last", "this names no run: b'last'"),
+}
+
+
+@pytest.mark.parametrize(("run", "words"), NO_RUNS.values(), ids=NO_RUNS)
+def test_what_names_no_run_is_refused(run: Any, words: str) -> None:
+    tuisim.simulate("print('A: 1')\n")
+    with pytest.raises(LogError, match=re.escape(words)):
+        tuisim.load_run(run)
 
 
 @pytest.mark.parametrize(

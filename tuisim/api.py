@@ -11,6 +11,7 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import APP, OPTIONS, Option
 from tuisim.config.program_file import ProgramSource, find_program, program_of_text, read_program
 from tuisim.config.program_settings import program_settings
+from tuisim.config.worlds import load_world
 from tuisim.errors import ConfigError, nearest
 from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S, RunOptions, start_run
 from tuisim.runs.records import Stream
@@ -112,6 +113,11 @@ def _source(program: str | Path) -> ProgramSource:
     return read_program(find_program(str(program)))
 
 
+def _in_world(world: str | Path | None, given: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the settings of a world file; none without one."""
+    return load_world(find_program(str(world)), given.get("mats")).settings if world is not None else {}
+
+
 def _check_timeout(timeout_s: float) -> None:
     if not timeout_s > 0:
         raise ConfigError(f"must be above 0, got {timeout_s!r}", key="timeout_s")
@@ -123,6 +129,7 @@ def simulate(
     arguments: Sequence[str] = (),
     answers: tuple[str, ...] = (),
     timeout_s: float = DEFAULT_TIME_LIMIT_S,
+    world: str | Path | None = None,
     **choices: Any,
 ) -> SimulatedRun:
     """Run a program as fast as possible, block until it ends, and return its results.
@@ -134,18 +141,20 @@ def simulate(
         arguments: The program's `sys.argv[1:]`.
         answers: The return values of successive `input()` calls.
         timeout_s: Limit in simulated seconds.
+        world: A world file; it takes precedence over the program's magic line, and `choices` over it.
         choices: Switches by their long names: `background="Grey_bands", x=100, seed=7`.
 
     Raises:
-        ConfigError: the program, its magic line or a choice is wrong; nothing was run.
+        ConfigError: the program, its magic line, the world or a choice is wrong; nothing was run.
         KeyboardInterrupt: ctrl-C; the run has been stopped, and its log is stored.
     """
     _check_timeout(timeout_s)
     source = _source(program)
-    found = program_settings(source, choices_of(choices))
+    given = choices_of(choices)
+    found = program_settings(source, _in_world(world, given), given, in_world=world is not None)
     settings = found.settings
     prelude = settings.preload or source.program.prelude
-    started = replace(source.program, prelude=prelude, arguments=tuple(arguments))
+    started = replace(source.program, prelude=prelude, arguments=tuple(arguments) or settings.arguments)
     store = RunStore()
     options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers))
     handle = start_run(started, build_run_spec(settings), options, store)
@@ -168,6 +177,7 @@ def experiment(
     answers: tuple[str, ...] = (),
     timeout_s: float = DEFAULT_TIME_LIMIT_S,
     keep: str = "none",
+    world: str | Path | None = None,
     **choices: Any,
 ) -> pd.DataFrame:
     """Run a program with all combinations of seeds and parameters, block until they end, and return the results.
@@ -180,11 +190,11 @@ def experiment(
         parameters: Values by key of a world or robot file: `{"noise.motor": [0, 20, 50]}`; a text is read as after
             `--set`, such as `"54:58:0.5"`.
         expressions: Further columns by name, such as `{"error_mm": "hypot(x_mm - 750, y_mm - 850)"}`.
-        goals: A goals file; its world is used where `choices` say nothing else.
+        goals: A goals file; its world is used without a `world`, where `choices` say nothing else.
         jobs: Number of worker processes; 0 is one for each processor. The results do not depend on it.
         arguments, answers, timeout_s: As for `simulate`.
         keep: Which runs to store: `all`, `failed` or `none`.
-        choices: Options of all runs, as for `simulate`.
+        world, choices: World and options of all runs, as for `simulate`.
 
     Returns:
         One row for each run, in the order of the parameters, the seed varying fastest; columns as in `tuisim batch`.
@@ -208,13 +218,15 @@ def experiment(
         raise ConfigError(f"must be a whole number from 0 to {MAX_JOBS}, got {jobs!r}", key="jobs")
     given = choices_of(choices)
     task = load_goals(goals) if goals is not None else None
+    in_world = task.settings if task and world is None else _in_world(world, given)
     subjects = []
     for one in [program] if isinstance(program, str | Path) else program:
         source = _source(one)
-        world, of_task = task.settings if task else {}, bool(task and task.settings)
-        settings = program_settings(source, world, given, in_world=of_task, of_task=of_task).settings
+        of_task = bool(task and world is None and task.settings)
+        found = program_settings(source, in_world, given, in_world=of_task or world is not None, of_task=of_task)
+        settings = found.settings
         prelude = settings.preload or source.program.prelude
-        started = replace(source.program, prelude=prelude, arguments=tuple(arguments))
+        started = replace(source.program, prelude=prelude, arguments=tuple(arguments) or settings.arguments)
         subjects.append(Subject(started, settings, frozenset(given)))
     if not subjects:
         raise ConfigError("no program is named", key="program")

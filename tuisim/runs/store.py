@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import fcntl
 import os
+import reprlib
 import secrets
 import shutil
 import subprocess
@@ -17,6 +18,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from datetime import UTC, datetime
+from operator import index
 from pathlib import Path
 from typing import Any
 
@@ -399,12 +401,22 @@ class RunStore:
         return known, {name: getattr(known, name) for name in names}, counted
 
 
-def load_run(run: str | Path) -> StoredRun:
+def load_run(run: str | Path | int) -> StoredRun:
     """Return a stored run by its folder (a path), its number, its id or the start of it, or `last`.
 
     Raises:
         LogError: the run does not exist, or is damaged.
     """
+    if not isinstance(run, str | Path):
+        hint = "its number, its id, `last`, or the path of its folder"
+        try:
+            # Also a number of NumPy, such as a cell of a frame.
+            number = index(run)
+        except TypeError:
+            raise LogError(f"this names no run: {reprlib.repr(run)}", hint) from None
+        if abs(number) > MOST_INTEGER:
+            raise LogError("no run has a number as large as this", hint)
+        run = str(number)
     return RunStore().load_run(run)
 
 
