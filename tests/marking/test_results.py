@@ -61,8 +61,8 @@ def test_a_traceback_has_no_path_of_this_machine() -> None:
 
 
 def test_a_path_of_the_students_own_stays() -> None:
-    found = outcome_of(replace(DONE, end="raised", summary="FileNotFoundError: '/home/ada/x.csv'"), 0, FOLDER)
-    assert found.failure == "FileNotFoundError: '/home/ada/x.csv'"
+    found = outcome_of(replace(DONE, end="raised", summary="FileNotFoundError: '/data/of/ada/x.csv'"), 0, FOLDER)
+    assert found.failure == "FileNotFoundError: '/data/of/ada/x.csv'"
 
 
 def test_a_goal_made_of_others_is_missed_for_the_reason_of_the_first_that_is() -> None:

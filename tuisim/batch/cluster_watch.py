@@ -6,9 +6,9 @@ import queue
 import threading
 import time
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any, ClassVar, TypeVar
 
-from tuisim import __version__
 from tuisim.errors import HostError, counted
 
 _Found = TypeVar("_Found")
@@ -65,6 +65,8 @@ class Watch:
     ) -> None:
         self.name = name
         self._client, self._clock, self._sleep = client, clock, sleep
+        # Its public names reach everything, so that it cannot be imported here.
+        self._version = import_module("tuisim").__version__
         self._known: set[str] = set()
         self._look_at = 0.0
         self._wrong_since: float | None = None
@@ -131,8 +133,8 @@ class Watch:
         """Raise HostError if a worker has no tuisim, or another version."""
         run = self._client.run
         found = within(PATIENCE_S, run, eval, _VERSION, workers=workers, on_error="return")
-        wrong = {worker: version for worker, version in found.items() if version != __version__}
+        wrong = {worker: version for worker, version in found.items() if version != self._version}
         for worker, version in sorted(wrong.items()):
-            has = f"tuisim {version}, not {__version__}" if isinstance(version, str) else f"no tuisim: {version}"
+            has = f"tuisim {version}, not {self._version}" if isinstance(version, str) else f"no tuisim: {version}"
             more = f" (and {counted(len(wrong) - 1, 'other worker')})" if len(wrong) > 1 else ""
             raise HostError(f"the worker {worker} has {has}{more}", "all need the same version")
