@@ -80,7 +80,8 @@ def _add_text(error: BaseException, file: str, source: str) -> None:
     if type(error) in _SYNTAX_ERRORS and isinstance(error, SyntaxError) and error.text is None:
         lines, line = source_lines(source), _line_of(error)
         if error.filename == file and 0 < line <= len(lines):
-            error.text = lines[line - 1] + "\n"
+            # Bytes that are no text cannot be shown.
+            error.text = lines[line - 1].encode("utf-8", "surrogateescape").decode("utf-8", "replace") + "\n"
 
 
 def line_in(trace: Any, file: str) -> int:
