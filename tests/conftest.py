@@ -19,6 +19,7 @@ from tests.running import PATIENCE_S, Done, Run, Start, over
 from tuisim.atomic import make_private_folder
 from tuisim.cli import run_command
 from tuisim.config import mat_cache
+from tuisim.config.folders import cache_folder
 from tuisim.config.preferences import keep
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
@@ -107,17 +108,24 @@ def _mats_are_prepared_once(tmp_path_factory: pytest.TempPathFactory) -> Iterato
     in_use, store = MATS.values()
 
     def in_use_or_kept(path: Path, size: int) -> bool:
-        if not path.exists() and in_use(kept / path.name, size):
+        if path.is_relative_to(cache_folder()) and not path.exists() and in_use(kept / path.name, size):
             with suppress(OSError):
                 make_private_folder(path.parent)
-                os.link(kept / path.name, path)
+                link(kept / path.name, path)
         found: bool = in_use(path, size)
         return found
 
     def store_and_keep(path: Path, array: Any) -> None:
         store(path, array)
         if not (kept / path.name).exists():
-            os.link(path, kept / path.name)
+            link(path, kept / path.name)
+
+    def link(path: Path, other: Path) -> None:
+        checksum, _ = mat_cache._noted(path) or (0, ())
+        os.link(path, other)
+        # A file's identity changes when it is linked.
+        for one in (path, other):
+            mat_cache._note(one, checksum, one.stat())
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(mat_cache, "_in_use", in_use_or_kept)

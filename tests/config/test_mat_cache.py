@@ -8,7 +8,7 @@ import random
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -39,7 +39,12 @@ def picture(folder: Path, name: str = "mat.png", size: tuple[int, int] = (WIDTH,
 
 
 def cached(home: Path, pattern: str = "*") -> list[Path]:
-    return sorted((home / "cache" / "fields").glob(pattern))
+    """The files of the cache, without the notes of their checksums."""
+    return sorted(path for path in (home / "cache" / "fields").glob(pattern) if path.suffix != ".check")
+
+
+def note_of(path: Path) -> Path:
+    return path.with_name(path.name + ".check")
 
 
 def naive_sums(pixels: np.ndarray, diameter: int, col: int, row: int) -> list[int]:
@@ -117,6 +122,73 @@ def test_a_torn_file_is_made_again(home: Path, tmp_path: Path) -> None:
     assert mat_cache.prepare(image, [20]).sums[0][1].read_bytes() == whole
 
 
+def zeroed(path: Path, keeps_times: bool = False) -> None:
+    """Overwrite a file in place."""
+    found = path.stat()
+    with path.open("r+b") as stream:
+        stream.write(bytes(found.st_size))
+    if keeps_times:
+        os.utime(path, ns=(found.st_atime_ns, found.st_mtime_ns))
+
+
+def without_note(path: Path) -> None:
+    note_of(path).unlink()
+    zeroed(path)
+
+
+def odd_note(path: Path) -> None:
+    note_of(path).write_text("x" * 5000)
+    zeroed(path)
+
+
+def pipe(path: Path) -> None:
+    path.unlink()
+    os.mkfifo(path)
+
+
+def pipe_for_note(path: Path) -> None:
+    note_of(path).unlink()
+    os.mkfifo(note_of(path))
+    zeroed(path)
+
+
+DAMAGES: dict[str, Callable[[Path], None]] = {
+    "zeros": zeroed,
+    "zeros of the same time": lambda path: zeroed(path, keeps_times=True),
+    "zeros without a note": without_note,
+    "zeros with an odd note": odd_note,
+    "a pipe": pipe,
+    "zeros with a pipe for a note": pipe_for_note,
+}
+
+
+@pytest.mark.quick_cases("zeros")
+@pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)
+def test_a_damaged_file_is_made_again(home: Path, tmp_path: Path, damage: Callable[[Path], None]) -> None:
+    image = picture(tmp_path, fill="white")
+    files = mat_cache.prepare(image, [10])
+    for path in (files.pixels, files.sums[0][1]):
+        damage(path)
+        assert not files.are_sound
+    with pytest.raises(BackgroundError):
+        mat_cache.open_field(files)
+    assert mat_cache.prepare(image, [10]) == files
+    assert mat_cache.open_field(files).disc_sums(10, 500, 500) == (69 * 255,) * 3
+    assert mat_cache.open_field(files).box(1, 500, 500) == b"\xff" * 3
+
+
+def test_a_copied_file_is_read_once_to_be_trusted(home: Path, tmp_path: Path) -> None:
+    image = picture(tmp_path, fill="white")
+    files = mat_cache.prepare(image, ())
+    shutil.copy(files.pixels, tmp_path / "copy")
+    os.replace(tmp_path / "copy", files.pixels)
+    copied = files.pixels.stat().st_ino
+    assert mat_cache.prepare(image, ()) == files
+    assert files.pixels.stat().st_ino == copied
+    # Known again: it need not be read any more.
+    assert note_of(files.pixels).read_text().split()[1] == str(copied)
+
+
 def test_a_missing_file_is_told(home: Path, tmp_path: Path) -> None:
     files = mat_cache.prepare(picture(tmp_path), [20])
     files.pixels.unlink()
@@ -138,7 +210,7 @@ def test_the_cache_drops_what_was_not_used_longest(home: Path, tmp_path: Path, m
     made = [mat_cache.prepare(image, ()).pixels for image in images[:3]]
     for age_s, path in zip((300, 200, 100), made, strict=True):
         used = path.stat().st_mtime - age_s
-        os.utime(path, (used, used))
+        os.utime(note_of(path), (used, used))
     mat_cache.prepare(images[0], ())
     last = mat_cache.prepare(images[3], ()).pixels
     assert cached(home) == sorted([made[0], made[2], last])
@@ -149,12 +221,12 @@ def test_a_file_that_is_used_while_others_are_dropped_is_kept(
 ) -> None:
     monkeypatch.setattr(mat_cache, "MAX_CACHED_FILES", 1)
     first = mat_cache.prepare(picture(tmp_path, "a.png", fill="navy"), ()).pixels
-    os.utime(first, (0, 0))
+    os.utime(note_of(first), (0, 0))
     by_age = mat_cache._by_age
 
     def listed_then_used(folder: Path) -> list[tuple[float, Path]]:
         found = list(by_age(folder))
-        os.utime(first)
+        os.utime(note_of(first))
         return found
 
     monkeypatch.setattr(mat_cache, "_by_age", listed_then_used)

@@ -19,6 +19,7 @@ from tuisim.analysis.source import LogRequest, OpenedLog, opening
 from tuisim.charts.files import FACET_PX, clean, svg_of, write_whole
 from tuisim.charts.layout import Chart, Span, laid_out
 from tuisim.charts.world_image import world_at_end, world_view
+from tuisim.config.files import name_of
 from tuisim.core.geometry import pose_in_words
 from tuisim.core.profile import NS_PER_S
 from tuisim.core.tick_record import FLAG_PEN_DOWN
@@ -48,7 +49,7 @@ _WAY, _HALO = (230, 90, 0), (255, 255, 255)
 def default_name(opened: OpenedLog) -> str:
     """Return the default file name of a report."""
     name = opened.runs[0].program.name if opened.runs else opened.request.file
-    return f"{Path(name).stem.strip('-.') or 'log'}-report.html"
+    return f"{name_of(Path(name)).strip('-.') or 'log'}-report.html"
 
 
 def check_report(path: Path) -> None:

@@ -15,9 +15,9 @@ from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError, TuisimError
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.protocol import End, Ended
+from tuisim.regular_file import of_the_machine
 from tuisim.runs.handle import RunHandle
 from tuisim.runs.records import OutputRow, Stream
-from tuisim.runs.regular_file import of_the_machine
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import samples_of
 from tuisim.runs.store import RunStore
@@ -87,7 +87,7 @@ def _field_files(spec: RunSpec) -> FieldFiles:
     diameters = frozenset(sensor.diameter_mm for sensor in spec.robot.color_sensors)
     mat = spec.world.background, spec.world.background_fit, diameters
     found = _prepared(*mat)
-    if not all(path.is_file() for path in (found.pixels, *(path for _, path in found.sums))):
+    if not found.are_sound:
         _prepared.cache_clear()
         found = _prepared(*mat)
     return found

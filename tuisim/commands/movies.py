@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.commands.echo import Progress, echo, echo_error, tell
 from tuisim.config.command_line import Value, argument, command, option
+from tuisim.config.files import name_of
 from tuisim.config.options import CellSet
 from tuisim.errors import ConfigError, nearest
 from tuisim.runs.store import RunStore
@@ -108,7 +109,7 @@ def picture(word: str, out: str | None, time_s: float | None, panels: str | None
 
 def _default_name(run: StoredRun, end: str) -> str:
     # Not the program's name alone: its mat may be called so.
-    return f"{Path(run.program.name).stem.strip('-.') or 'run'}-{end}"
+    return f"{name_of(Path(run.program.name)).strip('-.') or 'run'}-{end}"
 
 
 def _recorded(run: StoredRun) -> Recorded:

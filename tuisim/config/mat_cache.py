@@ -3,24 +3,30 @@
 `prepare` does the slow part once per image and disc diameter and stores the result in the
 cache folder; `open_field` maps it. Modules that only `prepare` needs are imported there,
 so that a child process can open a field quickly.
+
+Beside each file lies a note of its checksum, and of the file's identity when that was last known to be right: its
+inode, size and times. As long as they are the same, nothing has written to it, and it need not be read to be trusted.
+A damaged file is made again.
 """
 
 from __future__ import annotations
 
 import mmap
 import os
-from collections.abc import Iterable, Iterator, Mapping
+import zlib
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tuisim.atomic import PART_SUFFIX, make_private_folder, replacing, sweep
+from tuisim.atomic import make_private_folder, replacing, sweep
 from tuisim.config.folders import cache_folder
 from tuisim.config.mat_image import check_fit, decode, fits_as_it_is, read_file
 from tuisim.core.field import Field, disc_mask
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import BackgroundError
+from tuisim.regular_file import open_regular, read_regular
 
 if TYPE_CHECKING:
     import numpy as np
@@ -36,6 +42,9 @@ _LAYOUT = 1
 """Version in the file names: increase it when the layout or the decoding changes."""
 _BLOCK_ROWS = 64
 """Rows summed at a time, few enough for the processor's cache."""
+_NOTE_SUFFIX = ".check"
+_MOST_NOTE_BYTES = 1000
+_READ_BYTES = 1 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +57,33 @@ class FieldFiles:
     """Raw RGB bytes, rows from the top."""
     sums: tuple[tuple[int, Path], ...]
     """Pairs of disc diameter and the file with its sums; for the layout see `core.field.Field`."""
+
+    @property
+    def paths(self) -> tuple[Path, ...]:
+        """All files that are opened, with the notes of their checksums."""
+        data = (self.pixels, *(path for _, path in self.sums))
+        return (*data, *map(_note_of, data))
+
+    def is_for(self, diameters: Collection[int]) -> bool:
+        """Return whether these are the files of a whole field with sums of these diameters."""
+        size = self.width_px, self.height_px
+        return size == (FIELD_WIDTH_MM, FIELD_HEIGHT_MM) and {diameter for diameter, _ in self.sums} >= set(diameters)
+
+    def identities(self) -> tuple[tuple[int, ...], ...]:
+        """Return what changes when a file is written to, or made again; a missing file has none."""
+        found = []
+        for path in (self.pixels, *(path for _, path in self.sums)):
+            with suppress(OSError):
+                found.append(_identity(path.stat()))
+        return tuple(found)
+
+    @property
+    def are_sound(self) -> bool:
+        """Whether the cache still has all files, undamaged; if so, they are marked as used now."""
+        width, height = self.width_px, self.height_px
+        wanted = [(self.pixels, 3 * width * height)]
+        wanted += [(path, 12 * (width + diameter) * (height + diameter)) for diameter, path in self.sums]
+        return all([_in_use(path, size) for path, size in wanted])
 
     def to_plain(self) -> dict[str, Any]:
         """Return the files as JSON-compatible data."""
@@ -108,14 +144,53 @@ def prepare(image: Path, diameters: Iterable[int], fit: str = "stretch") -> Fiel
 
 
 def _in_use(path: Path, size: int) -> bool:
-    """Return whether the cache has a file of this size; if so, mark it as used now."""
+    """Return whether the cache has a sound file of this size; if so, mark it as used now."""
     try:
-        if path.stat().st_size != size:
-            return False
-        os.utime(path)
+        noted = _noted(path)
+        with open_regular(path) as stream:
+            found = os.fstat(stream.fileno())
+            if found.st_size != size or noted is None:
+                return False
+            checksum, identity = noted
+            if identity == _identity(found):
+                os.utime(_note_of(path))
+                return True
+            if _checksum(stream.fileno()) != checksum:
+                return False
+        _note(path, checksum, found)
     except OSError:
         return False
     return True
+
+
+def _note_of(path: Path) -> Path:
+    return path.with_name(path.name + _NOTE_SUFFIX)
+
+
+def _identity(found: os.stat_result) -> tuple[int, ...]:
+    """Return what changes when anything writes to a file, or another one takes its place."""
+    return found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns
+
+
+def _noted(path: Path) -> tuple[int, tuple[int, ...]] | None:
+    """Return the checksum and the identity in the note of a file; None if there is no sound note."""
+    try:
+        checksum, *identity = map(int, read_regular(_note_of(path), _MOST_NOTE_BYTES).split())
+    except (OSError, ValueError):
+        return None
+    return checksum, tuple(identity)
+
+
+def _note(path: Path, checksum: int, found: os.stat_result) -> None:
+    with replacing(_note_of(path), durable=False, owner_only=True, follow_links=False) as stream:
+        stream.write(" ".join(map(str, (checksum, *_identity(found)))).encode())
+
+
+def _checksum(descriptor: int) -> int:
+    found = at = 0
+    while part := os.pread(descriptor, _READ_BYTES, at):
+        found, at = zlib.crc32(part, found), at + len(part)
+    return found
 
 
 def _make(files: FieldFiles, missing: list[tuple[int, Path]], pixels: NDArray[np.uint8]) -> None:
@@ -165,35 +240,44 @@ def _disc_sums(pixels: NDArray[np.uint8], diameter: int) -> NDArray[np.uint32]:
 
 
 def _store(path: Path, array: NDArray[Any]) -> None:
-    with replacing(path, durable=False, owner_only=True) as stream:
+    # On the disk before it is noted as sound: a power failure could leave zeros in its place.
+    with replacing(path, owner_only=True, follow_links=False) as stream:
         stream.write(array.data)
+    _note(path, zlib.crc32(array.data), path.stat())
 
 
 def _by_age(folder: Path) -> Iterator[tuple[float, Path]]:
+    """Yield each file with the time of its last use: that of its note."""
     for path in folder.iterdir():
         # Another process may be removing files too.
         with suppress(FileNotFoundError):
-            yield path.stat().st_mtime, path
+            if path.suffix == _NOTE_SUFFIX:
+                yield path.stat().st_mtime, path.with_suffix("")
 
 
 def _trim(folder: Path, keep: set[Path]) -> None:
     """Remove the least recently used files beyond MAX_CACHED_FILES, and temporary files of killed processes."""
     sweep(folder)
-    cached = [(used, path) for used, path in sorted(_by_age(folder)) if path.suffix != PART_SUFFIX]
+    cached = sorted(_by_age(folder))
     surplus = max(0, len(cached) - MAX_CACHED_FILES)
     for used, path in [(used, path) for used, path in cached if path not in keep][:surplus]:
         # Another process may have removed it, or may be about to open it.
         with suppress(FileNotFoundError):
-            if path.stat().st_mtime == used:
-                path.unlink()
+            if _note_of(path).stat().st_mtime == used:
+                path.unlink(missing_ok=True)
+                _note_of(path).unlink()
 
 
 def _mapped(path: Path, size: int) -> memoryview:
     try:
-        with path.open("rb") as stream:
-            found = os.fstat(stream.fileno()).st_size
-            if found != size:
-                raise BackgroundError(f"has {found} bytes, not {size}", "remove it to recreate it", file=str(path))
+        with open_regular(path) as stream:
+            found = os.fstat(stream.fileno())
+            if found.st_size != size:
+                raise BackgroundError(f"has {found.st_size} bytes, not {size}", "remove it to recreate it", file=str(path))
+            noted = _noted(path)
+            # The note is that of another file if that has just been made again by another process.
+            if noted is None or (noted[1] != _identity(found) and noted[0] != _checksum(stream.fileno())):
+                raise BackgroundError("is damaged", "the next run makes it again", file=str(path))
             return memoryview(mmap.mmap(stream.fileno(), size, access=mmap.ACCESS_READ))
     except OSError as error:
         message = f"the prepared mat cannot be opened: {error.strerror or error}"

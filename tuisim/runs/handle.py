@@ -144,7 +144,8 @@ class RunFolders(Protocol):
 def _template_key(program: Program, spec: RunSpec, field: FieldFiles) -> Hashable:
     """Return what a template is prepared for: all of a run except its program, its options, seed, noise and start."""
     world = replace(spec.world, noise=NoiseSpec(), start=Pose(0.0, 0.0, 0.0))
-    return program.prelude, field, replace(spec, seed=0, world=world)
+    # A file of the mat that was made again is another one.
+    return program.prelude, field, field.identities(), replace(spec, seed=0, world=world)
 
 
 def _needs(program: Program, field: FieldFiles) -> list[Path]:
@@ -152,8 +153,7 @@ def _needs(program: Program, field: FieldFiles) -> list[Path]:
     own = [program.module_folder or os.path.dirname(program.path), *program.python_path]
     return [
         *(Path(os.path.abspath(folder)) for folder in own if folder),
-        field.pixels,
-        *(path for _, path in field.sums),
+        *field.paths,
     ]
 
 

@@ -17,6 +17,7 @@ from tuisim.atomic import replacing, sweep
 from tuisim.core.spec import RunSpec
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.errors import LogError
+from tuisim.regular_file import open_regular
 from tuisim.runs.records import (
     HEADER_BYTES,
     OUTPUT_FILE,
@@ -26,7 +27,6 @@ from tuisim.runs.records import (
     header,
     published_length,
 )
-from tuisim.runs.regular_file import open_regular
 
 PACKED_SUFFIX = ".packed"
 PACKED_MAGIC = {TELEMETRY_FILE: b"TUISIMTP", OUTPUT_FILE: b"TUISIMOP"}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from bisect import bisect_right
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, TypeVar
@@ -17,7 +17,7 @@ from tuisim.core.profile import NS_PER_S, MotorLaw, due_ns, law_of_earlier
 from tuisim.core.spec import NoiseSpec, RunSpec, from_plain, to_plain
 from tuisim.errors import ConfigError, LogError, TuisimError, shortened
 from tuisim.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
-from tuisim.runs.regular_file import read_regular
+from tuisim.regular_file import read_regular
 from tuisim.runs.side_files import MOST_BYTES, is_held, read_actions
 from tuisim.runs.views import OutputView, TelemetryView, TickRecord, views_of
 from tuisim.source import Program
@@ -170,6 +170,30 @@ def _typed(value: Any, kind: type[_Kind], name: str) -> _Kind:
     return value
 
 
+def _checked(spec: RunSpec) -> RunSpec:
+    """Return a spec whose values all have their types, and whose numbers are ones to reckon with."""
+    # Imported here: not all that read a run file need the run.
+    import msgspec
+
+    plain = msgspec.to_builtins(spec)
+    msgspec.convert(plain, RunSpec)
+    if not 1 <= spec.profile.tick_hz <= NS_PER_S:
+        raise ValueError(f"a tick rate of {spec.profile.tick_hz}")
+    # A seed may be any whole number.
+    for number in _numbers_in([part for name, part in plain.items() if name != "seed"]):
+        if not abs(number) <= MOST_INTEGER:
+            raise ValueError(f"{number} is out of range")
+    return spec
+
+
+def _numbers_in(plain: object) -> Iterator[float]:
+    if isinstance(plain, dict | list):
+        for part in plain.values() if isinstance(plain, dict) else plain:
+            yield from _numbers_in(part)
+    elif isinstance(plain, int | float):
+        yield plain
+
+
 def _end_of(data: Mapping[str, Any]) -> Ended:
     kinds = {field.name: type(getattr(_ANY_END, field.name)) for field in fields(Ended)}
     known = {**data, "end": End(data["end"])}
@@ -199,11 +223,11 @@ def read_run(folder: Path, document: bytes | None = None) -> StoredRun:
             key: _typed(data["program"][key], str, key) for key in ("name", "path", "text", "prelude")
         }
         # Older runs do not have these keys.
-        program |= {key: tuple(data["program"].get(key, ())) for key in ("arguments", "python_path")}
-        program |= {key: data["program"].get(key, "") for key in ("working_directory", "module_folder")}
-        spec = from_plain(data["spec"])
-        if spec.profile.tick_hz < 1:
-            raise ValueError(f"a tick rate of {spec.profile.tick_hz}")
+        for key in ("arguments", "python_path"):
+            program[key] = tuple(_typed(word, str, key) for word in _typed(data["program"].get(key, []), list, key))
+        for key in ("working_directory", "module_folder"):
+            program[key] = _typed(data["program"].get(key, ""), str, key)
+        spec = _checked(from_plain(data["spec"]))
         return StoredRun(
             folder=folder,
             id=_typed(data["id"], str, "id"),
@@ -212,7 +236,7 @@ def read_run(folder: Path, document: bytes | None = None) -> StoredRun:
             live=bool(data["live"]),
             program=Program(**program),
             spec=spec,
-            field=data["field"],
+            field=_typed(data["field"] or {}, dict, "field") or None,
             options=_typed(data["options"], dict, "options"),
             tags=tuple(_typed(tag, str, "a tag") for tag in data.get("tags", ())),
             end=None if data["end"] is None else _end_of(data["end"]),
@@ -266,9 +290,8 @@ def mat_files(run: StoredRun) -> FieldFiles:
     """
     try:
         made_on = None if run.field is None else FieldFiles.from_plain(run.field)
-        if made_on is not None and all(
-            path.is_file() for path in (made_on.pixels, *(path for _, path in made_on.sums))
-        ):
+        diameters = {sensor.diameter_mm for sensor in run.spec.robot.color_sensors}
+        if made_on is not None and made_on.is_for(diameters) and made_on.are_sound:
             return made_on
         found = field_files(run.spec)
         # The file names are derived from the contents of the image.

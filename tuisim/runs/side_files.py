@@ -20,7 +20,7 @@ from tuisim.atomic import private
 from tuisim.core.spec import NoiseSpec
 from tuisim.errors import LogError, TuisimError
 from tuisim.protocol import SetNoise, UserAction
-from tuisim.runs.regular_file import read_regular
+from tuisim.regular_file import read_regular
 
 LOCK_FILE = "lock"
 """Locked by the process that runs the program, as long as it lives.

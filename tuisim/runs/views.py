@@ -26,6 +26,7 @@ from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
 from tuisim.errors import LogError, counted
+from tuisim.regular_file import of_the_machine, open_regular
 from tuisim.runs.brick_state import DRAWN_STREAMS, is_sound
 from tuisim.runs.packed_files import Packed, find_packed
 from tuisim.runs.records import (
@@ -42,7 +43,6 @@ from tuisim.runs.records import (
     published_length,
     raw_rows,
 )
-from tuisim.runs.regular_file import of_the_machine, open_regular
 
 if TYPE_CHECKING:
     import numpy as np

@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, ClassVar
 
 from tuisim.atomic import private
+from tuisim.regular_file import read_regular
 from tuisim.runs.child.fair_clock import waited_s
 from tuisim.runs.child.isolation import LIMITS, spawn_isolated
-from tuisim.runs.regular_file import read_regular
 from tuisim.runs.side_files import LOG_FILE, MOST_BYTES, STACK_FILE
 from tuisim.source import source_lines
 
