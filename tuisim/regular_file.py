@@ -1,4 +1,4 @@
-"""Opening files that the program of a run could have replaced by something else."""
+"""Reading files in whose place there may be something else: a pipe, a device, a link, or more than memory holds."""
 
 from __future__ import annotations
 
@@ -11,31 +11,36 @@ from typing import BinaryIO
 _OF_THE_MACHINE = frozenset({errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.ENOSPC})
 
 
-def open_regular(path: Path) -> BinaryIO:
-    """Open a file for reading, unbuffered. Never blocks, and never follows a link at the end of the path.
+def open_regular(path: Path, follow_links: bool = False) -> BinaryIO:
+    """Open a file for reading, unbuffered. Never blocks.
+
+    Args:
+        follow_links: Whether the path may end in a link, as users expect of their own files; not where a program could
+            have put one.
 
     Raises:
         OSError: it cannot be opened; ELOOP for a link, EINVAL for a pipe, a device, a socket or a folder.
     """
-    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC)
+    no_links = 0 if follow_links else os.O_NOFOLLOW
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | no_links)
     if not stat.S_ISREG(os.fstat(descriptor).st_mode):
         os.close(descriptor)
         raise OSError(errno.EINVAL, "it is not a regular file")
     return open(descriptor, "rb", buffering=0)
 
 
-def read_regular(path: Path, most_bytes: int) -> bytes:
+def read_regular(path: Path, most_bytes: int, follow_links: bool = False) -> bytes:
     """Return the contents of a file that is opened as by `open_regular`.
 
     Raises:
         OSError: it cannot be read, or is longer than `most_bytes`: then EFBIG.
     """
-    with open_regular(path) as handle:
+    with open_regular(path, follow_links) as handle:
         found = bytearray()
         while chunk := handle.read(most_bytes + 1 - len(found)):
             found += chunk
     if len(found) > most_bytes:
-        raise OSError(errno.EFBIG, f"it is larger than {most_bytes >> 20} MiB")
+        raise OSError(errno.EFBIG, f"it is larger than {most_bytes} bytes")
     return bytes(found)
 
 

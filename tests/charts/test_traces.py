@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tuisim.charts.canvas import seen_points, xy_lines
-from tuisim.charts.traces import Pyramid
+from tuisim.charts.traces import MOST_POINTS, Pyramid, Trace
 from tuisim.logs.signals import summary_of
 
 TIMES = np.arange(200_000) / 1000.0
@@ -62,3 +62,16 @@ def test_the_place_that_is_looked_at_is_marked() -> None:
     assert len(text) == 12
     assert "●" in text[1]
     assert text[0].endswith("x 10  y 10")
+
+
+def test_a_trace_without_end_keeps_its_extremes_in_bounded_memory() -> None:
+    trace, values = Trace("Colour", 0), np.sin(TIMES)
+    values[[1_234, 150_001]] = 9.0, -9.0
+    for at in range(0, len(TIMES), 100):
+        trace.add(TIMES[at : at + 100].tolist(), values[at : at + 100].tolist())
+    assert len(trace.times_s) == len(trace.values) <= MOST_POINTS < len(TIMES)
+    assert (trace.at(TIMES[1_234]), trace.at(TIMES[150_001])) == (9.0, -9.0)
+    assert (trace.times_s[0], trace.times_s[-1]) == (TIMES[0], TIMES[-1])
+    assert (np.diff(trace.times_s) >= 0).all()
+    # What came last is there as it came.
+    assert trace.values[-1000:].tolist() == values[-1000:].tolist()

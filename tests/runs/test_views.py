@@ -308,3 +308,60 @@ def test_a_stream_of_another_version_is_read_as_unknown(tmp_path: Path) -> None:
 def test_a_long_recording_takes_nothing_from_the_memory_of_the_program(tmp_path: Path) -> None:
     done = subprocess.run([sys.executable, "-c", LIMITED, str(tmp_path)], capture_output=True, text=True, check=False)
     assert (done.stdout, done.stderr) == ("limited\n", "")
+
+
+def drive_for(folder: Path, ticks: int) -> TelemetryWriter:
+    """Write the telemetry of a robot that drives along x."""
+    writer = TelemetryWriter(folder)
+    extend(writer, ticks)
+    return writer
+
+
+def extend(writer: TelemetryWriter, ticks: int) -> None:
+    for tick in range(writer.count, writer.count + ticks):
+        at = HEADER_BYTES + TICK_RECORD.size * tick
+        writer.room(1)[at : at + TICK_RECORD.size] = TICK_RECORD.pack(tick, 1, float(tick), *[0.0] * 4, 0, 0, 0, 0, 0)
+        writer.publish(tick + 1)
+
+
+LONG = 100_000
+
+
+def followed(folder: Path) -> TelemetryView:
+    """Follow a long run while it is written."""
+    writer, view = drive_for(folder, 10), TelemetryView(folder, is_checked=True)
+    for _ in range(10):
+        extend(writer, LONG // 10)
+        assert view.count == writer.count
+    writer.close()
+    return view
+
+
+def test_a_long_run_takes_little_memory_and_is_read_again_from_its_file(tmp_path: Path) -> None:
+    view = followed(tmp_path)
+    assert len(view._copy) < 8 << 20 < LONG * TICK_RECORD.size * 2
+    assert [view.record(tick).x_mm for tick in (0, 1, LONG // 2, LONG)] == [0.0, 1.0, LONG / 2, LONG]
+    for first in (0, 5, LONG, LONG + 10, LONG + 50):
+        assert view.array(first)["x_mm"].tolist() == [float(tick) for tick in range(first, LONG + 10)]
+    assert view.damage == ""
+
+
+def test_a_long_run_outlives_its_file(tmp_path: Path) -> None:
+    view = followed(tmp_path)
+    (tmp_path / TELEMETRY_FILE).unlink()
+    assert view.record(3).x_mm == 3.0
+    assert len(view.array()) == LONG + 10
+
+
+@pytest.mark.parametrize("cut", [False, True], ids=["overwritten", "cut off"])
+def test_what_a_program_changes_later_is_damage_and_no_error(tmp_path: Path, cut: bool) -> None:
+    view = followed(tmp_path)
+    with (tmp_path / TELEMETRY_FILE).open("r+b") as stream:
+        stream.seek(HEADER_BYTES + 7 * TICK_RECORD.size)
+        stream.write(b"\xff" * 640)
+        if cut:
+            stream.truncate()
+    assert view.record(6).x_mm == 6.0
+    assert np.isfinite(view.record(7).x_mm)
+    assert len(view.array()) == LONG + 10
+    assert "record 7" in view.damage

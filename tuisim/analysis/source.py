@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from tuisim.atomic import make_private_folder, replacing
 from tuisim.config.folders import home_folder
 from tuisim.errors import LogError
+from tuisim.regular_file import open_regular, read_regular
 
 if TYPE_CHECKING:
     from tuisim.logs.log import Log
@@ -98,6 +99,7 @@ NOTES_FILE = "notes.jsonl"
 """In the folder of a run."""
 _HASHED_BYTES = 1 << 16
 """Bytes at the beginning of a file that identify it, also if it grows."""
+_MOST_NOTES_BYTES = 64 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +122,7 @@ def notes_of_file(path: Path) -> Path:
         LogError: the file cannot be read.
     """
     try:
-        with path.open("rb") as handle:
+        with open_regular(path, follow_links=True) as handle:
             beginning = handle.read(_HASHED_BYTES).partition(b"\n")[0]
     except OSError as error:
         raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from error
@@ -135,7 +137,7 @@ def read_notes(place: Path) -> tuple[Note, ...]:
         LogError: it cannot be read, or a row is not a note.
     """
     try:
-        lines = [line for line in place.read_bytes().split(b"\n") if line]
+        lines = [line for line in read_regular(place, _MOST_NOTES_BYTES).split(b"\n") if line]
     except FileNotFoundError:
         return ()
     except OSError as error:

@@ -12,8 +12,10 @@ from tuisim.app.editor.text_file import file_of_program, write_json
 from tuisim.app.editor.text_lines import same_lines
 from tuisim.app.snapshot import DebugState, PauseView
 from tuisim.breakpoints import Breakpoint, LineBreak, break_line_of, break_lines, moved, parse_break
+from tuisim.config.files import MAX_FILE_BYTES
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
+from tuisim.regular_file import read_regular
 from tuisim.runs.replay_debugger import Position, ReplayDebugger
 from tuisim.source import source_lines
 
@@ -44,7 +46,7 @@ def load_kept(program: str) -> Kept:
         program: Its path, or its name if it is in no file.
     """
     try:
-        data = json.loads(file_of_program(FOLDER, program).read_bytes())
+        data = json.loads(read_regular(file_of_program(FOLDER, program), MAX_FILE_BYTES))
         breaks = tuple(parse_break(text) for text in data["breaks"][:MAX_KEPT])
         return Kept(breaks, tuple(str(text) for text in data["watches"][:MAX_KEPT]))
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError, ConfigError):

@@ -85,7 +85,7 @@ class Feed:
 
     def trace_points(self) -> Points:
         """Return where the pen drew since the last call."""
-        records = self.recording.telemetry.array()[self._traced :]
+        records = self.recording.telemetry.array(self._traced)
         if not len(records):
             return [], []
         self._traced += len(records)

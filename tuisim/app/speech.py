@@ -11,9 +11,11 @@ import subprocess
 import wave
 from array import array
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from threading import Thread
 
 from tuisim.protocol import Spoke
+from tuisim.regular_file import open_regular
 
 SPEAKS = "espeak-ng"
 PLAYS = (("paplay", ()), ("aplay", ("-q", "-")))
@@ -91,7 +93,7 @@ class Voice:
     def _play_file(self, path: str) -> None:
         if self._plays:
             try:
-                with open(path, "rb") as file:
+                with open_regular(Path(path), follow_links=True) as file:
                     self._sounding = _fed(self._plays, file.read(int(MAX_SOUND_S * RATE_HZ * 8)))
             except OSError:
                 # The program has played it: the file may be deleted by now.

@@ -23,6 +23,11 @@ MARKS = "o+x*#%=~&@"
 _OTHER_SCALE = ("ultrasonic", "gyro", "wheel")
 """Millimetres and degrees: they do not fit the scale of light in percent."""
 
+MOST_POINTS = 1 << 16
+"""A trace with more points keeps the least and the greatest of each few, so that a run without end needs a bounded
+memory: what was recorded long ago is drawn as before, unless one zooms in."""
+_THINNED = 4
+
 
 class Trace:
     """One trace: points in order of time, a colour, and whether it is ticked.
@@ -71,6 +76,17 @@ class Trace:
             # A program may log its own times; lookups need them sorted.
             order = np.argsort(self.times_s, kind="stable")
             self._times_s[:end], self._values[:end] = self.times_s[order], self.values[order]
+        if end > MOST_POINTS:
+            self._thin()
+
+    def _thin(self) -> None:
+        """Keep two of every four points: the least and the greatest, in their order."""
+        whole = self._count // _THINNED * _THINNED
+        values = self._values[:whole].reshape(-1, _THINNED)
+        kept = np.sort(np.stack((values.argmin(axis=1), _THINNED - 1 - values[:, ::-1].argmax(axis=1)), axis=1), axis=1)
+        at = (kept + np.arange(0, whole, _THINNED)[:, np.newaxis]).ravel()
+        at = np.concatenate((at, np.arange(whole, self._count)))
+        self._times_s, self._values, self._count = self._times_s[at], self._values[at], len(at)
 
     def at(self, time_s: float) -> float | None:
         """Return the last value at or before a time, None before the first."""

@@ -83,7 +83,7 @@ class FieldFiles:
         width, height = self.width_px, self.height_px
         wanted = [(self.pixels, 3 * width * height)]
         wanted += [(path, 12 * (width + diameter) * (height + diameter)) for diameter, path in self.sums]
-        return all([_in_use(path, size) for path, size in wanted])
+        return all(_in_use(path, size) for path, size in wanted)
 
     def to_plain(self) -> dict[str, Any]:
         """Return the files as JSON-compatible data."""
@@ -273,7 +273,8 @@ def _mapped(path: Path, size: int) -> memoryview:
         with open_regular(path) as stream:
             found = os.fstat(stream.fileno())
             if found.st_size != size:
-                raise BackgroundError(f"has {found.st_size} bytes, not {size}", "remove it to recreate it", file=str(path))
+                what = f"has {found.st_size} bytes, not {size}"
+                raise BackgroundError(what, "remove it to recreate it", file=str(path))
             noted = _noted(path)
             # The note is that of another file if that has just been made again by another process.
             if noted is None or (noted[1] != _identity(found) and noted[0] != _checksum(stream.fileno())):

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.core.spec import BACKGROUND_FITS, FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import BackgroundError
+from tuisim.regular_file import read_regular
 
 if TYPE_CHECKING:
     import numpy as np
@@ -73,7 +74,7 @@ def read_file(path: Path) -> bytes:
     """
     check_file(path)
     try:
-        return path.read_bytes()
+        return read_regular(path, MAX_FILE_MB * 1_000_000, follow_links=True)
     except OSError as error:
         raise _error(f"cannot be read: {error.strerror or error}", path) from error
 

@@ -7,6 +7,9 @@ from pathlib import Path
 
 from tuisim.atomic import make_private_folder, replacing
 from tuisim.config.folders import home_folder
+from tuisim.regular_file import read_regular
+
+_MOST_BYTES = 1 << 20
 
 
 def preferences_file() -> Path:
@@ -34,7 +37,7 @@ def keep(name: str, value: object) -> None:
 
 def _all() -> dict[str, object]:
     try:
-        found = json.loads(preferences_file().read_bytes())
+        found = json.loads(read_regular(preferences_file(), _MOST_BYTES, follow_links=True))
     except (OSError, ValueError, RecursionError):
         return {}
     return found if isinstance(found, dict) else {}

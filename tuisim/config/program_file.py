@@ -18,6 +18,7 @@ from tuisim.config.program_robot.course import global_names, uses_course_names
 from tuisim.config.program_robot.source import imports_library, read_modules
 from tuisim.config.shared_options import parse_words
 from tuisim.errors import ConfigError, did_you_mean, nearest, see_page
+from tuisim.regular_file import read_regular
 from tuisim.source import LIBRARIES, PRELUDE_TEXTS, PRELUDES, Program, decode_source, source_lines
 
 MAX_PROGRAM_BYTES = 4 << 20
@@ -70,7 +71,7 @@ class ProgramFile(NamedTuple):
 
 def _title_of(path: Path) -> str:
     try:
-        lines = source_lines(path.read_text(encoding="utf-8"))
+        lines = source_lines(read_regular(path, MAX_PROGRAM_BYTES, follow_links=True).decode())
         # A program may begin with a magic line, which is not Python.
         module = ast.parse("\n".join("" if line.startswith("%") else line for line in lines))
     except (SyntaxError, ValueError, OSError):

@@ -17,6 +17,7 @@ from tuisim.config.files import Location, means_file, parse_toml, shown, table
 from tuisim.config.folders import config_folder, user_path
 from tuisim.config.options import OF_THE_APP, OPTIONS, FileValue, InFile, Option, Settings
 from tuisim.errors import ConfigError, nearest, see_page
+from tuisim.regular_file import read_regular
 
 FILE = "config.toml"
 PAGE = "settings"
@@ -209,9 +210,7 @@ def config_text(path: Path) -> str:
         ConfigError: it cannot be read.
     """
     try:
-        if path.stat().st_size > MAX_FILE_BYTES:
-            raise ConfigError("is too large", f"at most {MAX_FILE_BYTES} bytes", file=str(path))
-        return path.read_text(encoding="utf-8")
+        return read_regular(path, MAX_FILE_BYTES, follow_links=True).decode()
     except FileNotFoundError:
         return ""
     except UnicodeDecodeError:

@@ -14,6 +14,7 @@ from tuisim.atomic import make_private_folder, replacing
 from tuisim.config.folders import home_folder
 from tuisim.errors import ConfigError, counted
 from tuisim.lessons.spec import Lesson
+from tuisim.regular_file import read_regular
 
 FOLDER = "lessons"
 """In the user's data folder: the progress, and the programs that the student has written."""
@@ -97,7 +98,7 @@ def load_progress() -> dict[str, LessonProgress]:
     """
     path = folder() / _FILE
     try:
-        text = path.read_bytes()[:_MAX_BYTES]
+        text = read_regular(path, _MAX_BYTES, follow_links=True)
     except FileNotFoundError:
         return {}
     except OSError as error:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import stat
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -34,6 +35,7 @@ from tuisim.logs.stamped import StampedReader, looks_stamped, reader_of_stamped
 from tuisim.logs.text_tables import CsvReader, JsonReader, PrintedReader, exported_csv, looks_printed
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
+from tuisim.regular_file import read_regular
 from tuisim.runs.frames import damage_note, samples_frame, telemetry_frame
 from tuisim.runs.run_folder import StoredRun
 
@@ -47,6 +49,7 @@ FIRST_BYTES = 1 << 18
 _SHOW_EVERY_S = 1.0
 _SHOW_SELDOM = 5.0
 """Minimum time between two updates, as a multiple of the duration of an update."""
+_MOST_COMPANION_BYTES = 64 << 20
 _TABLES = (".csv", ".tsv")
 
 
@@ -166,7 +169,7 @@ def _log(title: str, parts: Sequence[pa.Table], notes: Notes, named: tuple[str |
 def _metadata_beside(path: Path) -> Mapping[str, Any]:
     """Return the metadata in the companion file of an export; empty if there is none."""
     try:
-        found = json.loads(companion_of(path).read_bytes())
+        found = json.loads(read_regular(companion_of(path), _MOST_COMPANION_BYTES, follow_links=True))
     except (OSError, ValueError, RecursionError):
         return {}
     return found if isinstance(found, dict) else {}
@@ -219,7 +222,11 @@ def _source_parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.
     try:
         if os.path.isdir(path):
             raise LogError("is a folder, not a log", file=str(path))
-        regular = os.path.isfile(path)
+        mode = path.stat().st_mode
+        if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
+            # A device need not have an end.
+            raise LogError("is a device, not a log", file=str(path))
+        regular = stat.S_ISREG(mode)
         with path.open("rb", buffering=0 if not regular else -1) as handle:
             head = handle.read(MAGIC_BYTES) if regular else b""
             if head.startswith(arrow.PARQUET_MAGIC):

@@ -12,6 +12,7 @@ from dataclasses import astuple, dataclass
 from pathlib import Path
 from struct import Struct
 from struct import error as StructError
+from typing import BinaryIO
 
 from tuisim.atomic import replacing, sweep
 from tuisim.core.spec import RunSpec
@@ -25,6 +26,7 @@ from tuisim.runs.records import (
     TELEMETRY_FILE,
     TELEMETRY_MAGIC,
     header,
+    is_hole,
     published_length,
 )
 
@@ -34,6 +36,7 @@ PACKED_MAGIC = {TELEMETRY_FILE: b"TUISIMTP", OUTPUT_FILE: b"TUISIMOP"}
 PACKED_VERSION = 1
 _HEADER = Struct("<8sIIQQ4d64s")
 """Magic, version, checksum of the recording, length from its own header, packed bytes, geometry, last record."""
+_READ_BYTES = 1 << 22
 _CHECK = Struct("<I")
 """Checksum of the header, directly after it."""
 
@@ -65,8 +68,10 @@ class Packed:
             if len(data) != self.packed_bytes:
                 raise ValueError(f"{len(data)} bytes instead of {self.packed_bytes}")
             content = self._unfolded(data)
-        except (OSError, ValueError) as error:
-            raise LogError(f"the packed recording is damaged: {error}", file=str(self.path)) from error
+        # A header may claim more than memory holds.
+        except (OSError, ValueError, MemoryError) as error:
+            what = str(error) or "it claims to be too large"
+            raise LogError(f"the packed recording is damaged: {what}", file=str(self.path)) from error
         if zlib.crc32(content) != self.checksum:
             raise LogError("the packed recording is damaged: its checksum is wrong", file=str(self.path))
         return header(*_form(self.path.name.removesuffix(PACKED_SUFFIX)), self.length) + content
@@ -126,28 +131,37 @@ def compact(folder: Path, spec: RunSpec) -> None:
 def _compact_file(path: Path, spec: RunSpec) -> None:
     try:
         with open_regular(path) as handle:
-            data = handle.read()
+            data = _recording(handle, path)
     except FileNotFoundError:
         return
-    packed = _packed(path, data, spec)
-    if packed is None:
+    if data is None:
         return
+    packed = _packed(path, data, spec)
     with replacing(path.with_name(path.name + PACKED_SUFFIX), owner_only=True, follow_links=False) as handle:
         handle.write(packed)
     # Another process may have packed it in the meantime.
     path.unlink(missing_ok=True)
 
 
-def _packed(path: Path, data: bytes, spec: RunSpec) -> bytes | None:
-    """Return the bytes of the packed file; None for a recording that cannot be packed because its end is missing."""
+def _recording(handle: BinaryIO, path: Path) -> bytes | None:
+    """Return a recording with its header; None for one that cannot be packed because a part of it is missing."""
+    magic, record_bytes = _form(path.name)
+    found = bytearray(handle.read(HEADER_BYTES))
+    end = HEADER_BYTES + published_length(bytes(found), magic, str(path)) * max(1, record_bytes)
+    while len(found) < end:
+        part = handle.read(min(_READ_BYTES, end - len(found)))
+        if not part or (len(part) == _READ_BYTES and is_hole(part)):
+            return None
+        found += part
+    return bytes(found)
+
+
+def _packed(path: Path, data: bytes, spec: RunSpec) -> bytes:
+    """Return the bytes of the packed file."""
     from tuisim.runs import packed_codec
 
-    magic, record_bytes = _form(path.name)
-    length = published_length(data, magic, str(path))
-    end = HEADER_BYTES + length * max(1, record_bytes)
-    content = data[HEADER_BYTES:end]
-    if end > len(data):
-        return None
+    content = data[HEADER_BYTES:]
+    length = published_length(data, _form(path.name)[0], str(path))
     geometry, last = packed_codec.RobotGeometry.of(spec), bytes(TICK_RECORD.size)
     if path.name == TELEMETRY_FILE:
         folded = packed_codec.fold_ticks(content, geometry)

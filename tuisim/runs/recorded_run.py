@@ -124,7 +124,7 @@ class _TimedMarks:
         marks = self._drawn.field.marks
         if tick >= len(self._counts):
             # One by one: all at once, as objects, the records of a long run take much memory.
-            for record in TICK_RECORD.iter_unpack(self._run.telemetry.array()[len(self._counts) :].data):
+            for record in TICK_RECORD.iter_unpack(self._run.telemetry.array(len(self._counts)).data):
                 self._drawn.take_in([record])
                 self._counts.append(len(marks))
         count = self._counts[min(tick, len(self._counts) - 1)] if self._counts else 0

@@ -278,6 +278,12 @@ def published_length(data: bytes, magic: bytes, file: str) -> int:
     return int(length)
 
 
+def is_hole(part: bytes | memoryview) -> bool:
+    """Return whether a part of a recording, far larger than a record, was never written: a file may seem to be of any
+    length without taking space on the disk."""
+    return not bytes(part[-HEADER_BYTES:]).strip(b"\0") and not bytes(part).strip(b"\0")
+
+
 def raw_rows(data: bytes | memoryview, end: int) -> Iterator[tuple[int, bytes]]:
     """Yield stream and text of each complete row, a cheaper variant of `output_rows`."""
     start, head, after_head = HEADER_BYTES, OUTPUT_ROW.unpack_from, OUTPUT_ROW.size

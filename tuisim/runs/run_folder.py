@@ -194,6 +194,13 @@ def _numbers_in(plain: object) -> Iterator[float]:
         yield plain
 
 
+def _options_of(data: Mapping[str, Any]) -> dict[str, Any]:
+    options = _typed(data["options"], dict, "options")
+    for answer in _typed(options.get("answers", []), list, "answers"):
+        _typed(answer, str, "an answer")
+    return options
+
+
 def _end_of(data: Mapping[str, Any]) -> Ended:
     kinds = {field.name: type(getattr(_ANY_END, field.name)) for field in fields(Ended)}
     known = {**data, "end": End(data["end"])}
@@ -237,7 +244,7 @@ def read_run(folder: Path, document: bytes | None = None) -> StoredRun:
             program=Program(**program),
             spec=spec,
             field=_typed(data["field"] or {}, dict, "field") or None,
-            options=_typed(data["options"], dict, "options"),
+            options=_options_of(data),
             tags=tuple(_typed(tag, str, "a tag") for tag in data.get("tags", ())),
             end=None if data["end"] is None else _end_of(data["end"]),
             actions=actions,

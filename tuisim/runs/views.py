@@ -18,6 +18,7 @@ from itertools import islice
 from mmap import MAP_ANONYMOUS, MAP_PRIVATE, mmap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
+from weakref import finalize
 
 from tuisim.core.drive import turn_rate_dps
 from tuisim.core.end_stops import end_flags
@@ -39,6 +40,7 @@ from tuisim.runs.records import (
     TELEMETRY_MAGIC,
     OutputRow,
     Stream,
+    is_hole,
     output_rows,
     published_length,
     raw_rows,
@@ -112,6 +114,8 @@ class _View(ABC):
     _magic: ClassVar[bytes]
     _record_bytes: ClassVar[int]
     """Size of a record; 1 if it varies."""
+    _kept: ClassVar[int | None] = None
+    """So many records of a run that is running are kept in memory, at least; None for all."""
     _most_bytes: ClassVar[int | None] = None
     """The length that the program's process never exceeds; None if there is none."""
 
@@ -120,7 +124,10 @@ class _View(ABC):
         self._is_checked = is_checked
         self._damage = ""
         self._copy: bytearray | mmap = bytearray()
-        """Starts like the file, with spare capacity."""
+        """Starts like the file, with spare capacity; without the first `_dropped` records."""
+        self._dropped = 0
+        self._source: int | None = None
+        """Descriptor of the file, from which records that were dropped are read again; open only if some were."""
         self._published = self._there = 0
         self._unpacked = False
         self._packed: Packed | None = None
@@ -220,22 +227,44 @@ class _View(ABC):
         wanted = min(published, room)
         step = _CHUNK_BYTES // self._record_bytes
         while kept < wanted and not self._damage:
-            kept = self._read_chunk(fd, head, kept, min(wanted, kept + step))
+            end = min(wanted, kept + step)
+            kept = self._read_chunk(fd, head, kept, end)
+            if kept < end:
+                # A file that was truncated meanwhile, or never written, has no more; what was read before stays.
+                return
 
     def _read_chunk(self, fd: int, head: bytes, kept: int, wanted: int) -> int:
         """Read and check the records between two positions; return the position up to which there are sound ones."""
-        begin, end = (HEADER_BYTES + self._record_bytes * count for count in (kept, wanted))
+        begin, end = (HEADER_BYTES + self._record_bytes * (count - self._dropped) for count in (kept, wanted))
         if end > len(self._copy):
-            # A new buffer instead of a resized one: arrays may still refer to the old one.
-            larger = _zeros(end if not self._there else 2 * end)
-            larger[:HEADER_BYTES] = head
-            larger[HEADER_BYTES:begin] = memoryview(self._copy)[HEADER_BYTES:begin]
-            self._copy = larger
-        got = _read_into(fd, memoryview(self._copy)[begin:end], begin) // self._record_bytes
-        sound = self._sound(memoryview(self._copy).toreadonly(), kept, kept + got) if self._is_checked else kept + got
+            begin, end = self._make_room(fd, head, begin, end)
+        at = HEADER_BYTES + self._record_bytes * kept
+        got = _read_into(fd, memoryview(self._copy)[begin:end], at) // self._record_bytes
+        if self._is_checked:
+            sound = self._sound(memoryview(self._copy).toreadonly(), kept, kept + got)
+        elif got * self._record_bytes == _CHUNK_BYTES and is_hole(memoryview(self._copy)[begin:end]):
+            sound = kept
+        else:
+            sound = kept + got
         self._there = max(self._there, sound)
-        # A file that was truncated meanwhile has no more; what was read of it before stays.
-        return sound if got == wanted - kept else wanted
+        return sound
+
+    def _make_room(self, fd: int, head: bytes, begin: int, end: int) -> tuple[int, int]:
+        """Make the copy large enough; return where in it the next records begin and end."""
+        drops = 0
+        if self._is_checked and self._kept is not None:
+            drops = max(0, (begin - HEADER_BYTES) // self._record_bytes - self._kept)
+        if drops and self._source is None:
+            self._source = os.dup(fd)
+            finalize(self, os.close, self._source)
+        first = HEADER_BYTES + drops * self._record_bytes
+        begin, end = begin - first + HEADER_BYTES, end - first + HEADER_BYTES
+        # A new buffer instead of a resized one: arrays may still refer to the old one.
+        larger = _zeros(end if not self._there else 2 * end)
+        larger[:HEADER_BYTES] = head
+        larger[HEADER_BYTES:begin] = memoryview(self._copy)[first : first + begin - HEADER_BYTES]
+        self._copy, self._dropped = larger, self._dropped + drops
+        return begin, end
 
 
 def _all_finite(records: memoryview) -> bool:
@@ -272,6 +301,7 @@ class TelemetryView(_View):
     """The tick records of a run."""
 
     _name, _magic, _record_bytes = TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size
+    _kept = 1 << 14
 
     @property
     def count(self) -> int:
@@ -282,16 +312,38 @@ class TelemetryView(_View):
         return f"the last {count} of {self._published} records {'is' if count == 1 else 'are'} lost"
 
     def _sound(self, data: memoryview, begin: int, end: int) -> int:
+        first, after = (HEADER_BYTES + TICK_RECORD.size * (tick - self._dropped) for tick in (begin, end))
+        return self._sound_ticks(data[first:after], begin)
+
+    def _sound_ticks(self, part: memoryview, begin: int) -> int:
+        """Return up to which tick records, from that of tick `begin` on, are what the simulation writes."""
+        end = begin + len(part) // TICK_RECORD.size
         # Ticks are numbered from 0; all other fields are finite numbers. Whole columns, for their speed.
-        part = data[HEADER_BYTES + TICK_RECORD.size * begin : HEADER_BYTES + TICK_RECORD.size * end]
         if part.cast("I")[:: TICK_RECORD.size // 4].tolist() == list(range(begin, end)) and _all_finite(part):
             return end
-        for tick in range(begin, end):
-            record = TICK_RECORD.unpack_from(data, HEADER_BYTES + TICK_RECORD.size * tick)
+        for tick, record in enumerate(TICK_RECORD.iter_unpack(part), begin):
             if record[0] != tick or not all(abs(value) <= _MOST_NUMBER for value in record):
-                self._damage = f"record {tick} of {self._path.name} is not one that the simulation writes"
+                what = f"record {tick} of {self._path.name} is not one that the simulation writes"
+                self._damage = self._damage or what
                 return tick
         return end
+
+    def _read_again(self, begin: int, end: int) -> memoryview:
+        """Return records that were dropped from memory.
+
+        Those that have been changed meanwhile, which only the program can have done, are replaced by the oldest one
+        that is in memory: whoever follows the run learns of its damage, and must not fail before.
+        """
+        assert self._source is not None
+        size, step = TICK_RECORD.size, _CHUNK_BYTES // TICK_RECORD.size
+        found = memoryview(_zeros((end - begin) * size))
+        for first in range(begin, end, step):
+            part = found[(first - begin) * size : (first - begin + step) * size]
+            _read_into(self._source, part, HEADER_BYTES + first * size)
+            if lost := first + len(part) // size - (sound := self._sound_ticks(part, first)):
+                oldest = memoryview(self._copy)[HEADER_BYTES : HEADER_BYTES + size]
+                part[(sound - first) * size :] = bytes(oldest) * lost
+        return found.toreadonly()
 
     def last(self) -> TickRecord | None:
         """Return the newest record; None if there is none."""
@@ -313,20 +365,26 @@ class TelemetryView(_View):
             data, count = self._look()
             if not 0 <= index < count:
                 raise IndexError(f"no telemetry record {index}, there are {count}")
-        return TickRecord(*TICK_RECORD.unpack_from(data, HEADER_BYTES + index * TICK_RECORD.size))
+        if index < self._dropped:
+            return TickRecord(*TICK_RECORD.unpack(self._read_again(index, index + 1)))
+        return TickRecord(*TICK_RECORD.unpack_from(data, HEADER_BYTES + (index - self._dropped) * TICK_RECORD.size))
 
-    def array(self) -> np.ndarray[Any, Any]:
-        """Return all records as a structured array of `TICK_FIELDS`, shape (count,), read-only.
+    def array(self, first: int = 0) -> np.ndarray[Any, Any]:
+        """Return all records from one on as a structured array of `TICK_FIELDS`, read-only; later ones need a new call.
 
-        It is a view, not a copy; later records require another call.
+        It is a view, not a copy, unless the run is running and the first of them are no longer in memory.
         """
         import numpy as np
 
         kind = np.dtype(list(TICK_FIELDS))
         data, count = self._look()
-        if not count:
+        if first >= count:
             return np.empty(0, kind)
-        return np.frombuffer(data, kind, count, HEADER_BYTES)
+        if first >= self._dropped:
+            at = HEADER_BYTES + (first - self._dropped) * TICK_RECORD.size
+            return np.frombuffer(data, kind, count - first, at)
+        # Those that are still in memory, too: the whole array must be one buffer.
+        return np.frombuffer(self._read_again(first, count), kind)
 
 
 class OutputView(_View):

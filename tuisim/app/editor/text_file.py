@@ -17,7 +17,9 @@ from pathlib import Path
 
 from tuisim.atomic import make_private_folder, replacing
 from tuisim.config.folders import home_folder, programs_folder
+from tuisim.config.program_file import MAX_PROGRAM_BYTES
 from tuisim.errors import ConfigError
+from tuisim.regular_file import read_regular
 from tuisim.source import decode_source
 
 
@@ -40,7 +42,7 @@ def read_text(path: Path) -> tuple[str, Form]:
         ConfigError: the file cannot be read, or is not Python text.
     """
     try:
-        data = path.read_bytes()
+        data = read_regular(path, MAX_PROGRAM_BYTES, follow_links=True)
     except OSError as error:
         raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(path)) from None
     text, encoding = decode_source(data, str(path))
@@ -134,7 +136,7 @@ def keep_draft(path: str, text: str) -> None:
 def find_draft(path: str) -> Draft | None:
     """Return the draft of a program, None if there is no readable one."""
     try:
-        found = json.loads(file_of_program(FOLDER, path).read_bytes())
+        found = json.loads(read_regular(file_of_program(FOLDER, path), 2 * MAX_PROGRAM_BYTES))
         draft = Draft(str(found["path"]), str(found["text"]), float(found["written_s"]))
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         # Drafts are written atomically; a malformed file has nothing to restore.
