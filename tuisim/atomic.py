@@ -57,6 +57,7 @@ def replacing(
     # Not `tempfile`, which ignores the umask. Not `secrets`, which imports `random`: a child process imports this
     # module before it seeds `random`.
     beside = target.with_name(f".{target.name}.{os.urandom(4).hex()}{PART_SUFFIX}")
+    _unfinished[beside] = target
     try:
         with open(beside, "xb", opener=private if owner_only else None) as handle:
             yield handle
@@ -70,6 +71,27 @@ def replacing(
         with suppress(OSError):
             beside.unlink()
         raise
+    finally:
+        _unfinished.pop(beside, None)
+
+
+_unfinished: dict[Path, Path] = {}
+"""The temporary files that this process writes just now, with what they become."""
+
+
+def unfinished() -> list[Path]:
+    """Return the files that other threads of this process are writing."""
+    return list(_unfinished.values())
+
+
+def drop_unfinished() -> list[Path]:
+    """Remove the temporary files of what is being written, before the process ends; return what was to be written."""
+    dropped = []
+    for beside, target in list(_unfinished.items()):
+        with suppress(OSError):
+            beside.unlink()
+            dropped.append(target)
+    return dropped
 
 
 def sweep(folder: Path, name: str = "*") -> None:

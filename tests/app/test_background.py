@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from threading import Event
+import os
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from threading import Event, Thread
 
 import pytest
 from textual.app import App
 
 from tests.running import PATIENCE_S
 from tuisim.app import background
+from tuisim.atomic import replacing
 from tuisim.errors import TuisimError
 
 
@@ -32,7 +36,7 @@ class Worker(App[None]):
         self.heard.append(str(error))
 
 
-def nothing(app: App[None]) -> None:
+def nothing(_: object) -> None:
     pass
 
 
@@ -70,3 +74,73 @@ async def test_work_passes_on(
         while not ended.is_set() or (heard and not app.heard):
             await pilot.pause()
     assert app.heard == heard
+
+
+async def test_an_app_is_left_while_work_goes_on() -> None:
+    may_end, began, app = Event(), Event(), Worker()
+
+    def work() -> None:
+        began.set()
+        may_end.wait()
+
+    async with app.run_test() as pilot:
+        background.run(app, work, nothing)
+        while not began.is_set():
+            await pilot.pause()
+        app.exit()
+    # It is left by now; neither the loop of the app nor Python wait for this thread.
+    working = [thread for thread in background._threads if thread.is_alive()]
+    may_end.set()
+    assert [thread.daemon for thread in working] == [True]
+
+
+class LeftError(Exception):
+    """Stands for the end of the process."""
+
+
+@pytest.fixture
+def work_that_writes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Path, Event]]:
+    """A file that a thread writes until it may go on."""
+    began, may_end, path = Event(), Event(), tmp_path / "movie.gif"
+
+    def write() -> None:
+        # The file may have been dropped.
+        with suppress(FileNotFoundError), replacing(path) as handle:
+            handle.write(b"movie")
+            began.set()
+            may_end.wait()
+
+    def leave(code: int) -> None:
+        raise LeftError(code)
+
+    thread = Thread(target=write, daemon=True)
+    monkeypatch.setattr(background, "_threads", [thread])
+    monkeypatch.setattr(os, "_exit", leave)
+    thread.start()
+    began.wait()
+    yield path, may_end
+    may_end.set()
+    thread.join()
+
+
+def test_what_is_nearly_written_is_finished(work_that_writes: tuple[Path, Event]) -> None:
+    path, may_end = work_that_writes
+    may_end.set()
+    assert background.leave(3) == 3
+    assert path.read_bytes() == b"movie"
+
+
+def test_what_takes_longer_is_dropped_and_said(
+    work_that_writes: tuple[Path, Event], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, _ = work_that_writes
+    monkeypatch.setattr(background, "FINISHES_WITHIN_S", 0.0)
+    with pytest.raises(LeftError, match="3"):
+        background.leave(3)
+    assert list(path.parent.iterdir()) == []
+    assert f"{path} was not written" in capsys.readouterr().err
+
+
+def test_an_app_without_work_is_left_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(background, "_threads", [])
+    assert background.leave(3) == 3

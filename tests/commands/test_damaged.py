@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from tests.conftest import Command
+from tests.conftest import ROOT, Command
 from tests.runs.run_recorder import PROGRAM, Recorder
 from tuisim.cli import EXIT_OUR_MISTAKE
 from tuisim.core.profile import ROBOLAB
@@ -168,18 +168,38 @@ DAMAGES: dict[str, Damage] = {
     "a mat that nobody has": key("spec.world.background", "Nowhere"),
     "a tick rate of 0": key("spec.profile.tick_hz", 0),
     "a seed of words": key("spec.seed", "x"),
+    "a tick rate that is no number": key("spec.profile.tick_hz", float("nan")),
+    "a tick rate without end": key("spec.profile.tick_hz", 10**30),
+    "a profile without a name": key("spec.profile.name", [[]]),
+    "a robot that is true": key("spec.robot.name", True),
+    "a pen of a table": key("spec.robot.pen.down", {}),
+    "a mat of a number": key("spec.world.background", 0),
+    "a mat of a table": key("spec.world.background", {}),
+    "a start in words": key("spec.world.start.heading_deg", ""),
+    "a start without end": key("spec.world.start.x_mm", 1e308),
+    "a folder of a number": key("program.working_directory", 2**63),
+    "a folder of lists": key("program.working_directory", [[]]),
+    "a name that no file can have": key("program.name", "\ud800"),
+    "answers of a number": key("options.answers", 1.5),
+    "answers of lists": key("options.answers", [[]]),
+    "a mat without sums": key("field", {"width_px": 2362, "height_px": 1143, "pixels": "/x", "sums": []}),
     "no robot": key("spec.robot", None),
     "a catalogue with holes": catalogue('UPDATE runs SET seed = "x", samples = "y"'),
     "a catalogue of bytes": catalogue("UPDATE runs SET program = x'ff00'"),
     "a catalogue without its table": catalogue("DROP TABLE runs"),
     "a catalogue without a column": catalogue("ALTER TABLE runs DROP COLUMN summary"),
+    "an id of 10,000 digits": catalogue(f"UPDATE runs SET id = '{'9' * 10_000}' WHERE number = 1"),
+    "an id elsewhere": catalogue("UPDATE runs SET id = '../x' WHERE number = 1"),
+    "a seed of 10,000 digits": catalogue(f"UPDATE runs SET seed = '{'9' * 10_000}' WHERE number = 1"),
+    "a number of 10,000 digits": text(RUN_FILE, '{"format": 1, "number": ' + "9" * 10_000 + "}"),
     "a catalogue of text": lambda folder: (folder.parent.parent / CATALOGUE_FILE).write_text("x" * 5000),
 }
 
 WORDS = (
     "runs", "runs --json", "runs show 1", "runs show 1 --json", "runs export 1 a.csv", "log summary 1", "log bands 1",
     "runs export 1 --telemetry a.parquet", "log reckon 1", "log diff 1 2", "log diff 2 1 --json", "log report 1",
-    "log plot 1 --telemetry --size 60x20", "runs compact 1",
+    "log plot 1 --telemetry --size 60x20", "runs compact 1", "runs rerun 1", "runs picture 1 --out a.png",
+    f"goals check {ROOT / 'programs' / 'square_goals.toml'} 1",
 )  # fmt: skip
 
 

@@ -17,6 +17,7 @@ from tests.conftest import Command
 from tests.runs.run_recorder import PROGRAM, Recorder
 from tuisim.cli import run_command
 from tuisim.commands import runs as runs_command
+from tuisim.commands.echo import size
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
@@ -60,7 +61,7 @@ def test_list_shows_sizes(make: Make, here: Command) -> None:
     ("count", "shown"), [(0, "0.0 kB"), (1234, "1.2 kB"), (29_400_000, "29.4 MB"), (5e15, "5000.0 TB")]
 )
 def test_size(count: int, shown: str) -> None:
-    assert runs_command.size(count) == shown
+    assert size(count) == shown
 
 
 AGES = {

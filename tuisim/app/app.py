@@ -20,7 +20,7 @@ from tuisim.app.actions import time_travel
 from tuisim.app.actions.app import welcome
 from tuisim.app.actions.keys import ACTIONS, PAGES, footer_actions, working
 from tuisim.app.actions.lesson import takes_pages
-from tuisim.app.background import is_leaving
+from tuisim.app.background import is_leaving, leave
 from tuisim.app.branch import branch_message
 from tuisim.app.brick_hint import BrickHint
 from tuisim.app.debugger import AppDebugger
@@ -590,4 +590,4 @@ def run_app(settings: AppSettings) -> int:
     most_colors = choose_colors(settings.colors)
     lab = LabApp(settings, replace(picture_mode_for(settings.cells), most_colors=most_colors))
     lab.run()
-    return lab.return_code or 0
+    return leave(lab.return_code or 0)

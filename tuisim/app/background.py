@@ -2,18 +2,31 @@
 
 from __future__ import annotations
 
+import asyncio
+import os
+import sys
+import time
 from collections.abc import Callable
+from contextlib import suppress
+from contextvars import copy_context
 from functools import partial
+from threading import Thread
 from typing import Any, ParamSpec, TypeVar
 
 from textual.app import App
 from textual.dom import DOMNode
 from textual.worker import get_current_worker
 
+from tuisim.atomic import drop_unfinished, unfinished
 from tuisim.errors import TuisimError
 
 Made = TypeVar("Made")
 Given = ParamSpec("Given")
+
+FINISHES_WITHIN_S = 1.0
+"""So long an app that has been left waits for files that are being written."""
+_LOOK_S = 0.02
+_threads: list[Thread] = []
 
 
 def is_leaving(app: App[Any]) -> bool:
@@ -45,7 +58,61 @@ def run(
         exclusive: Cancel other work of the group.
     """
     thread = partial(_in_thread, node.app, work, then, failed)
-    node.run_worker(thread, thread=True, group=group, exclusive=exclusive)
+    node.run_worker(_awaited(thread), group=group, exclusive=exclusive)
+
+
+async def _awaited(work: Callable[[], None]) -> None:
+    """Call a function in a thread of its own.
+
+    Not in one of asyncio's, which the app would wait for when it has been left, however long that takes.
+    """
+    loop = asyncio.get_running_loop()
+    done: asyncio.Future[None] = loop.create_future()
+
+    def settle(error: BaseException | None) -> None:
+        if done.cancelled():
+            return
+        if error is None:
+            done.set_result(None)
+        else:
+            done.set_exception(error)
+
+    def target() -> None:
+        problem: BaseException | None = None
+        try:
+            work()
+        # Raised again where the work is awaited.
+        except BaseException as error:
+            problem = error
+        # The app has been left, and its loop is closed.
+        with suppress(RuntimeError):
+            loop.call_soon_threadsafe(settle, problem)
+
+    _threads[:] = [thread for thread in _threads if thread.is_alive()]
+    # With the context, which tells the thread its worker.
+    _threads.append(Thread(target=copy_context().run, args=(target,), daemon=True))
+    _threads[-1].start()
+    await done
+
+
+def leave(code: int) -> int:
+    """Return the exit code of an app that has been left; end the process here if threads are still at work.
+
+    A user who has left waits for nothing but, for a moment, for files that are being written. Those that are not
+    finished by then are dropped, which is said.
+    """
+    give_up = time.monotonic() + FINISHES_WITHIN_S
+    while any(thread.is_alive() for thread in _threads):
+        if not unfinished() or time.monotonic() > give_up:
+            for path in drop_unfinished():
+                print(f"tuisim: {path} was not written: the app was left before it was complete", file=sys.stderr)
+            for stream in (sys.stdout, sys.stderr):
+                with suppress(OSError, ValueError):
+                    stream.flush()
+            # Python would wait for what they hold, such as a lock of a library.
+            os._exit(code)
+        time.sleep(_LOOK_S)
+    return code
 
 
 def _in_thread(

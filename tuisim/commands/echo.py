@@ -245,3 +245,13 @@ def _bar() -> Bar:
     return Progress(
         *columns, console=console, auto_refresh=False, transient=True, redirect_stdout=False, redirect_stderr=False
     )
+
+
+def size(count: int) -> str:
+    """Format a number of bytes, such as `1.2 MB`."""
+    value, unit = count / 1000, "kB"
+    for larger in ("MB", "GB", "TB"):
+        if value < 1000:
+            break
+        value, unit = value / 1000, larger
+    return f"{value:.1f} {unit}"

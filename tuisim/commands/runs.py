@@ -10,7 +10,7 @@ from dataclasses import asdict
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from tuisim.commands.echo import Progress, echo, echo_error, echo_json, echo_json_head, echo_lines, table, tell
+from tuisim.commands.echo import Progress, echo, echo_error, echo_json, echo_json_head, echo_lines, size, table, tell
 from tuisim.commands.exit_status import describe, last_state
 from tuisim.commands.movies import movie, picture
 from tuisim.config.command_line import AS_JSON, Group, Value, argument, command, option
@@ -72,16 +72,6 @@ def list_runs(as_json: bool) -> int:
         heads = ("RUN", "UTC", "PROGRAM", "MAT", "PROFILE", "SEED", "END", "SECONDS", "SAMPLES", "    SIZE", "", "")
         echo_lines(table(heads, rows))
     return 0
-
-
-def size(count: int) -> str:
-    """Format a number of bytes, such as `1.2 MB`."""
-    value, unit = count / 1000, "kB"
-    for larger in ("MB", "GB", "TB"):
-        if value < 1000:
-            break
-        value, unit = value / 1000, larger
-    return f"{value:.1f} {unit}"
 
 
 def _cut(text: str) -> str:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import stat
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 import pyarrow as pa
 
@@ -266,6 +268,8 @@ def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterat
             if data.lstrip().startswith((b"{", b"[")):
                 cutter = LineCutter(notes, MAX_DOCUMENT_BYTES)
         read += len(data)
+        if size and len(data) == BLOCK_BYTES and data.count(0) == len(data):
+            read = _after_hole(cast("BinaryIO", handle), read)
         block = cutter.feed(data) if data else cutter.finish()
         block, held = (block if held is None else held.followed_by(block)), None
         if reader is None and block is not None and data and len(list(islice(block.lines(), 2))) < 2:
@@ -281,6 +285,20 @@ def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterat
             if isinstance(reader, DocumentReader):
                 yield part, reader.finish()
             return
+
+
+def _after_hole(handle: BinaryIO, at: int) -> int:
+    """Skip what was never written to a file, which may seem to be of any length; return the position after it."""
+    # Not every file system can tell.
+    with suppress(OSError, AttributeError):
+        try:
+            at = os.lseek(handle.fileno(), at, os.SEEK_DATA)
+        except OSError as error:
+            if error.errno != errno.ENXIO:
+                raise
+            at = handle.seek(0, os.SEEK_END)
+        handle.seek(at)
+    return at
 
 
 def _refuse_binary(data: bytes) -> None:

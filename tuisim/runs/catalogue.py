@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from tuisim.atomic import make_private_folder, private
-from tuisim.errors import LogError
+from tuisim.errors import LogError, shortened
 from tuisim.protocol import RUN_STATES, RunState
 
 CATALOGUE_FILE = "runs.db"
@@ -78,6 +78,8 @@ class RunInfo:
 
 _MOST_RUNS = 1 << 40
 """A greater number than that of any run comes from a damaged file, and would leave none for the next run."""
+_MOST_ID = 255
+"""The longest name of a folder."""
 _NAMES = tuple(field.name for field in fields(RunInfo))
 _COLUMNS = ", ".join(f'"{name}"' for name in _NAMES)
 _INSERT = f"INSERT INTO runs ({_COLUMNS}) VALUES ({', '.join('?' * len(_NAMES))})"
@@ -316,6 +318,9 @@ def _info(row: tuple[Any, ...]) -> RunInfo:
             raise ValueError(f"{count!r} is not a number")
     words = (text.decode() for text in (*texts, end, summary, tags))
     run_id, created, program, background, profile, end, summary, tags = words
+    if not run_id or run_id.startswith(".") or {os.sep, "\0"} & set(run_id) or len(os.fsencode(run_id)) > _MOST_ID:
+        # It must name a folder beside the others: the user may have it removed.
+        raise ValueError(f"{shortened(run_id)} is not an id")
     state = RUN_STATES[end] if end else None
     return RunInfo(
         number, run_id, created, program, background, profile, int(seed), state, ticks, time_s, samples, summary, tags

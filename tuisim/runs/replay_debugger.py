@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING
 from tuisim import protocol
 from tuisim.errors import TuisimError
 from tuisim.protocol import BEFORE_NEXT_TICK, Ended, Inspected, LineHistory, Paused
+from tuisim.runs.temporary import owned_folder
 
 if TYPE_CHECKING:
     from tuisim.runs.handle import RunHandle
@@ -129,7 +129,7 @@ class ReplayDebugger:
             hold_at=(at.tick, at.ordinal), trace_from_tick=traced_from if traced_from >= 0 else None,
         )  # fmt: skip
         try:
-            self._folder = Path(tempfile.mkdtemp(prefix="tuisim-"))
+            self._folder = owned_folder()
             self._run = start_run(recording.program, recording.spec, options, _scratch(self._folder))
         except (TuisimError, OSError) as error:
             self.busy = False

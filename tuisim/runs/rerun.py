@@ -81,6 +81,8 @@ def _stopped_by_itself(run: StoredRun) -> bool:
 
 def _options(run: StoredRun) -> RunOptions:
     last = run.telemetry.last()
+    if last is None and not run.folder.is_dir():
+        raise LogError(f"no run {str(run.number or run.id)!r}: it has been removed", file=str(run.folder))
     if last is None:
         raise LogError(run.telemetry.note or "has no recording: it ended before its first tick", file=str(run.folder))
     # A run that was stopped might never end by itself; any other ends before the tick after its last. The stop comes

@@ -81,7 +81,8 @@ def hold(folder: Path) -> int:
 def is_held(folder: Path) -> bool | None:
     """Return whether a living process holds the lock; None if it was never acquired, or cannot be asked for."""
     try:
-        descriptor = os.open(folder / LOCK_FILE, os.O_RDONLY | os.O_CLOEXEC)
+        # Not blocked by a pipe in its place.
+        descriptor = os.open(folder / LOCK_FILE, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError:
         return None
     try:

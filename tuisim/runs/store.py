@@ -46,7 +46,7 @@ from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
 
 RUNS_FOLDER = "runs"
-_REMOVED = ".removed"
+REMOVED = ".removed"
 """End of the name of a folder that is about to be deleted."""
 LAST = "last"
 _MAY_CHANGE = (None, Unended.INTERRUPTED, Unended.DAMAGED)
@@ -231,6 +231,9 @@ class RunStore:
             raise LogError(f"run {run_id} is still running", "stop it first")
         try:
             _delete(folder)
+        except FileNotFoundError as error:
+            # Another process has been faster.
+            raise LogError(f"no run {run_id!r}", file=str(self._runs)) from error
         except OSError as error:
             raise LogError(f"cannot be removed: {error.strerror or error}", file=str(folder)) from error
         # The run is gone. If the catalogue cannot be written now, it will be updated later.
@@ -249,6 +252,9 @@ class RunStore:
         changes: list[tuple[str, dict[str, Any]]] = []
         for row in self._rows():
             known, change, counted = self._completed(row, left)
+            if not change and row.end in _MAY_CHANGE and not self.folder(row.id).is_dir():
+                # Removed by another process since it was listed.
+                continue
             rows.append(known)
             left -= counted
             if change:
@@ -305,7 +311,13 @@ class RunStore:
         if run.strip(".") and os.path.isdir(self.folder(run)):
             return read_run(self.folder(run))
         info = self.find(run)
-        return replace(read_run(self.folder(info.id)), number=info.number)
+        try:
+            return replace(read_run(self.folder(info.id)), number=info.number)
+        except LogError as error:
+            if os.path.lexists(self.folder(info.id) / RUN_FILE):
+                raise
+            # Another process has removed it since it was found.
+            raise LogError(f"no run {run!r}", file=str(self.home)) from error
 
     # Internals
 
@@ -344,11 +356,14 @@ class RunStore:
         """Return the catalogue row of a folder; None if it holds no run (yet)."""
         # The folder's name is the id: a copied run is another run.
         run_id = folder.name
-        if not os.path.exists(folder / RUN_FILE):
+        if not os.path.lexists(folder / RUN_FILE):
             return None
         try:
             return _info_from(run_id, read_run_file(folder))
         except LogError as error:
+            if not os.path.lexists(folder / RUN_FILE):
+                # Another process has just removed it.
+                return None
             summary = error.message
         except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
             summary = f"{RUN_FILE} is damaged: {error!r}"
@@ -492,13 +507,13 @@ def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
 def _delete(folder: Path) -> None:
     """Delete a run folder; of a symbolic link only the link."""
     # Renamed first: a partly deleted run must not look like a run.
-    removed = folder.with_name(f".{folder.name}.{secrets.token_hex(4)}{_REMOVED}")
+    removed = folder.with_name(f".{folder.name}.{secrets.token_hex(4)}{REMOVED}")
     os.replace(folder, removed)
     if removed.is_symlink():
         removed.unlink()
         return
     # Also those that another process could not delete to the end; one that is at it deletes the rest.
-    for left in folder.parent.glob(f".*{_REMOVED}"):
+    for left in folder.parent.glob(f".*{REMOVED}"):
         with suppress(FileNotFoundError):
             shutil.rmtree(left, ignore_errors=left != removed)
 

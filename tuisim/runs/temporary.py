@@ -19,7 +19,7 @@ from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError
 from tuisim.protocol import Ended
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, new_run_data, read_run, run_document, write_run_file
-from tuisim.runs.side_files import hold
+from tuisim.runs.side_files import hold, is_held
 from tuisim.runs.store import NewRun
 from tuisim.source import Program
 
@@ -27,7 +27,9 @@ _MEMORY = Path("/dev/shm")
 """A file system in memory, on Linux: to create and delete files on a disk takes longer than a short run."""
 _FREE_BYTES = 2 << 30
 """It is used with at least this much space: programs may print a lot."""
-_PREFIX = "tuisim-batch-"
+PREFIX = "tuisim-"
+"""Each folder that is created here begins with it."""
+_BATCH_PREFIX = "tuisim-batch-"
 _LEFT_OVER_S = 24 * 3600.0
 
 
@@ -38,21 +40,45 @@ def batch_folder() -> Path:
         LogError: it cannot be created.
     """
     parent = _parent()
-    for folder in parent.glob(f"{_PREFIX}*"):
+    for folder in parent.glob(f"{_BATCH_PREFIX}*"):
         with suppress(OSError):
-            if time.time() - folder.stat().st_mtime > _LEFT_OVER_S:
+            if time.time() - folder.stat().st_mtime > _LEFT_OVER_S and not is_held(folder):
                 shutil.rmtree(folder, ignore_errors=True)
-    return _new_folder(parent, _PREFIX)
+    return owned_folder(_BATCH_PREFIX, parent)
+
+
+def places() -> tuple[Path, ...]:
+    """Return the folders in which temporary folders may be."""
+    return Path(tempfile.gettempdir()), _MEMORY
+
+
+def owned_folder(prefix: str = PREFIX, parent: Path | None = None) -> Path:
+    """Create a folder that counts as used as long as this process lives; its name begins with the prefix.
+
+    Raises:
+        LogError: it cannot be created.
+    """
+    folder = _new_folder(parent or Path(tempfile.gettempdir()), prefix)
+    for old in [old for old in _LOCKS if not old.exists()]:
+        os.close(_LOCKS.pop(old))
+    # Where it cannot be locked, nothing shows that it is used: it is never removed by others either.
+    with suppress(OSError):
+        _LOCKS[folder] = hold(folder)
+    return folder
+
+
+_LOCKS: dict[Path, int] = {}
+"""The locks of the folders of this process."""
 
 
 @contextmanager
-def temporary_home(prefix: str = "tuisim-") -> Iterator[Path]:
+def temporary_home(prefix: str = PREFIX) -> Iterator[Path]:
     """Create a home folder for temporary runs, and delete it afterwards; its name begins with the prefix.
 
     Raises:
         LogError: it cannot be created.
     """
-    folder = _new_folder(Path(tempfile.gettempdir()), prefix)
+    folder = owned_folder(prefix)
     try:
         yield folder
     finally:

@@ -13,6 +13,7 @@ from tuisim.analysis.source import LogRequest
 from tuisim.app.action import key_bindings
 from tuisim.app.analyser.actions.keys import ACTIONS
 from tuisim.app.analyser.screen import LogScreen
+from tuisim.app.background import leave
 from tuisim.app.terminal.picture_mode import PictureMode, choose_colors, picture_mode_for
 from tuisim.app.terminal.terminal_app import TerminalApp
 from tuisim.config.options import AUTO
@@ -82,4 +83,4 @@ def run_analyser(request: LogRequest) -> int:
     app.run()
     if app.failure is not None:
         raise app.failure
-    return app.return_code or 0
+    return leave(app.return_code or 0)
