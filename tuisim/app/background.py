@@ -58,7 +58,9 @@ def run(
         exclusive: Cancel other work of the group.
     """
     thread = partial(_in_thread, node.app, work, then, failed)
-    node.run_worker(_awaited(thread), group=group, exclusive=exclusive)
+    # Not begun here: a node that is being removed never awaits it.
+    awaited: Any = partial(_awaited, thread)
+    node.run_worker(awaited, group=group, exclusive=exclusive)
 
 
 async def _awaited(work: Callable[[], None]) -> None:
