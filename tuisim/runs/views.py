@@ -52,6 +52,8 @@ if TYPE_CHECKING:
 _LARGE_BYTES = 1 << 20
 _CHUNK_BYTES = 1 << 22
 """So much is read and checked at a time: a file may claim, or seem to have, any length."""
+_MANY_TICKS = 1 << 13
+"""From this number on it is worth importing numpy to check them."""
 _MOST_NUMBER = 1e12
 """Larger than any position, angle or speed that a run can reach."""
 
@@ -267,13 +269,28 @@ class _View(ABC):
         return begin, end
 
 
-def _all_finite(records: memoryview) -> bool:
-    """Return whether all numbers in tick records are finite, and not beyond what a run can reach."""
-    doubles, floats = records.cast("d"), records.cast("f")
+def _are_few_sound(part: memoryview, begin: int, end: int) -> bool:
+    """Return whether tick records have these ticks, and all their numbers are finite, and not beyond what a run can
+    reach."""
+    doubles, floats = part.cast("d"), part.cast("f")
     columns = [doubles[at :: TICK_RECORD.size // 8] for at in range(1, 6)]
     columns += [floats[at :: TICK_RECORD.size // 4] for at in range(12, 15)]
+    ticks = part.cast("I")[:: TICK_RECORD.size // 4].tolist()
     # NaN is not below anything, nor is a sum with it.
-    return all(sum(map(abs, column.tolist())) <= _MOST_NUMBER * len(column) for column in columns)
+    return ticks == list(range(begin, end)) and all(
+        sum(map(abs, column.tolist())) <= _MOST_NUMBER * len(column) for column in columns
+    )
+
+
+def _are_all_sound(part: memoryview, begin: int, end: int) -> bool:
+    """Return the same as `_are_few_sound` for many records, a hundred times faster."""
+    import numpy as np
+
+    records = np.frombuffer(part, np.dtype(list(TICK_FIELDS)))
+    numbers = [name for name, _ in TICK_FIELDS[1:]]
+    return bool((records["tick"] == np.arange(begin, end)).all()) and all(
+        bool((np.abs(records[name]) <= _MOST_NUMBER).all()) for name in numbers
+    )
 
 
 def _zeros(size: int) -> bytearray | mmap:
@@ -319,7 +336,8 @@ class TelemetryView(_View):
         """Return up to which tick records, from that of tick `begin` on, are what the simulation writes."""
         end = begin + len(part) // TICK_RECORD.size
         # Ticks are numbered from 0; all other fields are finite numbers. Whole columns, for their speed.
-        if part.cast("I")[:: TICK_RECORD.size // 4].tolist() == list(range(begin, end)) and _all_finite(part):
+        are_all = _are_all_sound if end - begin >= _MANY_TICKS else _are_few_sound
+        if are_all(part, begin, end):
             return end
         for tick, record in enumerate(TICK_RECORD.iter_unpack(part), begin):
             if record[0] != tick or not all(abs(value) <= _MOST_NUMBER for value in record):
