@@ -17,6 +17,7 @@ import pytest
 from tests.runs.run_recorder import Recorder
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
+from tuisim.runs.recorded_run import RowIndex
 from tuisim.runs.records import (
     HEADER_BYTES,
     OUTPUT_FILE,
@@ -365,3 +366,51 @@ def test_what_a_program_changes_later_is_damage_and_no_error(tmp_path: Path, cut
     assert np.isfinite(view.record(7).x_mm)
     assert len(view.array()) == LONG + 10
     assert "record 7" in view.damage
+
+
+LINES = 40_000
+
+
+def printed(folder: Path) -> OutputView:
+    """Follow a run that prints much, and one line of 100 kB."""
+    writer, view = OutputWriter(folder), OutputView(folder, is_checked=True)
+    for number in range(LINES):
+        writer.write(
+            b"x" * 100_000 if number == 100 else (b"line %d" % number).ljust(100), number, number, 1, Stream.STDOUT
+        )
+        if number % 1000 == 0:
+            view.new_rows()
+    view.new_rows()
+    writer.close()
+    return view
+
+
+def test_much_output_takes_little_memory_and_is_read_again_from_its_file(tmp_path: Path) -> None:
+    view = printed(tmp_path)
+    assert view._dropped > 0
+    assert len(view._copy) < 5 << 20
+    rows = view.all_rows()
+    assert [row.tick for row in rows] == list(range(LINES))
+    assert [rows[at].text.strip() for at in (0, 99, 101, LINES - 1)] == [
+        "line 0",
+        "line 99",
+        "line 101",
+        f"line {LINES - 1}",
+    ]
+    assert len(rows[100].text) == 100_000
+    assert sum(1 for _ in view.raw_rows()) == LINES
+    assert view.damage == ""
+
+
+def test_output_that_a_program_changes_later_is_damage_and_no_error(tmp_path: Path) -> None:
+    view = printed(tmp_path)
+    index = RowIndex(view)
+    index.take(LINES)
+    with (tmp_path / OUTPUT_FILE).open("r+b") as stream:
+        stream.seek(HEADER_BYTES)
+        stream.write(b"\xff" * 5000)
+    assert len(index) == LINES
+    assert index.row(0).text == ""
+    assert index.row(LINES - 1).text.strip() == f"line {LINES - 1}"
+    assert view.all_rows() == []
+    assert "was changed" in view.damage

@@ -164,7 +164,8 @@ class RowIndex:
     def __init__(self, output: OutputView) -> None:
         self._output = output
         self._end = 0
-        self._ticks, self._lines, self._starts = array("I"), array("I"), array("Q")
+        # 16 bytes a row: a program may print for hours.
+        self._ticks, self._lines, self._starts = array("I"), array("I"), array("I")
         self._texts: array[int] = array("I")
         """Indices of the readable rows."""
         self._faces: dict[int, array[int]] = {stream: array("I") for stream in _FACE_STREAMS}
@@ -227,7 +228,9 @@ class RowIndex:
 
     def row(self, number: int) -> OutputRow:
         """Return one row by its index, from 0."""
-        return next(self._output.rows_from(self._starts[number]))[0]
+        # Nothing, if the program has changed its recording meanwhile.
+        nothing = OutputRow("", self._ticks[number], 0, 0, Stream.NOTE), 0
+        return next(self._output.rows_from(self._starts[number]), nothing)[0]
 
     def rows(self, first: int, step: int = 1) -> Iterator[OutputRow]:
         """Yield the rows from an index on; with a step of -1 backwards."""

@@ -52,6 +52,8 @@ if TYPE_CHECKING:
 _LARGE_BYTES = 1 << 20
 _CHUNK_BYTES = 1 << 22
 """So much is read and checked at a time: a file may claim, or seem to have, any length."""
+_AGAIN_BYTES = 1 << 14
+"""So much is read at a time of rows that are no longer in memory."""
 _MANY_TICKS = 1 << 13
 """From this number on it is worth importing numpy to check them."""
 _MOST_NUMBER = 1e12
@@ -168,6 +170,11 @@ class _View(ABC):
             end: The one after the last.
         """
 
+    @property
+    def _done(self) -> int:
+        """How many records need not be checked any more."""
+        return self._there
+
     def _look(self) -> tuple[memoryview, int]:
         """Return the recording, and the length that exists."""
         there = self._extent()
@@ -255,7 +262,8 @@ class _View(ABC):
         """Make the copy large enough; return where in it the next records begin and end."""
         drops = 0
         if self._is_checked and self._kept is not None:
-            drops = max(0, (begin - HEADER_BYTES) // self._record_bytes - self._kept)
+            drops = min((begin - HEADER_BYTES) // self._record_bytes - self._kept, self._done - self._dropped)
+            drops = max(0, drops)
         if drops and self._source is None:
             self._source = os.dup(fd)
             finalize(self, os.close, self._source)
@@ -411,6 +419,7 @@ class OutputView(_View):
     _name, _magic, _record_bytes = OUTPUT_FILE, OUTPUT_MAGIC, 1
     # The file is larger by its last step of growth.
     _most_bytes = 2 * MAX_OUTPUT_BYTES
+    _kept = 1 << 20
     _seen = 0
     _checked = 0
     """Up to here there are whole and sound rows."""
@@ -424,20 +433,24 @@ class OutputView(_View):
         return f"its last {counted(count, 'byte is', 'bytes are')} lost"
 
     def _sound(self, data: memoryview, begin: int, end: int) -> int:
-        at = self._checked
+        at, shift = self._checked, HEADER_BYTES - self._dropped
         while at + OUTPUT_ROW.size <= end:
-            size, _, _, _, stream = OUTPUT_ROW.unpack_from(data, HEADER_BYTES + at)
+            size, _, _, _, stream = OUTPUT_ROW.unpack_from(data, shift + at)
             after = at + OUTPUT_ROW.size + size
             if after > end and after <= self._published:
                 # The rest of the row has not been read yet, or is lost.
                 break
-            body = slice(HEADER_BYTES + after - size, HEADER_BYTES + after)
+            body = slice(shift + after - size, shift + after)
             if after > end or (stream in DRAWN_STREAMS and not is_sound(Stream(stream), bytes(data[body]))):
                 self._damage = f"the row at byte {at} of {self._path.name} is not one that the brick writes"
                 return at
             at = after
         self._checked = at
         return end
+
+    @property
+    def _done(self) -> int:
+        return self._checked
 
     def new_rows(self, limit: int | None = None) -> list[OutputRow]:
         """Return the rows since the last call, at most `limit`; the others follow with the next call."""
@@ -454,11 +467,41 @@ class OutputView(_View):
     def rows_from(self, position: int) -> Iterator[tuple[OutputRow, int]]:
         """Yield the rows from a position on, 0 or one that was yielded before, each with the position after it."""
         data, end = self._look()
-        yield from output_rows(data, position, end)
+        dropped = self._dropped
+        for row, after in self._rows_again(position, dropped):
+            yield row, after
+            position = after
+        if position >= dropped:
+            for row, after in output_rows(data, position - dropped, end - dropped):
+                yield row, dropped + after
+
+    def _rows_again(self, position: int, end: int) -> Iterator[tuple[OutputRow, int]]:
+        """Yield the rows between two positions that were dropped from memory, as far as the program left them."""
+        size = _AGAIN_BYTES
+        while position < end and self._source is not None:
+            part = bytearray(HEADER_BYTES + size)
+            got = _read_into(self._source, memoryview(part)[HEADER_BYTES:], HEADER_BYTES + position)
+            begin = position
+            for row, after in output_rows(memoryview(part), 0, got):
+                if row.stream in DRAWN_STREAMS and not is_sound(row.stream, row.text.encode()):
+                    break
+                position = begin + after
+                yield row, position
+                if position >= end:
+                    return
+            if position == begin:
+                # A row longer than that; or one that was changed meanwhile, and seems to be.
+                if got < size or size > MAX_OUTPUT_BYTES:
+                    self._damage = self._damage or f"the row at byte {position} of {self._path.name} was changed"
+                    return
+                size *= 4
 
     def raw_rows(self) -> Iterator[tuple[int, bytes]]:
         """Yield stream and text of each row, the text as bytes of the file."""
-        return raw_rows(*self._look())
+        data, end = self._look()
+        if self._dropped:
+            return ((row.stream, row.text.encode()) for row in self.rows())
+        return raw_rows(data, end)
 
     def rows(self) -> Iterator[OutputRow]:
         """Yield the rows of `all_rows` one by one: a run may print a million lines."""
