@@ -221,6 +221,7 @@ class Format:
 
 _LOG = _tells("log summary FILE", "log bands FILE --json", "log export FILE --out out.csv")
 _SHOWN = ("runs show RUN", "log summary RUN", "log export RUN --telemetry --out out.csv", "runs list")
+_USED = ("log report RUN", "log plot RUN", "runs rerun RUN", "runs picture RUN --out out.png", "runs compact RUN")
 FORMATS: Mapping[str, Format] = {
     "csv": Format("log.csv", _LOG, Syntax.CSV, is_slow=True),
     "jsonl": Format("log.jsonl", _LOG, Syntax.ROWS, is_slow=True),
@@ -250,7 +251,7 @@ FORMATS: Mapping[str, Format] = {
     "stop": Format(STOP_FILE, _reads(lambda path: read_stop_tick(Path(path).parent)), Syntax.JSON),
     "telemetry": Format("home/runs/plain/telemetry.bin", _run("plain", *_SHOWN), Syntax.FIELDS, is_slow=True),
     "output": Format("home/runs/plain/output.bin", _run("plain", *_SHOWN), Syntax.FIELDS, is_slow=True),
-    "run": Format("home/runs/plain/run.json", _run("plain", *_SHOWN), Syntax.JSON, is_slow=True),
+    "run": Format("home/runs/plain/run.json", _run("plain", *_SHOWN, *_USED), Syntax.JSON, is_slow=True),
     "packed": Format("home/runs/packed/telemetry.bin.packed", _run("packed", *_SHOWN), Syntax.FIELDS, is_slow=True),
     "catalogue": Format("home/runs.db", _catalogue, Syntax.SQLITE, is_slow=True),
 }

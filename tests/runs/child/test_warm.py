@@ -150,3 +150,16 @@ def test_a_program_that_harms_its_parent_does_not_keep_the_next_one_from_running
     over(start("print('A: 1')"))
     over(start(f"import os, signal\nos.kill(os.getppid(), signal.{harm})"))
     assert over(start("print('A: 1')")).lines == ["A: 1"]
+
+
+@pytest.mark.usefixtures("real_mats", "home")
+def test_a_template_does_not_keep_a_damaged_mat() -> None:
+    text = "print(colorLeft.reflected_light_intensity_pc)"
+    (seen,) = _printed(text, True, "preloaded")
+    files = field_files(build_run_spec(Settings(seed=3, light_noise=10)))
+    for path in (files.pixels, *(path for _, path in files.sums)):
+        # In place: the template has mapped it.
+        with path.open("r+b") as stream:
+            stream.write(bytes(path.stat().st_size))
+    assert _printed(text, True, "preloaded") == [seen]
+    assert float(seen) > 0
