@@ -207,13 +207,13 @@ def test_folder_that_is_deleted_in_mid_run_is_told_in_one_line(endless: Path, ho
     assert RunStore().runs() == []
 
 
-def test_folder_of_which_a_part_is_deleted_yet_is_told_alike(endless: Path, home: Path, here: Command) -> None:
+def test_a_run_file_that_is_deleted_in_mid_run_is_written_again(endless: Path, home: Path, here: Command) -> None:
     field_files(SPEC)
     deleting = _delete_once_begun(home, lambda folder: (folder / RUN_FILE).unlink())
     done = here("run", endless, "--speed", "4", "--timeout", "12")
     deleting.join()
-    assert done.returncode == 2
-    assert done.stderr == "tuisim: endless.py: run 1 was not stored: its folder was deleted while it ran\n"
+    assert done.returncode == 3
+    assert RunStore().load_run("1").state == "time_limit"
 
 
 @pytest.mark.parametrize(("presses", "rows"), [(1, 3), (2, None)], ids=["once", "twice"])

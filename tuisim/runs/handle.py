@@ -220,11 +220,9 @@ class RunHandle:
         self._mark = mark(self._process.pid)
         self._clock = FairClock(self._process.pid)
         self._events = EventStream(self._event_fd, options.events)
-        self._quota = Quota([run.folder, Path(program.working_directory)]) if isolated else None
-        self._exceeded = ""
-        """The limit of an isolated program that it has exceeded."""
-        self._falsified = ""
-        """Why what the child has sent or recorded does not come from the simulation."""
+        self._quota = Quota([run.folder, program.working_directory]) if isolated else None
+        self._exceeded = self._falsified = ""
+        """Which limit an isolated program has exceeded; why what the child does is not what the simulation does."""
 
     @property
     def answers(self) -> tuple[str, ...]:

@@ -135,15 +135,17 @@ class IsolatedChild:
 
 
 class Quota:
-    """How much an isolated program may have in its folders.
+    """How much an isolated program may add to its folders.
 
     Args:
-        folders: The folders.
+        folders: The folders, before it has begun; empty names are left out.
     """
 
-    def __init__(self, folders: Iterable[Path]) -> None:
-        self._folders = tuple(folders)
+    def __init__(self, folders: Iterable[str | Path]) -> None:
+        self._folders = tuple(filter(None, map(str, folders)))
         self._next_look_s = 0.0
+        self._files = self._bytes = 0
+        self._files, self._bytes = self._more(MOST_FILES, MOST_BYTES)
 
     def exceeded(self, now_s: float) -> str:
         """Return which limit is exceeded; empty if none is, or if it has been looked at a moment ago.
@@ -154,17 +156,24 @@ class Quota:
         if now_s < self._next_look_s:
             return ""
         self._next_look_s = now_s + _LOOK_EVERY_S
-        files = size = 0
+        files, size = self._more(MOST_FILES, MOST_BYTES)
+        if files > MOST_FILES or size > MOST_BYTES:
+            return f"the program has written more than {MOST_FILES:,} files or {MOST_BYTES >> 30} GiB"
+        return ""
+
+    def _more(self, most_files: int, most_bytes: int) -> tuple[int, int]:
+        """Return how many files and bytes there are more than at the beginning; it stops counting at these numbers."""
+        files, size = -self._files, -self._bytes
         for entry in self._entries():
             # Another process writes there: what is gone takes no space.
             with suppress(OSError):
                 files, size = files + 1, size + 512 * entry.stat(follow_symlinks=False).st_blocks
-            if files > MOST_FILES or size > MOST_BYTES:
-                return f"the program has written more than {MOST_FILES:,} files or {MOST_BYTES >> 30} GiB"
-        return ""
+            if files > most_files or size > most_bytes:
+                break
+        return files, size
 
     def _entries(self) -> Iterator[os.DirEntry[str]]:
-        folders = [str(folder) for folder in self._folders]
+        folders = list(self._folders)
         while folders:
             with suppress(OSError), os.scandir(folders.pop()) as entries:
                 for entry in entries:

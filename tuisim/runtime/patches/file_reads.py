@@ -36,6 +36,7 @@ class FileReads:
 
     def __init__(self) -> None:
         self._folder: Path | None = None
+        self._run_folder = os.sep
         self._ignored: tuple[str, ...] = ()
         self._program_file = ""
         self._seen: set[str] = set()
@@ -83,7 +84,8 @@ class FileReads:
         """
         self._program_file = os.path.abspath(program_file)
         around = {place for place in (sys.prefix, sys.base_prefix) if not f"{own_folder}{os.sep}".startswith(place)}
-        self._ignored = tuple(f"{place}{os.sep}" for place in (str(folder), *_SYSTEM, *sorted(around)))
+        self._run_folder = f"{folder}{os.sep}"
+        self._ignored = tuple(f"{place}{os.sep}" for place in (*_SYSTEM, *sorted(around)))
         self._folder = folder
 
     def end(self) -> None:
@@ -140,7 +142,7 @@ class FileReads:
             return ""
 
     def _is_data(self, path: str) -> bool:
-        if path.startswith(self._ignored) and not path.startswith(_SHARED):
+        if path.startswith(self._run_folder) or (path.startswith(self._ignored) and not path.startswith(_SHARED)):
             return False
         return is_own(path) and path != self._program_file and path not in OWN_FILES
 
