@@ -26,7 +26,7 @@ _MEANINGS = {
     "run": "1, 2, … in the order of the programs",
     "x_mm": "the robot's position to the right",
     "y_mm": "the robot's position upwards",
-    "heading_deg": "the robot's heading: the direction it looks in, counter-clockwise from the x axis",
+    "heading_deg": "the robot's heading: the direction it looks in, counter-clockwise from the x axis, past 360 too",
     "left_position_deg": "how far the motor of the left wheel has turned",
     "right_position_deg": "how far the motor of the right wheel has turned",
     "left_speed_dps": "speed of the motor of the left wheel",

@@ -1,0 +1,132 @@
+"""What README, guide and lessons claim with a number is what a run shows: `claims/PAGE.toml` says how each is held.
+
+A claim names its sentences (`says`) and what holds them: a `program` (saved as `claim.py`), `files` and `commands`,
+whose output must have what `prints` says (regular expressions) and which end with 0, or with `exit_codes`; or the test
+that looks at it (`tested_by`); or why there is nothing to run (`because`). A sentence with a number that no claim names
+is a fault, and so is a claim whose sentence has gone. The blocks of a page that begin with the name of a file are there
+as files; for a lesson `world.toml`, `program.py` and `STEP.py`, its model answers, and a program runs in its world.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.conftest import ROOT, Command
+from tests.guide.documents import DOCUMENTS, blocks
+from tuisim.guide.catalogue import pages
+from tuisim.lessons.catalogue import shipped_paths
+from tuisim.lessons.files import load_lesson
+from tuisim.lessons.spec import Lesson
+
+LESSONS = {name: load_lesson(path) for name, path in shipped_paths().items()}
+TEXTS = {"README": DOCUMENTS["README"]} | {name: page.source for name, page in pages().items()}
+"""README and the pages as they are written: tables made from the code are true by their making."""
+KEYS = {"says", "program", "files", "commands", "prints", "exit_codes", "tested_by", "because", "slow"}
+_FENCE = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
+_QUOTED = re.compile(r"`[^`]*`|\]\([^)]*\)|“[^”]*”")
+_NUMBER = re.compile(r"(?<![\w.-])\d|[½¼]")
+_ORDINAL = re.compile(r"^(#+ )?\d+\. ")
+
+
+def _claims() -> dict[str, list[dict[str, Any]]]:
+    folder = Path(__file__).parent / "claims"
+    return {
+        path.stem: tomllib.loads(path.read_text(encoding="utf-8"))["claim"] for path in sorted(folder.glob("*.toml"))
+    }
+
+
+CLAIMS = _claims()
+
+
+def _plain(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _parts_of(lesson: Lesson) -> Iterator[str]:
+    """What a student reads in a lesson, except what a task asks for: the conditions of its goals say that."""
+    yield lesson.why
+    for step in lesson.steps:
+        yield from (step.text, step.why, *step.hints)
+    for goal in lesson.goals:
+        yield goal.hint
+
+
+def _paragraphs(name: str) -> list[str]:
+    text = "\n\n".join(_parts_of(LESSONS[name])) if name in LESSONS else TEXTS[name]
+    text = re.sub(r"<!-- table.*?-->", "", _FENCE.sub("\n\n", text))
+    return [_plain(part) for part in re.split(r"\n\s*\n|\n(?=[|#-]|\d+\. )", text) if part.strip()]
+
+
+def _sentences(name: str) -> Iterator[str]:
+    """The sentences and the rows of tables that have a number outside of code."""
+    for paragraph in _paragraphs(name):
+        whole = paragraph.startswith("|")
+        paragraph = _ORDINAL.sub("", paragraph)
+        for sentence in [paragraph] if whole else re.split(r"(?<=[.!?]) (?=[A-Z`*\[(])", paragraph):
+            if _NUMBER.search(_QUOTED.sub("", sentence)):
+                yield sentence
+
+
+def _says(claim: dict[str, Any]) -> list[str]:
+    said = claim["says"]
+    return [_plain(one) for one in ([said] if isinstance(said, str) else said)]
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_each_sentence_with_a_number_is_held(name: str) -> None:
+    said = [one for claim in CLAIMS.get(name, []) for one in _says(claim)]
+    assert [sentence for sentence in _sentences(name) if not any(one in sentence for one in said)] == []
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_each_claim_is_in_its_page(name: str) -> None:
+    text = "\n".join(_paragraphs(name))
+    for claim in CLAIMS[name]:
+        assert set(claim) <= KEYS
+        assert [one for one in _says(claim) if one not in text] == []
+        assert sum(key in claim for key in ("prints", "tested_by", "because")) == 1, claim["says"]
+        file, _, test = claim.get("tested_by", "").partition("::")
+        assert f"def {test}(" in (ROOT / file).read_text(encoding="utf-8") if file else True, claim["tested_by"]
+
+
+def _cases() -> Iterator[Any]:
+    """A case for each claim that is run."""
+    for name, claims in CLAIMS.items():
+        for count, claim in enumerate(claims, 1):
+            if "prints" in claim:
+                marks = [pytest.mark.slow] if claim.get("slow") else []
+                yield pytest.param(name, claim, id=f"{name} {count}", marks=marks)
+
+
+def _lay_out(name: str, where: Path) -> None:
+    """Write the files of a page, or the world of a lesson, its program and its model answers."""
+    if lesson := LESSONS.get(name):
+        world = lesson.path.read_text(encoding="utf-8").split("+++")[1].partition("[[")[0]
+        (where / "world.toml").write_text(re.sub(r"^(why|minutes) = .*$", "", world, flags=re.MULTILINE))
+        (where / "program.py").write_text(lesson.program)
+        for step in lesson.steps:
+            (where / f"{step.name}.py").write_text(step.answer)
+    else:
+        for block in blocks(name):
+            if block.file:
+                (where / block.file).write_text(block.code)
+
+
+@pytest.mark.parametrize(("name", "claim"), [*_cases()])
+def test_a_claim_is_so(name: str, claim: dict[str, Any], tmp_path: Path, here: Command, home: Path) -> None:
+    _lay_out(name, tmp_path)
+    for file, text in {**claim.get("files", {}), "claim.py": claim.get("program", "")}.items():
+        (tmp_path / file).write_text(text)
+    commands = claim.get("commands", ["run world.toml claim.py" if name in LESSONS else "run claim.py"])
+    done = [here(*shlex.split(command)) for command in commands]
+    output = "\n".join(one.stdout + one.stderr for one in done)
+    assert [one.returncode for one in done] == claim.get("exit_codes", [0] * len(done)), output
+    prints = [claim["prints"]] if isinstance(claim["prints"], str) else claim["prints"]
+    assert [one for one in prints if not re.search(one, output, re.MULTILINE)] == [], output
