@@ -1,10 +1,11 @@
 """What README, guide and lessons claim with a number is what a run shows: `claims/PAGE.toml` says how each is held.
 
-A claim names its sentences (`says`) and what holds them: a `program` (saved as `claim.py`), `files` and `commands`,
-whose output must have what `prints` says (regular expressions) and which end with 0, or with `exit_codes`; or the test
-that looks at it (`tested_by`); or why there is nothing to run (`because`). A sentence with a number that no claim names
-is a fault, and so is a claim whose sentence has gone. The blocks of a page that begin with the name of a file are there
-as files; for a lesson `world.toml`, `program.py` and `STEP.py`, its model answers, and a program runs in its world.
+A claim names its sentences (`says`) and what holds them: a `program` (saved as `claim.py`), `files`, `commands` and
+Python that looks at what they wrote (`after`). Their output must have what `prints` says (regular expressions);
+commands end with 0, or with `exit_codes`. Or it names the test that looks at it (`tested_by`), or says why there is
+nothing to run (`because`). A sentence with a number that no claim names is a fault, and so is a claim whose sentence
+has gone. The blocks of a page that begin with the name of a file are there as files. For a lesson there are
+`world.toml`, `program.py` and `STEP.py`, its model answers, and a program runs in its world.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from tuisim.lessons.spec import Lesson
 LESSONS = {name: load_lesson(path) for name, path in shipped_paths().items()}
 TEXTS = {"README": DOCUMENTS["README"]} | {name: page.source for name, page in pages().items()}
 """README and the pages as they are written: tables made from the code are true by their making."""
-KEYS = {"says", "program", "files", "commands", "prints", "exit_codes", "tested_by", "because", "slow"}
+KEYS = {"says", "program", "files", "commands", "after", "prints", "exit_codes", "tested_by", "because", "slow"}
 _FENCE = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 _QUOTED = re.compile(r"`[^`]*`|\]\([^)]*\)|“[^”]*”")
 _NUMBER = re.compile(r"(?<![\w.-])\d|[½¼]")
@@ -123,13 +124,17 @@ def _lay_out(name: str, where: Path) -> None:
 
 
 @pytest.mark.parametrize(("name", "claim"), [*_cases()])
-def test_a_claim_is_so(name: str, claim: dict[str, Any], tmp_path: Path, here: Command, home: Path) -> None:
+def test_a_claim_is_so(
+    name: str, claim: dict[str, Any], tmp_path: Path, here: Command, home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     _lay_out(name, tmp_path)
     for file, text in {**claim.get("files", {}), "claim.py": claim.get("program", "")}.items():
+        (tmp_path / file).parent.mkdir(exist_ok=True)
         (tmp_path / file).write_text(text)
     commands = claim.get("commands", ["run world.toml claim.py" if name in LESSONS else "run claim.py"])
     done = [here(*shlex.split(command)) for command in commands]
-    output = "\n".join(one.stdout + one.stderr for one in done)
+    exec(claim.get("after", ""), {})
+    output = "\n".join([*(one.stdout + one.stderr for one in done), capsys.readouterr().out])
     assert [one.returncode for one in done] == claim.get("exit_codes", [0] * len(done)), output
     prints = [claim["prints"]] if isinstance(claim["prints"], str) else claim["prints"]
     assert [one for one in prints if not re.search(one, output, re.MULTILINE)] == [], output
