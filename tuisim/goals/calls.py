@@ -13,6 +13,8 @@ from functools import lru_cache
 
 from tuisim.goals.evidence import START, Evidence, Span
 from tuisim.goals.found import Found
+from tuisim.goals.provenance import provenance_of
+from tuisim.goals.readings import NOUNS
 from tuisim.goals.spec import Avoid, Use
 from tuisim.source import PRELUDE_TEXTS
 
@@ -145,6 +147,12 @@ def find_used(condition: Use, evidence: Evidence, span: Span) -> Found:
     missing = [call for call, lines in found.items() if not lines]
     if missing:
         return Found(None, f"The program does not call {' and '.join(missing)}.")
+    known = provenance_of(evidence.program.text, condition.reading) if condition.reading else None
+    if condition.reading is not None and known is not None:
+        for call, lines in found.items():
+            if not any(map(known.decides, lines)):
+                noun = NOUNS[condition.reading]
+                return Found(None, f"Nothing that the {noun} read decides how the program calls {call}.", lines[0])
     return Found(START, line=min(lines[0] for lines in found.values()))
 
 

@@ -29,6 +29,7 @@ from tuisim.goals.spec import (
     Pass,
     Print,
     Reach,
+    Read,
     TouchNothing,
     Use,
 )
@@ -45,6 +46,7 @@ FINDERS: Mapping[type, Finder] = {
     Draw: pen_trace.find_drawn,
     Print: output.find_printed,
     Log: output.find_levels,
+    Read: readings.find_read,
     Dialogue: output.find_dialogue,
     Finish: output.find_finish,
     Use: calls.find_used,

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import re
 
+from tuisim.core.profile import NS_PER_S
 from tuisim.goals.evidence import Evidence, Moment, Span
 from tuisim.goals.found import Found
-from tuisim.goals.spec import Dialogue, Finish, Log, Print, Turn
+from tuisim.goals.provenance import provenance_of
+from tuisim.goals.readings import NOUNS, is_as_read, range_words, read_ticks, within_x
+from tuisim.goals.spec import Dialogue, Finish, Log, Print, Range, Reading, Turn
 from tuisim.protocol import End
 from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.samples import Sample
@@ -28,18 +31,84 @@ def find_printed(condition: Print, evidence: Evidence, span: Span) -> Found:
     """Find when the last of the lines was printed."""
     rows = _printed(evidence, span)
     at, last, line = 0, -1, None
-    for pattern in condition.lines:
+    # The row before, since which a reading must have been taken.
+    since = -1
+    for count, pattern in enumerate(condition.lines):
         search = re.compile(pattern).search
         start = at if condition.in_order else 0
-        found = next((place for place in range(start, len(rows)) if search(rows[place][1].text)), None)
-        if found is None:
+        fault = Found()
+        for place in range(start, len(rows)):
+            row = rows[place][1]
+            if search(row.text):
+                found = _fault(condition, count, row, since, evidence)
+                if not found:
+                    break
+                fault = fault if fault.reason else Found(None, found, row.line)
+        else:
             # Of the line that the reason quotes.
             about = rows[-1][1].line if rows and line is None else line
-            return Found(None, _no_line(condition, pattern, rows, line is not None), about)
-        at, line = found + 1, rows[found][1].line
-        last = max(last, found)
+            return fault if fault.reason else Found(None, _no_line(condition, pattern, rows, line is not None), about)
+        at, line, since = place + 1, row.line, row.tick
+        last = max(last, place)
+    if condition.once and (open_or_missed := _not_once(condition, rows, span)):
+        return open_or_missed
     number, row = rows[last]
-    return Found(Moment(row.tick, number), line=row.line)
+    return Found(evidence.last if condition.once else Moment(row.tick, number), line=row.line)
+
+
+def _not_once(condition: Print, rows: list[tuple[int, OutputRow]], span: Span) -> Found | None:
+    """Return what is missing of a condition whose lines come only once; None if nothing is."""
+    fitting = [row for _, row in rows if any(re.search(pattern, row.text) for pattern in condition.lines)]
+    if len(fitting) > len(condition.lines):
+        wanted = f"{len(condition.lines)} {'is' if len(condition.lines) == 1 else 'are'} asked for"
+        return Found(None, f"{len(fitting):,} such lines were printed, {wanted}.", fitting[-1].line)
+    return None if span.over else Found()
+
+
+def _fault(condition: Print, count: int, row: OutputRow, since: int, evidence: Evidence) -> str:
+    """Return why a line that matches does not count, in a sentence; empty if it does.
+
+    Args:
+        count: Index of the pattern.
+        since: Tick of the line before; -1 if there is none.
+    """
+    when = f"{_shown(row.text)} was printed at {row.time_ns / NS_PER_S:.2f} s"
+    if fault := _elsewhere(condition, count, row.tick, evidence):
+        return f"{when}, when {fault}"
+    if condition.reading is None:
+        return ""
+    noun = NOUNS[condition.reading]
+    known = provenance_of(evidence.program.text, condition.reading)
+    if known is not None and not known.decides(row.line):
+        return f"{when}, but nothing that the {noun} read decides that: line {row.line} prints it in any case."
+    if not _read_between(condition.reading, since, row.tick, evidence):
+        ago = "since the line before it" if since >= 0 else "before that"
+        return f"{when}, but the program did not read the {noun} {ago}."
+    return ""
+
+
+def _elsewhere(condition: Print | Log, count: int, tick: int, evidence: Evidence) -> str:
+    """Return where the robot was at a tick if that was wrong, as the end of a sentence; empty if it was right."""
+    place = _range(condition, count)
+    x_mm = evidence.place_mm(tick - 1)[0] if tick else evidence.spec.world.start.x_mm
+    if place is None or place[0] <= x_mm <= place[1]:
+        return ""
+    return f"the robot was at x = {x_mm:.0f} mm; it must be at {range_words(place)}."
+
+
+def _range(condition: Print | Log, count: int) -> Range | None:
+    if not condition.x_mm:
+        return None
+    return condition.x_mm[count if len(condition.x_mm) > 1 else 0]
+
+
+def _read_between(reading: Reading, first_tick: int, end_tick: int, evidence: Evidence) -> bool:
+    """Return whether the program took a reading between two lines, or one just before the first."""
+    # Motors are read in less than a tick.
+    if reading is Reading.MOTOR:
+        return True
+    ticks = read_ticks(reading, evidence)
+    return bool(((ticks >= first_tick - 1) & (ticks < max(end_tick, 1))).any())
 
 
 def _no_line(condition: Print, pattern: str, rows: list[tuple[int, OutputRow]], some: bool) -> str:
@@ -62,17 +131,59 @@ def find_levels(condition: Log, evidence: Evidence, span: Span) -> Found:
     at, last = 0, -1
     for count, level in enumerate(condition.levels):
         start = at if condition.in_order else 0
-        fits = (place for place in range(start, len(samples)) if _near(samples[place][1], level, condition))
-        found = next(fits, None)
-        if found is None:
-            rest = [sample for _, sample in samples[start:]]
-            nearest = min(rest, key=lambda sample: abs(sample.value - level), default=None)
-            about = nearest or (samples[last][1] if last >= 0 else None)
-            return Found(None, _no_level(condition, count, nearest, evidence), about.line if about else 0)
-        at = found + 1
-        last = max(last, found)
+        fault = Found()
+        for place in range(start, len(samples)):
+            sample = samples[place][1]
+            if _near(sample, level, condition):
+                found = _not_measured(condition, count, sample, evidence)
+                if not found:
+                    break
+                fault = fault if fault.reason else Found(None, found, sample.line)
+        else:
+            return fault if fault.reason else _missing_level(condition, count, samples, start, last, evidence)
+        at = place + 1
+        last = max(last, place)
     number, sample = samples[last]
     return Found(Moment(sample.tick, number), line=sample.line)
+
+
+def _not_measured(condition: Log, count: int, sample: Sample, evidence: Evidence) -> str:
+    """Return why a sample near its level does not count, in a sentence; empty if it does."""
+    value = f"{sample.name}: {sample.value:.6g} was printed at {sample.time_ns / NS_PER_S:.2f} s"
+    reading, place = condition.reading, _range(condition, count)
+    known = provenance_of(evidence.program.text, reading) if reading else None
+    if reading is not None and known is not None and not known.gives(sample.line):
+        return f"{value}, but line {sample.line} does not compute it from what the {NOUNS[reading]} read."
+    if reading is None or reading is Reading.MOTOR:
+        fault = _elsewhere(condition, count, sample.tick, evidence)
+        return f"{value}, when {fault}" if fault else ""
+    ticks = read_ticks(reading, evidence)
+    ticks = ticks[ticks < sample.tick]
+    if not len(ticks):
+        return f"{value}, but the program had not read the {NOUNS[reading]} before."
+    if place is not None and not len(there := within_x(ticks, place, evidence)):
+        x_mm = evidence.place_mm(int(ticks[-1]))[0]
+        return f"{value}, read when the robot was at x = {x_mm:.0f} mm; it must be at {range_words(place)}."
+    there = ticks if place is None else there
+    if condition.as_read and not is_as_read(sample.value, there, evidence):
+        return f"{value}, but that is not what the {NOUNS[reading]} gave where the program had read it."
+    return ""
+
+
+def _missing_level(
+    condition: Log, count: int, samples: list[tuple[int, Sample]], start: int, last: int, evidence: Evidence
+) -> Found:
+    """Return which level is missing, the one after the first `count`, and why.
+
+    Args:
+        samples: All of the variable.
+        start: The first that could have been it.
+        last: The last of the levels that were found; -1 for none.
+    """
+    rest = [sample for _, sample in samples[start:]]
+    nearest = min(rest, key=lambda sample: abs(sample.value - condition.levels[count]), default=None)
+    about = nearest or (samples[last][1] if last >= 0 else None)
+    return Found(None, _no_level(condition, count, nearest, evidence), about.line if about else 0)
 
 
 def _near(sample: Sample, level: float, condition: Log) -> bool:

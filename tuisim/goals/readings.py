@@ -1,7 +1,8 @@
-"""Conditions on what the sensors see."""
+"""Conditions on what the sensors see, and on what the program reads."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from tuisim.core.sensors.color import columns
@@ -9,13 +10,81 @@ from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
 from tuisim.goals.evidence import Evidence, Moment, Span
 from tuisim.goals.found import Found, share_words
 from tuisim.goals.places import line_of_motion
-from tuisim.goals.spec import Follow
+from tuisim.goals.provenance import provenance_of
+from tuisim.goals.spec import Follow, Range, Read, Reading
 from tuisim.runs.frames import quiet_color_columns
 
 if TYPE_CHECKING:
     import numpy as np
 
     Array = np.ndarray[Any, Any]
+
+NOUNS: Mapping[Reading, str] = {
+    Reading.COLOR: "colour sensor",
+    Reading.ULTRASONIC: "ultrasonic sensor",
+    Reading.GYRO: "gyro",
+    Reading.MOTOR: "motors",
+}
+_ROUNDED = 0.5
+"""How far a printed level may be off the reading: programs round."""
+_NOISE_SHARE = 0.1
+"""The same for each percent of the light's noise."""
+
+
+def range_words(found: Range) -> str:
+    """Return a range for a sentence."""
+    return f"x from {found[0]:g} to {found[1]:g} mm"
+
+
+def read_ticks(reading: Reading, evidence: Evidence) -> Array:
+    """Return the ticks in which the program took such a reading, in ascending order: a reading takes time."""
+    import numpy as np
+
+    known = provenance_of(evidence.program.text, reading)
+    lines = sorted(known.lines()) if known else []
+    found: Array = np.flatnonzero(np.isin(evidence.records["line"], lines))
+    return found
+
+
+def within_x(ticks: Array, found: Range, evidence: Evidence) -> Array:
+    """Return those of some ticks at which the robot was in a range."""
+    x_mm = evidence.records["x_mm"][ticks]
+    left: Array = ticks[(x_mm >= found[0]) & (x_mm <= found[1])]
+    return left
+
+
+def is_as_read(value: float, ticks: Array, evidence: Evidence) -> bool:
+    """Return whether a level of light is what a colour sensor gave in one of some ticks, in percent or raw."""
+    import numpy as np
+
+    off = _ROUNDED + _NOISE_SHARE * evidence.spec.world.noise.light
+    # The value is taken at the end of the reading, perhaps one tick later.
+    both = np.unique(np.concatenate([ticks, np.minimum(ticks + 1, len(evidence.records) - 1)]))
+    records = evidence.records[both]
+    for sensor in evidence.spec.robot.color_sensors:
+        channels = quiet_color_columns(records, sensor, evidence.mat)
+        values = [channels[name].astype("i8") for name in columns(sensor)]
+        red, mean = values[0] / 255 * 100, sum(values) / 765 * 100
+        if any(bool((np.abs(each - value) <= off).any()) for each in (red, mean, values[0])):
+            return True
+    return False
+
+
+def find_read(condition: Read, evidence: Evidence, span: Span) -> Found:
+    """Find when the program had taken enough readings."""
+    noun = NOUNS[condition.reading]
+    every = read_ticks(condition.reading, evidence)
+    ticks = every[(every >= span.first_tick) & (every < span.end_tick)]
+    for place in condition.x_mm:
+        ticks = within_x(ticks, place, evidence)
+    if len(ticks) >= condition.times:
+        tick = int(ticks[condition.times - 1])
+        return Found(Moment(tick), line=int(evidence.records["line"][tick]))
+    if not len(every):
+        return Found(None, f"The program did not read the {noun}.")
+    where = f" at {range_words(condition.x_mm[0])}" if condition.x_mm else ""
+    text = f"The program read the {noun} {len(ticks):,} times{where} when it counts; {condition.times:,} are needed."
+    return Found(None, text, int(evidence.records["line"][every[0]]))
 
 
 def find_off_line(condition: Follow, evidence: Evidence, span: Span) -> Found:

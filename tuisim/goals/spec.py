@@ -64,6 +64,27 @@ class Part(StrEnum):
     """Its whole outline."""
 
 
+class Reading(StrEnum):
+    """What a program can read, by the kind of the sensor."""
+
+    COLOR = "color"
+    ULTRASONIC = "ultrasonic"
+    GYRO = "gyro"
+    MOTOR = "motor"
+
+
+Range = tuple[X, X]
+"""From where to where along x."""
+
+
+def _check_ranges(found: tuple[Range, ...], wanted: int) -> None:
+    for number, (left, right) in enumerate(found, start=1):
+        if left >= right:
+            raise ConfigError(f"must be from left to right, got {left:g} to {right:g}", key=f"x_mm[{number}]")
+    if len(found) not in (0, 1, wanted):
+        raise ConfigError(f"must have one entry, or {wanted}, has {len(found)}", key="x_mm")
+
+
 def _check_count(found: tuple[object, ...], key: str) -> None:
     if not 1 <= len(found) <= MAX_PLACES:
         raise ConfigError(f"must have 1 to {MAX_PLACES} entries, has {len(found)}", key=key)
@@ -226,9 +247,16 @@ class Print:
     lines: tuple[str, ...]
     """Regular expressions, each searched for in single lines."""
     in_order: bool = True
+    x_mm: tuple[Range, ...] = ()
+    """Where the robot must be when it prints them: one range for all lines, or one for each; empty for anywhere."""
+    reading: Reading | None = None
+    """A kind of reading that must decide that, or what, each line says, and be taken since the line before it."""
+    once: bool = False
+    """Whether the run must end without a further line that matches one of them."""
 
     def __post_init__(self) -> None:
         _check_count(self.lines, "lines")
+        _check_ranges(self.x_mm, len(self.lines))
         for number, pattern in enumerate(self.lines, start=1):
             require_regex(pattern, f"lines[{number}]")
 
@@ -244,11 +272,36 @@ class Log:
     levels: tuple[Number, ...]
     within: Annotated[float, Meta(ge=0, le=1e15)] = 0.5
     in_order: bool = True
+    x_mm: tuple[Range, ...] = ()
+    """Where the robot must be when the value is read, or printed: one range, or one for each level; empty: anywhere."""
+    reading: Reading | None = None
+    """The kind of reading from which the value must be computed."""
+    as_read: bool = False
+    """Whether the value must be one that a colour sensor gave where the program read it."""
 
     def __post_init__(self) -> None:
+        if self.as_read and self.reading is not Reading.COLOR:
+            raise ConfigError("is only for readings of colour sensors", 'give reading = "color"', key="as_read")
         _check_count(self.levels, "levels")
+        _check_ranges(self.x_mm, len(self.levels))
         if not self.name.isidentifier():
             raise ConfigError(f"{self.name!r} cannot be the name of a sample", "such as Colour", key="name")
+
+
+@dataclass(frozen=True, slots=True)
+class Read:
+    """The program takes readings."""
+
+    KIND: ClassVar[Kind] = Kind.REACHED
+    SHORT: ClassVar[str] = ""
+
+    reading: Reading
+    times: Annotated[int, Meta(ge=1, le=1_000_000)] = 1
+    x_mm: tuple[Range, ...] = ()
+    """Where the robot must be; empty for anywhere."""
+
+    def __post_init__(self) -> None:
+        _check_ranges(self.x_mm, 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -282,6 +335,9 @@ class Calls:
 @dataclass(frozen=True, slots=True)
 class Use(Calls):
     """The program uses each of the calls."""
+
+    reading: Reading | None = None
+    """A kind of reading that must decide that, or how, each of them is made."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -359,6 +415,7 @@ Condition: TypeAlias = (
     | Draw
     | Print
     | Log
+    | Read
     | Finish
     | Use
     | Avoid
@@ -378,6 +435,7 @@ CONDITIONS: Mapping[str, type[Condition]] = {
     "draw": Draw,
     "print": Print,
     "log": Log,
+    "read": Read,
     "dialogue": Dialogue,
     "finish": Finish,
     "use": Use,
