@@ -11,7 +11,7 @@ from tuisim.commands.echo import Progress, echo, echo_json, echo_lines, table, t
 from tuisim.config.command_line import AS_JSON, Command, Group, Value, argument, command, option
 from tuisim.config.folders import user_path
 from tuisim.errors import ConfigError, counted
-from tuisim.lessons.catalogue import find_lesson, lesson_paths, load_all
+from tuisim.lessons.catalogue import find_lesson, lesson_paths, load_all, shipped_paths
 from tuisim.lessons.files import load_lesson
 from tuisim.lessons.markdown import plain_text
 from tuisim.lessons.progress import LessonProgress, StepState, last_opened, load_progress
@@ -36,7 +36,7 @@ def _names() -> Sequence[str]:
     name="open",
     help="""Open a lesson in the app; without a terminal, print it.
 
-    A LESSON is given by name, see `tuisim learn list`, or as a file. Without one, the app goes on with the lesson that
+    A LESSON is given by its name or number, see `tuisim learn list`, or as a file. Without one, the app goes on with the lesson that
     was opened last; without a terminal, the lessons are listed.
     """,
 )
@@ -153,32 +153,40 @@ def _plain(lesson: Lesson, progress: LessonProgress) -> dict[str, Any]:
 
 
 @command(
-    argument("paths", "FILE…", nargs=-1, required=True),
+    argument("paths", "[FILE…]", nargs=-1),
     option("--no-runs", is_flag=True, help="Check only the file; do not run model answers and wrong programs."),
+    option("--strict", is_flag=True, help="Exit code 1 also for warnings, such as a wrong way that is not tried."),
 )
-def check(paths: Sequence[str], no_runs: bool) -> int:
-    """Check lessons, for their authors: the file, its model answers, and the programs that must not pass.
+def check(paths: Sequence[str], no_runs: bool, strict: bool) -> int:
+    """Check lessons, for their authors: the file, its model answers, and the wrong ways that must not pass.
+
+    Without a FILE, the lessons of tuisim are checked. A warning names each step for which one of the wrong ways
+    (literal answer, no sensor, wrong order, wrong place) is neither tried nor excluded with a reason.
 
     Exit code: 0 if all is well, 1 if a model answer does not pass or a wrong program does, 2 if a file is wrong.
     """
-    from tuisim.lessons.trial import faults
+    from tuisim.lessons.trial import faults, warnings
 
-    lessons = [load_lesson(find_lesson(path)) for path in paths]
-    found: list[str] = []
+    files = [find_lesson(path) for path in paths] or list(shipped_paths().values())
+    lessons = [load_lesson(path) for path in files]
+    is_bad = False
     with Progress("learn check"):
         for number, lesson in enumerate(lessons):
             tell(f"checking {lesson.name}", number, len(lessons))
-            wrong = [] if no_runs else faults(lesson)
-            found += wrong
-            for fault in wrong:
-                echo(fault)
+            wrong, warned = [] if no_runs else faults(lesson), warnings(lesson)
+            for line in (*wrong, *(f"warning: {one}" for one in warned)):
+                echo(line)
             if not wrong:
                 contents = f"{counted(len(lesson.steps), 'step')}, {counted(len(lesson.goals), 'goal')}"
-                echo(f"{lesson.path}: {contents}: all is well")
-            for step in lesson.steps:
-                if isinstance(step.check, Question) and not step.why:
-                    echo(f"{lesson.path}, line {step.line}: no `why` says why the answer to “{step.title}” is right")
-    return 1 if found else 0
+                words = counted(len(warned), "warning") if warned else "all is well"
+                echo(f"{lesson.path if paths else lesson.name}: {contents}, {_ways(lesson)}: {words}")
+            is_bad |= bool(wrong or (strict and warned))
+    return int(is_bad)
+
+
+def _ways(lesson: Lesson) -> str:
+    """Return in words how many wrong ways are tried."""
+    return counted(sum(len(step.wrong_programs) + len(step.wrong) for step in lesson.steps), "wrong way")
 
 
 @command(argument("path", "FILE"))

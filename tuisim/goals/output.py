@@ -90,7 +90,7 @@ def _fault(condition: Print, count: int, row: OutputRow, since: int, evidence: E
 def _elsewhere(condition: Print | Log, count: int, tick: int, evidence: Evidence) -> str:
     """Return where the robot was at a tick if that was wrong, as the end of a sentence; empty if it was right."""
     place = _range(condition, count)
-    x_mm = evidence.place_mm(tick - 1)[0] if tick else evidence.spec.world.start.x_mm
+    x_mm = evidence.place_mm(tick)[0]
     if place is None or place[0] <= x_mm <= place[1]:
         return ""
     return f"the robot was at x = {x_mm:.0f} mm; it must be at {range_words(place)}."
@@ -108,7 +108,7 @@ def _read_between(reading: Reading, first_tick: int, end_tick: int, evidence: Ev
     if reading is Reading.MOTOR:
         return True
     ticks = read_ticks(reading, evidence)
-    return bool(((ticks >= first_tick - 1) & (ticks < max(end_tick, 1))).any())
+    return bool(((ticks >= first_tick) & (ticks <= end_tick)).any())
 
 
 def _no_line(condition: Print, pattern: str, rows: list[tuple[int, OutputRow]], some: bool) -> str:
@@ -150,6 +150,9 @@ def find_levels(condition: Log, evidence: Evidence, span: Span) -> Found:
 def _not_measured(condition: Log, count: int, sample: Sample, evidence: Evidence) -> str:
     """Return why a sample near its level does not count, in a sentence; empty if it does."""
     value = f"{sample.name}: {sample.value:.6g} was printed at {sample.time_ns / NS_PER_S:.2f} s"
+    counted = sum(one.name == condition.counts and one.tick <= sample.tick for _, one in evidence.samples)
+    if condition.counts and counted != sample.value:
+        return f"{value}, but the program had printed {counted:,} samples {condition.counts}."
     reading, place = condition.reading, _range(condition, count)
     known = provenance_of(evidence.program.text, reading) if reading else None
     if reading is not None and known is not None and not known.gives(sample.line):
@@ -158,7 +161,7 @@ def _not_measured(condition: Log, count: int, sample: Sample, evidence: Evidence
         fault = _elsewhere(condition, count, sample.tick, evidence)
         return f"{value}, when {fault}" if fault else ""
     ticks = read_ticks(reading, evidence)
-    ticks = ticks[ticks < sample.tick]
+    ticks = ticks[ticks <= sample.tick]
     if not len(ticks):
         return f"{value}, but the program had not read the {NOUNS[reading]} before."
     if place is not None and not len(there := within_x(ticks, place, evidence)):

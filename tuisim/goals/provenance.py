@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Mapping, Sequence
+from enum import IntEnum
 from functools import lru_cache
 
 from tuisim.goals.spec import Reading
@@ -29,6 +30,16 @@ _KEEPS = frozenset({"append", "appendleft", "extend", "insert", "add", "update",
 """Methods that put their arguments into the object."""
 _LEAVES = (ast.Break, ast.Continue, ast.Return, ast.Raise, ast.While)
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+class _By(IntEnum):
+    """What decides that a statement comes."""
+
+    NOTHING = 0
+    LOOP = 1
+    """A reading begins, repeats or ends a loop around it or before it."""
+    BRANCH = 2
+    """A reading chooses it among others."""
 
 
 class Provenance:
@@ -56,7 +67,7 @@ class Provenance:
         while known != (len(self._derived), len(self._decided)):
             known = (len(self._derived), len(self._decided))
             self._found.clear()
-            self._block(self._tree.body, decided=False)
+            self._block(self._tree.body, _By.NOTHING)
 
     def lines(self) -> frozenset[int]:
         """Return the lines of the program that take such a reading."""
@@ -78,77 +89,80 @@ class Provenance:
 
     # Walking
 
-    def _block(self, body: Sequence[ast.stmt], *, decided: bool) -> bool:
-        """Take in statements. Return whether a reading decides what comes after them."""
+    def _block(self, body: Sequence[ast.stmt], by: _By) -> _By:
+        """Take in statements. Return what decides that something comes after them."""
         for statement in body:
-            decided = self._statement(statement, decided)
-        return decided
+            by = self._statement(statement, by)
+        return by
 
-    def _statement(self, node: ast.stmt, decided: bool) -> bool:
+    def _statement(self, node: ast.stmt, by: _By) -> _By:
         match node:
             case ast.FunctionDef() | ast.AsyncFunctionDef():
-                self._block(node.body, decided=node.name in self._decided)
-                return decided
+                self._block(node.body, _By.BRANCH if node.name in self._decided else _By.NOTHING)
             case ast.ClassDef():
-                self._block(node.body, decided=decided)
-                return decided
-            case ast.If() | ast.While():
-                return self._branch(node.test, [node.body, node.orelse], decided, loops=isinstance(node, ast.While))
+                self._block(node.body, by)
+            case ast.If():
+                return self._branch(node.test, [node.body, node.orelse], by)
+            case ast.While():
+                return self._branch(node.test, [node.body, node.orelse], by, loops=True)
             case ast.For() | ast.AsyncFor():
-                if decided or any(map(self._is_derived, ast.walk(node.iter))):
+                if by is _By.BRANCH or any(map(self._is_derived, ast.walk(node.iter))):
                     self._assign(node.target)
-                return self._branch(node.iter, [node.body, node.orelse], decided)
+                return self._branch(node.iter, [node.body, node.orelse], by)
             case ast.Match():
-                return self._branch(node.subject, [case.body for case in node.cases], decided)
+                return self._branch(node.subject, [case.body for case in node.cases], by)
             case ast.With() | ast.AsyncWith():
                 for item in node.items:
-                    self._take(item.context_expr, item.context_expr, decided)
-                return self._block(node.body, decided=decided)
+                    self._take(item.context_expr, by)
+                return self._block(node.body, by)
             case ast.Try() | ast.TryStar():
                 blocks = [node.body, *(handler.body for handler in node.handlers), node.orelse, node.finalbody]
-                after = [self._block(block, decided=decided) for block in blocks]
-                return any(after)
+                return max(self._block(block, by) for block in blocks)
             case _:
-                self._simple(node, decided)
-                return decided
+                self._simple(node, by)
+        return by
 
-    def _branch(
-        self, test: ast.expr, blocks: Iterable[Sequence[ast.stmt]], decided: bool, *, loops: bool = False
-    ) -> bool:
-        depends = self._take(test, test, decided)
-        inner = [self._block(block, decided=decided or depends) for block in blocks]
-        if decided or not depends:
-            return any(inner)
-        return loops or any(isinstance(node, _LEAVES) for block in blocks for one in block for node in ast.walk(one))
+    def _branch(self, test: ast.expr, blocks: Iterable[Sequence[ast.stmt]], by: _By, *, loops: bool = False) -> _By:
+        depends = self._take(test, by)
+        within = max(by, _By.LOOP if loops else _By.BRANCH) if depends else by
+        after = [self._block(block, within) for block in blocks]
+        if not depends:
+            return max(after)
+        leaves = any(isinstance(node, _LEAVES) for block in blocks for one in block for node in ast.walk(one))
+        return max(by, _By.LOOP) if loops or leaves else by
 
-    def _simple(self, node: ast.stmt, decided: bool) -> None:
-        value = self._take(node, node, decided) or decided
+    def _simple(self, node: ast.stmt, by: _By) -> None:
+        value = self._take(node, by) or by is _By.BRANCH
         match node:
-            case ast.Assign(targets=targets) if value:
+            case ast.Assign(targets=targets):
                 for target in targets:
-                    self._assign(target)
-            case ast.AugAssign(target=target) | ast.AnnAssign(target=target) if value:
+                    # What is counted in a loop depends on how long that goes on.
+                    if value or (by is _By.LOOP and _names(target) & _names(node.value)):
+                        self._assign(target)
+            case ast.AugAssign(target=target) if value or by is _By.LOOP:
                 self._assign(target)
-            case ast.Return() if value:
+            case ast.AnnAssign(target=target) if value:
+                self._assign(target)
+            case ast.Return() if value or by is _By.LOOP:
                 self._derived |= {name for name, one in self._functions.items() if node in ast.walk(one)}
 
-    def _take(self, node: ast.AST, where: ast.AST, decided: bool) -> bool:
+    def _take(self, node: ast.AST, by: _By) -> bool:
         """Note a piece of the program, and what its calls pass on. Return whether its value depends on a reading."""
         value = any(self._is_derived(part) for part in ast.walk(node))
-        self._found.append((where, value, decided))
+        self._found.append((node, value, by is not _By.NOTHING))
         for part in ast.walk(node):
-            if isinstance(part, ast.NamedExpr) and (decided or any(map(self._is_derived, ast.walk(part.value)))):
+            if isinstance(part, ast.NamedExpr) and any(map(self._is_derived, ast.walk(part.value))):
                 self._assign(part.target)
         for call in _calls(node):
-            self._call(call, decided)
+            self._call(call, by)
         return value
 
-    def _call(self, call: ast.Call, decided: bool) -> None:
+    def _call(self, call: ast.Call, by: _By) -> None:
         given = [*call.args, *(keyword.value for keyword in call.keywords)]
-        derived = decided or any(self._is_derived(part) for one in given for part in ast.walk(one))
+        derived = by is _By.BRANCH or any(self._is_derived(part) for one in given for part in ast.walk(one))
         name = _called(call)
-        if decided:
-            self._decided |= {name} | {one.id for one in given if isinstance(one, ast.Name)} & set(self._functions)
+        if by is not _By.NOTHING:
+            self._decided |= ({name} | {one.id for one in given if isinstance(one, ast.Name)}) & set(self._functions)
         if derived and name in self._functions:
             arguments = self._functions[name].args
             self._derived |= {one.arg for one in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)}
@@ -172,6 +186,10 @@ class Provenance:
                     self._assign(part)
             case ast.Starred(value=value) | ast.Subscript(value=value):
                 self._assign(value)
+
+
+def _names(node: ast.AST) -> set[str]:
+    return {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
 
 
 def _calls(node: ast.AST) -> list[ast.Call]:

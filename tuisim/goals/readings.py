@@ -58,9 +58,7 @@ def is_as_read(value: float, ticks: Array, evidence: Evidence) -> bool:
     import numpy as np
 
     off = _ROUNDED + _NOISE_SHARE * evidence.spec.world.noise.light
-    # The value is taken at the end of the reading, perhaps one tick later.
-    both = np.unique(np.concatenate([ticks, np.minimum(ticks + 1, len(evidence.records) - 1)]))
-    records = evidence.records[both]
+    records = evidence.records[ticks]
     for sensor in evidence.spec.robot.color_sensors:
         channels = quiet_color_columns(records, sensor, evidence.mat)
         values = [channels[name].astype("i8") for name in columns(sensor)]

@@ -278,6 +278,8 @@ class Log:
     """The kind of reading from which the value must be computed."""
     as_read: bool = False
     """Whether the value must be one that a colour sensor gave where the program read it."""
+    counts: str = ""
+    """The name of other samples: the value must be how many of them were printed before; empty: any value."""
 
     def __post_init__(self) -> None:
         if self.as_read and self.reading is not Reading.COLOR:

@@ -50,10 +50,10 @@ def _in_folder(folder: Path) -> dict[str, Path]:
 
 
 def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[str] = ()) -> Path:
-    """Return the file of a lesson, given by name or by path.
+    """Return the file of a lesson, given by name, by its number in the list, or by path.
 
     Args:
-        word: Its name, or its path.
+        word: Its name, number or path.
         folder: As for `lesson_paths`.
         others: Other words that may have been meant.
 
@@ -63,6 +63,10 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
     if os.sep in word or word.lower().endswith((SUFFIX, *FILE_SUFFIXES)):
         return user_path(word)
     found = lesson_paths(folder)
+    if word not in found and word.isdecimal() and 1 <= int(word) <= len(found):
+        return list(found.values())[int(word) - 1]
+    if word not in found and word.isdecimal():
+        raise ConfigError(f"there is no lesson {word}", f"1 to {len(found)}. See `tuisim learn list`")
     if word not in found:
         raise ConfigError(f"no such lesson {word!r}", f"{nearest(word, [*found, *others])} See `tuisim learn list`")
     return found[word]

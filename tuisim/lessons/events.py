@@ -24,9 +24,17 @@ class JudgedRun:
 
 @dataclass(frozen=True, slots=True)
 class Typed:
-    """An answer was typed."""
+    """An answer was typed. Unless it is said, everything that the question needs has happened."""
 
     text: str
+    x_mm: float | None = None
+    """Where the robot stood; None: where the question needs it."""
+    seen: frozenset[str] | None = None
+    """The panels that were on the screen since the step began; None: those that the question needs."""
+    printed: tuple[str, ...] | None = None
+    """The lines of the run in view; none without one. None: those that the question needs."""
+    has_run: bool = True
+    """Whether a run was in view."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +79,8 @@ class Shown:
     """A panel is on the screen."""
 
     panel: str
+    paused: bool = True
+    """Whether a program was paused at that moment."""
 
 
 Event: TypeAlias = JudgedRun | Typed | Watched | BreakMet | Exported | Noted | Visited | Shown
@@ -84,7 +94,8 @@ def is_met(check: Check, events: Sequence[Event]) -> bool:
         case Run():
             return good_runs(check, events) >= check.times
         case Question():
-            return any(isinstance(event, Typed) and is_right(check, event.text) for event in events)
+            typed = [event for event in events if isinstance(event, Typed)]
+            return any(is_right(check, event.text) and not unready(check, event) for event in typed)
         case Watch(expression):
             return any(isinstance(event, Watched) and _same(event.expression, expression) for event in events)
         case Break(matches):
@@ -95,8 +106,9 @@ def is_met(check: Check, events: Sequence[Event]) -> bool:
             return any(isinstance(event, Noted) and _is_noted(check, event) for event in events)
         case Visit(from_s, to_s):
             return any(isinstance(event, Visited) and from_s <= event.time_s <= to_s for event in events)
-        case Show(panel):
-            return Shown(panel) in events
+        case Show(panel, paused):
+            shown = (event for event in events if isinstance(event, Shown) and event.panel == panel)
+            return any(event.paused or not paused for event in shown)
         case _:
             assert_never(check)
 
@@ -118,6 +130,21 @@ def is_right(question: Question, text: str) -> bool:
             return _same(_chosen(question, text), wanted)
         case several:
             return any(_same(text, wanted) for wanted in several)
+
+
+def unready(question: Question, event: Typed) -> str:
+    """Return in a sentence what must happen before an answer counts; empty if that has happened."""
+    if question.run and not event.has_run:
+        return "Run the program first: the question is about its run."
+    if event.printed is not None and not any(re.search(question.printed, line) for line in ("", *event.printed)):
+        return "The run in view has not printed that: do what the step says, and run again."
+    if event.seen is not None and question.seen and not event.seen & set(question.seen):
+        return f"Look first: {' or '.join(view.capitalize() for view in question.seen)} shows it."
+    if event.x_mm is not None and question.at_x_mm is not None:
+        left, right = question.at_x_mm
+        if not left <= event.x_mm <= right:
+            return f"The robot is at x = {event.x_mm:.0f} mm. The question is about {question.where}."
+    return ""
 
 
 def wanted_form(question: Question, text: str) -> str:

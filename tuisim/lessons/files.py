@@ -2,7 +2,7 @@
 
 Each section `## …` of the text is a step. Blocks of code that begin with three backticks and `python program`,
 `python answer` or `python wrong` are not part of the text: the program to complete, model answers, and programs that
-must not pass.
+must not pass. `python wrong: no sensor` also says which wrong way the program goes.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tuisim.config.worlds import WorldFile, world_from_table
 from tuisim.errors import ConfigError
 from tuisim.goals.files import goals_from_list, line_in_errors
 from tuisim.lessons.events import event_of, is_met, model_event
-from tuisim.lessons.spec import CHECKS, MAX_HINTS, MAX_STEPS, Break, Check, Lesson, Note, Run, Step, WrongProgram
+from tuisim.lessons.spec import CHECKS, MAX_HINTS, MAX_STEPS, Break, Check, Lesson, Note, Run, Step, Way, WrongProgram
 
 SUFFIX = ".md"
 FENCE = "+++"
@@ -29,7 +29,7 @@ MAX_MINUTES = 600
 MAX_WRONG = 20
 
 _LESSON_KEYS = ("title", "why", "minutes", "step")
-_STEP_KEYS = ("name", "hints", "why", "model", "wrong")
+_STEP_KEYS = ("name", "hints", "why", "model", "wrong", "excludes")
 _NUMBERED = re.compile(r"^\d+[-_ ]+")
 _CODE_FENCE = re.compile(r"^(`{3,}|~{3,})\s*(.*?)\s*$")
 
@@ -47,6 +47,7 @@ class _Block:
     role: Role
     text: str
     line: int
+    way: Way | None = None
 
 
 @dataclass(slots=True)
@@ -129,12 +130,14 @@ def _sections(lines: Sequence[str], start: int, path: Path) -> list[_Section]:
         number += 1
         if opened := _CODE_FENCE.match(line):
             first, number = number, _end_of_block(lines, number, opened[1], path)
-            role = _role(opened[2], Location(f"{path}, line {first}"))
+            at = Location(f"{path}, line {first}")
+            info, _, way = opened[2].partition(":")
+            role = _role(info, at)
             if role is None:
                 sections[-1].lines += lines[first - 1 : number]
             else:
                 text = "\n".join(lines[first : number - 1]) + "\n"
-                sections[-1].blocks.append(_Block(role, text, first))
+                sections[-1].blocks.append(_Block(role, text, first, _way(way.strip(), role, at)))
         elif line.startswith("## "):
             sections.append(_Section(line[3:].strip(), number))
         else:
@@ -158,6 +161,15 @@ def _role(info: str, at: Location) -> Role | None:
         allowed = ", ".join(f"python {role}" for role in Role)
         raise at.wrong(f"no such block of code {files.shown(info)}", f"one of {allowed}; or only python")
     return Role(words[1])
+
+
+def _way(word: str, role: Role, at: Location) -> Way | None:
+    """Return the wrong way that a block of code goes."""
+    if not word:
+        return None
+    if role is not Role.WRONG:
+        raise at.wrong("only a wrong program goes a wrong way", f"python {role}")
+    return files.convert(word, Way, at)
 
 
 def _lesson(data: Any, sections: Sequence[_Section], path: Path) -> Lesson:
@@ -227,12 +239,18 @@ def _step(data: object, section: _Section, at: Location, file: str) -> Step:
         answer=answers[-1].text if answers else "",
         model=files.convert(found.get("model", ""), str, at.at("model")) if "model" in found else "",
         wrong=_texts(found, "wrong", at, MAX_WRONG),
-        wrong_programs=tuple(WrongProgram(block.text, block.line) for block in section.of(Role.WRONG)),
+        wrong_programs=tuple(WrongProgram(block.text, block.line, block.way) for block in section.of(Role.WRONG)),
+        excludes=_excludes(found.get("excludes", {}), at.at("excludes")),
     )
     if step.wrong_programs and not isinstance(check, Run):
         raise Location(f"{file}, line {step.wrong_programs[0].line}").wrong("this step does not run a program")
     _check_models(step, at)
     return step
+
+
+def _excludes(data: object, at: Location) -> dict[Way, str]:
+    found = files.table(data, at, tuple(Way))
+    return {Way(way): files.convert(reason, str, at.at(way)) for way, reason in found.items()}
 
 
 def _texts(found: Any, key: str, at: Location, most: int) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, TypeAlias
 
@@ -14,10 +15,12 @@ from msgspec import Meta
 
 from tuisim.config.options import PANELS
 from tuisim.errors import ConfigError, nearest, require_regex
-from tuisim.goals.spec import Goal
+from tuisim.goals.spec import Goal, Range
 
 SHOWABLE = (*PANELS, "debug", "brick", "obstacles", "goals")
 """Ids of the panels that a step can ask for."""
+SEEABLE = (*SHOWABLE, "analyser")
+"""Ids of what a student can look at for the answer to a question."""
 MAX_STEPS = 30
 MAX_HINTS = 10
 
@@ -27,12 +30,30 @@ Number = Annotated[float, Meta(ge=-1e15, le=1e15)]
 Tolerance = Annotated[float, Meta(ge=0, le=1e15)]
 
 
+def _check_panel(panel: str, key: str, known: tuple[str, ...] = SHOWABLE) -> None:
+    if panel not in known:
+        raise ConfigError(f"there is no panel {panel!r}", nearest(panel, known), key=key)
+
+
+class Way(StrEnum):
+    """A wrong way to pass a step."""
+
+    LITERAL = "literal answer"
+    """What should be found out is written down."""
+    SENSOR = "no sensor"
+    """Nothing is measured."""
+    ORDER = "wrong order"
+    PLACE = "wrong place"
+
+
 @dataclass(frozen=True, slots=True)
 class Run:
     """Runs of the program meet goals of the lesson."""
 
     SHORT: ClassVar[str] = "goals"
     """The key that is meant if a file gives a value instead of a table."""
+    EXCLUDES: ClassVar[Mapping[Way, str]] = {}
+    """The wrong ways that no such check admits, each with the reason."""
 
     goals: tuple[str, ...]
     """Names of goals in the lesson, all to be met by one run."""
@@ -53,6 +74,7 @@ class Question:
     """The student types the right answer: a number, a text, or one of several choices."""
 
     SHORT: ClassVar[str] = ""
+    EXCLUDES: ClassVar[Mapping[Way, str]] = {}
 
     ask: str
     answer: Number | str | tuple[str, ...]
@@ -60,6 +82,16 @@ class Question:
     within: Tolerance = 0.0
     """How far a number may be off."""
     choices: tuple[str, ...] = ()
+    at_x_mm: Range | None = None
+    """Where the robot must stand when the answer is typed: the question is about what it measures there."""
+    where: str = ""
+    """The same in words, and how to get there, for a student whose robot is elsewhere."""
+    seen: tuple[str, ...] = ()
+    """Views, such as `instrumentation`, one of which must have been on the screen since the step began."""
+    run: bool = False
+    """Whether a run must be in view: the question is about what has happened in it."""
+    printed: str = ""
+    """A regular expression for a line that this run must have printed; empty for any run."""
 
     def __post_init__(self) -> None:
         if isinstance(self.answer, tuple) and not self.answer:
@@ -68,6 +100,14 @@ class Question:
             raise ConfigError("is only for numbers", key="within")
         if self.choices and self.answer not in self.choices:
             raise ConfigError(f"{self.answer!r} is none of the choices", key="answer")
+        if self.at_x_mm is not None and self.at_x_mm[0] >= self.at_x_mm[1]:
+            left, right = self.at_x_mm
+            raise ConfigError(f"must be from left to right, got {left:g} to {right:g}", key="at_x_mm")
+        if (self.at_x_mm is None) is bool(self.where):
+            raise ConfigError("goes with at_x_mm", "the place in words, and how to get there", key="where")
+        require_regex(self.printed, "printed")
+        for number, panel in enumerate(self.seen, start=1):
+            _check_panel(panel, f"seen[{number}]", SEEABLE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +115,12 @@ class Watch:
     """The student watches a variable or an expression while the program is paused."""
 
     SHORT: ClassVar[str] = "expression"
+    EXCLUDES: ClassVar[Mapping[Way, str]] = {
+        Way.LITERAL: "the value is that of the paused program",
+        Way.SENSOR: "a variable is looked at, not a sensor",
+        Way.ORDER: "it is seen only while the program is paused",
+        Way.PLACE: "a variable has no place",
+    }
 
     expression: str
 
@@ -84,6 +130,12 @@ class Break:
     """A run stops at a breakpoint."""
 
     SHORT: ClassVar[str] = "matches"
+    EXCLUDES: ClassVar[Mapping[Way, str]] = {
+        Way.LITERAL: "a run must really stop at it",
+        Way.SENSOR: "the breakpoint's text says what it looks at",
+        Way.ORDER: "a run stops only after the breakpoint was set",
+        Way.PLACE: "the run stops where the condition is true",
+    }
 
     matches: str
     """A regular expression for the text of the breakpoint, such as `left` or `^12`."""
@@ -97,6 +149,12 @@ class Export:
     """The student exports a log."""
 
     SHORT: ClassVar[str] = "suffix"
+    EXCLUDES: ClassVar[Mapping[Way, str]] = {
+        Way.LITERAL: "a file must really be written",
+        Way.SENSOR: "what is exported was measured by a run before",
+        Way.ORDER: "without a run there is nothing to export",
+        Way.PLACE: "the file may be anywhere",
+    }
 
     suffix: str
     """What the name of the file ends in, such as `.csv`."""
@@ -107,6 +165,10 @@ class Note:
     """The student writes a note on the run, perhaps on a band with a certain level."""
 
     SHORT: ClassVar[str] = "matches"
+    EXCLUDES: ClassVar[Mapping[Way, str]] = {
+        Way.SENSOR: "the note is on samples of the run in view",
+        Way.ORDER: "without a run there is nothing to note",
+    }
 
     matches: str = ""
     """A regular expression for the text of the note."""
@@ -123,6 +185,12 @@ class Visit:
     """The student goes back to a past instant of a run."""
 
     SHORT: ClassVar[str] = ""
+    EXCLUDES: ClassVar[Mapping[Way, str]] = {
+        Way.LITERAL: "the instant must really be in view",
+        Way.SENSOR: "the recording is looked at",
+        Way.ORDER: "only what is past can be in view",
+        Way.PLACE: "the instant says where the robot was",
+    }
 
     from_s: Seconds
     to_s: Seconds
@@ -137,12 +205,19 @@ class Show:
     """A panel of the app is on the screen."""
 
     SHORT: ClassVar[str] = "panel"
+    EXCLUDES: ClassVar[Mapping[Way, str]] = {
+        Way.LITERAL: "the panel must really open",
+        Way.SENSOR: "nothing is measured yet",
+        Way.ORDER: "it is one key",
+        Way.PLACE: "a panel may be anywhere",
+    }
 
     panel: str
+    paused: bool = False
+    """Whether a program must be paused at that moment."""
 
     def __post_init__(self) -> None:
-        if self.panel not in SHOWABLE:
-            raise ConfigError(f"there is no panel {self.panel!r}", nearest(self.panel, SHOWABLE), key="panel")
+        _check_panel(self.panel, "panel")
 
 
 Check: TypeAlias = Run | Question | Watch | Break | Export | Note | Visit | Show
@@ -167,6 +242,8 @@ class WrongProgram:
     text: str
     line: int
     """Where it begins in the lesson's file."""
+    way: Way | None = None
+    """The wrong way that it goes; None for another fault."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,6 +268,26 @@ class Step:
     wrong: tuple[str, ...] = ()
     """The same, but does not pass."""
     wrong_programs: tuple[WrongProgram, ...] = ()
+    excludes: Mapping[Way, str] = field(default_factory=dict)
+    """The wrong ways that it does not admit, each with the reason."""
+
+    def missing_ways(self) -> tuple[Way, ...]:
+        """Return the wrong ways that are neither tried nor excluded with a reason."""
+        covered = {*self.excludes, *self.check.EXCLUDES, *(one.way for one in self.wrong_programs)}
+        match self.check:
+            case Question(choices=choices, at_x_mm=place, seen=seen, run=run):
+                # What must have happened is not there in the trials of `is_met`.
+                tried = {
+                    Way.LITERAL: self.wrong or choices,
+                    Way.PLACE: place,
+                    Way.SENSOR: seen or place,
+                    Way.ORDER: run,
+                }
+                covered |= {way for way, there in tried.items() if there}
+            case Note(level=level):
+                covered |= {Way.LITERAL} if self.wrong else set()
+                covered |= {Way.PLACE} if level is not None else set()
+        return tuple(way for way in Way if way not in covered)
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from tuisim.config.options import settings_of
 from tuisim.config.program_file import parse_program
 from tuisim.config.program_settings import program_settings
 from tuisim.goals.judgement import GoalState, Judgement
-from tuisim.lessons.spec import Lesson, Run, Step
+from tuisim.lessons.spec import Lesson, Question, Run, Step, Way
 from tuisim.runs.handle import RunOptions
 from tuisim.source import source_lines
 
@@ -33,6 +33,8 @@ class Trial:
     passes: bool
     """Whether it must pass."""
     seed: int
+    way: Way | None = None
+    """The wrong way that it goes, if it is said."""
 
 
 def trials(lesson: Lesson) -> list[Trial]:
@@ -42,7 +44,7 @@ def trials(lesson: Lesson) -> list[Trial]:
     for step in lesson.steps:
         if isinstance(step.check, Run):
             found += [Trial(step, step.answer, 0, True, seed + more) for more in range(step.check.times)]
-            found += [Trial(step, wrong.text, wrong.line, False, seed) for wrong in step.wrong_programs]
+            found += [Trial(step, wrong.text, wrong.line, False, seed, wrong.way) for wrong in step.wrong_programs]
     return found
 
 
@@ -72,6 +74,17 @@ def faults(lesson: Lesson) -> list[str]:
     return [fault for trial in tried for fault in _faults_of(lesson, trial, results[trial.text, trial.seed])]
 
 
+def warnings(lesson: Lesson) -> list[str]:
+    """Return what a lesson lacks, each as a line: wrong ways that are not tried, and answers without a reason."""
+    found = []
+    for step in lesson.steps:
+        at = f"{lesson.path}, line {step.line}"
+        found += [f"{at}: no wrong way “{way}” is tried on “{step.title}”, nor excluded" for way in step.missing_ways()]
+        if isinstance(step.check, Question | Run) and not step.why:
+            found.append(f"{at}: no `why` says why what passes “{step.title}” is right")
+    return found
+
+
 def _faults_of(lesson: Lesson, trial: Trial, result: Result) -> Iterator[str]:
     missed = _missed(trial.step, result.judgements)
     if trial.passes and missed:
@@ -81,7 +94,8 @@ def _faults_of(lesson: Lesson, trial: Trial, result: Result) -> Iterator[str]:
             f"{reasons}{error}"
         )
     elif not trial.passes and not missed:
-        yield f"{lesson.path}, line {trial.line}: this wrong program passes “{trial.step.title}”"
+        way = f" ({trial.way})" if trial.way else ""
+        yield f"{lesson.path}, line {trial.line}: this wrong program{way} passes “{trial.step.title}”"
 
 
 def _missed(step: Step, judgements: Sequence[Judgement]) -> list[Judgement]:
