@@ -29,18 +29,23 @@ from tuisim.lessons.events import (
     Watched,
     good_runs,
     is_met,
+    note_fault,
+    unready,
     wanted_form,
 )
 from tuisim.lessons.files import load_lesson
 from tuisim.lessons.progress import LessonProgress, StepState
-from tuisim.lessons.spec import Break, Export, Lesson, Note, Question, Run, Show, Step, Visit, Watch
+from tuisim.lessons.spec import SEEABLE, Break, Export, Lesson, Note, Question, Run, Show, Step, Visit, Watch
+from tuisim.lessons.story import story
 from tuisim.protocol import PauseReason
+from tuisim.runs.store import load_run
 
 if TYPE_CHECKING:
     from tuisim.app.debugger import AppDebugger
     from tuisim.app.goals import AppGoals
     from tuisim.app.loader import Loader
     from tuisim.app.panel_area import PanelArea
+    from tuisim.app.panels.lesson import LessonPanel
     from tuisim.app.render.lesson import LessonView
     from tuisim.app.run_controller import RunController
     from tuisim.app.services import AppServices
@@ -101,6 +106,14 @@ class AppLesson:
         self._counted = ""
         """Id of the last run that was counted as a try."""
         self._next_look_s = 0.0
+        self._seen: set[str] = set()
+        """What of `SEEABLE` was on the screen since the step began."""
+        self._remark = ""
+        """Why the last note does not pass."""
+        self._story = ""
+        """What the run that has just passed a step did."""
+        self._beside: LessonPanel | None = None
+        """The panel beside a log that is open above the app."""
 
     # Opening
 
@@ -151,6 +164,7 @@ class AppLesson:
         assert self.lesson is not None
         self._at = self.progress.current(self.lesson)
         self._events, self._judgements, self._is_elsewhere = [], (), False
+        self._seen, self._remark = set(), ""
         recording = self._run_controller.timeline.recording
         self._before = recording.run_id if recording else ""
         if self.step is not None and isinstance(self.step.check, Show):
@@ -200,15 +214,36 @@ class AppLesson:
         step = self.step
         if step is None or not isinstance(step.check, Question):
             return
+        check = step.check
         if not text:
             raise TuisimError("Type an answer")
-        if wanted := wanted_form(step.check, text):
+        if wanted := wanted_form(check, text):
             raise TuisimError(f"{text}: type {wanted}")
-        if not self._take(Typed(text)):
+        typed = self._typed(check, text)
+        # What is measured elsewhere is not wrong, it is about something else.
+        if first := unready(check, typed):
+            raise TuisimError(first)
+        if not self._take(typed):
             self._keep(self.progress.with_step(step.name, tries=self.progress.of(step.name).tries + 1))
             self.show()
             left = len(step.hints) - self.progress.of(step.name).hints
             raise TuisimError(f"{text} is not right. Try again{': escape, then Y shows a hint' if left > 0 else ''}")
+
+    def _typed(self, check: Question, text: str) -> Typed:
+        """Return an answer with what has happened before it."""
+        self._look()
+        recording = self._run_controller.timeline.recording
+        # A run may have printed millions of lines, which most questions are not about.
+        printed: tuple[str, ...] = ()
+        if recording is not None and check.printed:
+            printed = tuple(row.text for row in load_run(recording.folder).output.all_rows())
+        return Typed(text, self._run_controller.pose.x_mm, frozenset(self._seen), printed, recording is not None)
+
+    def _look(self) -> None:
+        """Note what is on the screen."""
+        self._seen |= {panel for panel in SEEABLE if self._panel_area.shown(panel)}
+        if self._beside is not None:
+            self._seen.add("analyser")
 
     def hint(self) -> None:
         """Show the next hint of the step."""
@@ -266,6 +301,7 @@ class AppLesson:
     def update(self) -> None:
         """Check the step by what has happened; never blocks."""
         if self.step is not None:
+            self._look()
             try:
                 for event in self._observed(self.step):
                     if self._take(event):
@@ -292,9 +328,9 @@ class AppLesson:
                     yield Visited(timeline.at / timeline.recording.spec.profile.tick_hz)
             case Show(panel=panel):
                 if self._panel_area.shown(panel):
-                    yield Shown(panel)
+                    yield Shown(panel, self._run_controller.state is RunPhase.PAUSED)
             case Note():
-                yield from self._notes()
+                yield from self._notes(step.check)
             case Question() | Export():
                 # The student's keys tell.
                 pass
@@ -327,12 +363,17 @@ class AppLesson:
         wanted, was = build_run_spec(settings_of(self.lesson.settings)).world, recording.spec.world
         return (was.background, was.start, was.obstacles) == (wanted.background, wanted.start, wanted.obstacles)
 
-    def _notes(self) -> Iterator[Event]:
+    def _notes(self, check: Note) -> Iterator[Event]:
         recording = self._run_controller.timeline.recording
         if recording is None or time.monotonic() < self._next_look_s:
             return
         self._next_look_s = time.monotonic() + NOTES_PERIOD_S
-        yield from noted(recording.folder)
+        notes = list(noted(recording.folder))
+        yield from notes
+        remark = note_fault(check, notes[-1]) if notes and self.step and self.step.check is check else ""
+        if remark != self._remark:
+            self._remark = remark
+            self.show()
 
     def _take(self, event: Event) -> bool:
         """Add what has happened. Return whether the step is done now."""
@@ -350,6 +391,8 @@ class AppLesson:
         return True
 
     def _leave_step(self, step: Step, state: StepState) -> None:
+        goals = step.check.goals if isinstance(step.check, Run) else ()
+        self._story = story(each for each in self._judgements if each.goal.name in goals)
         self._keep(self.progress.with_step(step.name, state=state, at=stored.now()))
         self._done = step if state is StepState.DONE else None
         self._begin_step()
@@ -366,8 +409,24 @@ class AppLesson:
 
     def show(self) -> None:
         """Update the panel, which may have just been mounted."""
-        if panel := self._panel_area.lesson:
-            panel.show_lesson(self.view())
+        for panel in (self._panel_area.lesson, self._beside):
+            if panel is not None:
+                panel.show_lesson(self.view())
+
+    def beside_log(self) -> LessonPanel | None:
+        """Return a panel with the step for a log that is opened above the app; None if no lesson is open."""
+        if self.lesson is None:
+            return None
+        from tuisim.app.panels.lesson import LessonPanel
+
+        self._beside = LessonPanel(is_brief=True)
+        self._beside.border_title = PANELS["lesson"].title
+        self._beside.show_lesson(self.view())
+        return self._beside
+
+    def log_closed(self) -> None:
+        """Forget the panel beside the log, which has been closed."""
+        self._beside = None
 
     def view(self) -> LessonView:
         """Return the content of the panel."""
@@ -386,6 +445,8 @@ class AppLesson:
             good_runs=good,
             is_elsewhere=self._is_elsewhere,
             done=self._done,
+            story=self._story if self._done else "",
+            remark=self._remark,
             next_title=self._next_title(),
         )
 
@@ -402,7 +463,6 @@ def noted(folder: Path) -> Iterator[Noted]:
     """
     from tuisim.analysis.source import NOTES_FILE, read_notes
     from tuisim.runs.samples import samples_of
-    from tuisim.runs.store import load_run
 
     notes = read_notes(folder / NOTES_FILE)
     if not notes:

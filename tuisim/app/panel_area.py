@@ -17,6 +17,7 @@ from tuisim.app.layout.arrangement import (
     is_single,
     is_tall,
     size_class,
+    stacked,
     wanted_panels,
     with_room,
 )
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
     from tuisim.app.panels.world import World
 
 PanelWidget = TypeVar("PanelWidget", bound=Widget)
+_STACKED_ROWS = 18
+"""In a lower area there is no room for a lesson below a panel that needs the whole width."""
 
 
 class _Mounted(Generic[PanelWidget]):
@@ -84,6 +87,8 @@ class PanelArea(BorderMover):
         """The panel shown where there is room for one only."""
         self._shape = ""
         """The form of the screen for which `moved` was loaded; empty before the first layout."""
+        self._is_stacked = False
+        """Whether a roomy panel stands above the lesson, and nothing else is shown."""
         self._roomy: tuple[str, int, int] | None = None
         """The panel that needs a number of columns and rows."""
 
@@ -234,10 +239,16 @@ class PanelArea(BorderMover):
     def _wanted(self) -> tuple[list[str], list[str]]:
         """Return the ids of the panels to show, by priority, and those for what space is left."""
         width, height = self.size
+        self._is_stacked = False
         wanted, fill = wanted_panels(self.preset, self._asked, width, height)
         if self._roomy:
             panel, columns, rows = self._roomy
+            keeps_lesson = "lesson" in wanted and panel != "lesson" and height >= _STACKED_ROWS
             wanted = with_room(panel, wanted, (columns, rows), (width, height), self.preset)
+            if wanted == [panel] and keeps_lesson:
+                # Its lines need the whole width, but not all rows.
+                self.alone, self._is_stacked = "", True
+                return [panel, "lesson"], []
             self.alone = panel if wanted == [panel] else ""
             return wanted, []
         if self.alone or self.is_single:
@@ -249,7 +260,10 @@ class PanelArea(BorderMover):
         if not self.size:
             return
         wanted, fill = self._wanted()
-        self.arrangement = arrange(wanted, self.size.width, self.size.height, fill, self.preset, self.moved)
+        if self._is_stacked:
+            self.arrangement = stacked(wanted[0], wanted[1], self.size.width, self.size.height)
+        else:
+            self.arrangement = arrange(wanted, self.size.width, self.size.height, fill, self.preset, self.moved)
         with self.app.batch_update():
             for panel, widget in self.panels.items():
                 widget.display = panel in self.arrangement.boxes

@@ -36,8 +36,8 @@ def _names() -> Sequence[str]:
     name="open",
     help="""Open a lesson in the app; without a terminal, print it.
 
-    A LESSON is given by its name or number, see `tuisim learn list`, or as a file. Without one, the app goes on with the lesson that
-    was opened last; without a terminal, the lessons are listed.
+    A LESSON is given by its name or number, see `tuisim learn list`, or as a file. Without one, the app goes on with
+    the lesson that was opened last; without a terminal, the lessons are listed.
     """,
 )
 def open_lesson(word: str | None, folder: str | None, as_text: bool) -> int:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.core.sensors.color import columns
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
+from tuisim.errors import counted
 from tuisim.goals.evidence import Evidence, Moment, Span
 from tuisim.goals.found import Found, share_words
 from tuisim.goals.places import line_of_motion
@@ -81,7 +82,9 @@ def find_read(condition: Read, evidence: Evidence, span: Span) -> Found:
     if not len(every):
         return Found(None, f"The program did not read the {noun}.")
     where = f" at {range_words(condition.x_mm[0])}" if condition.x_mm else ""
-    text = f"The program read the {noun} {len(ticks):,} times{where} when it counts; {condition.times:,} are needed."
+    when = " in that time" if span.first_tick else ""
+    times = counted(len(ticks), "time")
+    text = f"The program read the {noun} {times}{where}{when}; {condition.times:,} are needed."
     return Found(None, text, int(evidence.records["line"][every[0]]))
 
 

@@ -178,6 +178,18 @@ def _is_noted(check: Note, event: Noted) -> bool:
     return re.search(check.matches, event.text, re.IGNORECASE) is not None
 
 
+def note_fault(check: Note, event: Noted) -> str:
+    """Return in a sentence why a note does not pass; empty if it does."""
+    if _is_noted(check, event):
+        return ""
+    note = f"Your note “{event.text}” is on"
+    if check.level is not None and event.level is None:
+        return f"{note} no samples: select a band first."
+    if check.level is not None and event.level is not None and abs(event.level - check.level) > check.within:
+        return f"{note} samples with a mean of {event.level:.1f}; this step is about those with {check.level:g}."
+    return f"{note} the right samples, but its text is not what the step asks for."
+
+
 def event_of(check: Check, text: str) -> Event:
     """Return what a text in a lesson's file stands for: an answer, a breakpoint, an expression, a file name.
 

@@ -165,7 +165,9 @@ def analyse(workspace: Workspace) -> None:
     from tuisim.analysis.source import LogRequest
     from tuisim.app.analyser.app import Analyser
 
-    workspace.app.push_screen(Analyser(LogRequest(runs=(workspace.run_controller.run_id,))))
+    lesson = workspace.lesson
+    request = LogRequest(runs=(workspace.run_controller.run_id,))
+    workspace.app.push_screen(Analyser(request, lesson.beside_log()), lambda _: lesson.log_closed())
 
 
 def choose_run(workspace: Workspace) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from rich.style import Style
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
+from textual.widget import Widget
 
 from tuisim.analysis.model import RECKONING, Model
 from tuisim.analysis.source import LogRequest, OpenedLog, opening
@@ -32,6 +33,8 @@ from tuisim.logs.expressions import CONSTANTS, FUNCTIONS
 from tuisim.logs.log import Log
 
 _POLL_S = 1.0
+_WIDE_COLS = 120
+"""From this width on there is room for the world and a widget beside it."""
 _PATIENCE = 10.0
 """The pause between two readings of a growing log, as a multiple of the last reading time."""
 
@@ -53,17 +56,24 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
     Args:
         request: What to open.
+        beside: A widget for the right edge, such as the lesson that the log is for. Where there is little room, it
+            takes the place of the world until the key of the world is pressed.
     """
 
     DEFAULT_CSS = """
     LogScreen { background: #10151c; color: #d8dee6; }
     LogScreen #title { height: 1; background: #1c242e; color: #ffffff; }
     LogScreen #log { width: 1fr; }
+    LogScreen .beside {
+        width: 34%; min-width: 32; height: 1fr; background: #10151c; border: round #44505e;
+        border-title-color: #9fb0c3; border-subtitle-color: #7f8fa1;
+    }
     """
 
-    def __init__(self, request: LogRequest) -> None:
+    def __init__(self, request: LogRequest, beside: Widget | None = None) -> None:
         super().__init__()
         self.request = request
+        self._beside = beside
         self._model: Model | None = None
         self.searched = ""
         """The text that was searched for last."""
@@ -89,9 +99,12 @@ class LogScreen(ActionHost, ClosesOnce[None]):
                 yield self.chart
                 yield self.pane
             yield self.world
+            if self._beside is not None:
+                yield self._beside.add_class("beside")
         yield self.key_footer
 
     def on_mount(self) -> None:
+        self.world.is_on = self._beside is None or self.size.width >= _WIDE_COLS
         self.open(self.request)
         self.set_interval(_POLL_S, self.poll)
 
@@ -201,6 +214,13 @@ class LogScreen(ActionHost, ClosesOnce[None]):
     def lay_out(self, chart: bool, pane: bool) -> None:
         """Show chart, pane, or both."""
         self.chart.display, self.pane.display = chart, pane
+        self.call_after_refresh(self.update)
+
+    def show_world(self, is_on: bool) -> None:
+        """Show or hide the world; where there is little room, instead of what is beside the log."""
+        self.world.display = self.world.is_on = is_on
+        if self._beside is not None:
+            self._beside.display = not is_on or self.size.width >= _WIDE_COLS
         self.call_after_refresh(self.update)
 
     def show_pane(self, name: str) -> None:

@@ -354,6 +354,13 @@ def _scored(
         yield _score(layout, sum(panel in kept for panel in panels), crowded), node
 
 
+def stacked(upper: str, lower: str, width: int, height: int) -> PanelLayout:
+    """Place two panels one above the other; the upper one is a little higher."""
+    rows = height * 11 // 20
+    boxes = {upper: PanelBox(0, 0, width, rows), lower: PanelBox(0, rows, width, height - rows)}
+    return PanelLayout(boxes, wanted=(upper, lower))
+
+
 def with_room(
     panel: str, panels: Sequence[str], least: tuple[int, int], size: tuple[int, int], preset: Preset = Preset.STANDARD
 ) -> list[str]:

@@ -16,7 +16,11 @@ _TITLE = PANELS["lesson"].title
 
 
 class LessonPanel(LinesPanel, can_focus=True):
-    """The lesson panel."""
+    """The lesson panel.
+
+    Args:
+        is_brief: Whether it is beside something whose keys work, with what is to be done in its first row.
+    """
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
@@ -28,12 +32,14 @@ class LessonPanel(LinesPanel, can_focus=True):
         Binding("right", "turn(1)", "The next step", show=False),
     ]
 
-    def __init__(self) -> None:
+    def __init__(self, is_brief: bool = False) -> None:
         super().__init__()
+        self._top = -1 if is_brief else 0
+        self.can_focus = not is_brief
         self._content = LessonView()
         self._page: int | None = None
         """The page that the user has turned to; None for that of the step to do."""
-        self._first = 0
+        self._first = self._top
         """First row of the text that is shown."""
         self._picture = LessonPicture([])
         self._is_typing = False
@@ -54,7 +60,7 @@ class LessonPanel(LinesPanel, can_focus=True):
             return
         before, self._content = self._content, view
         if (view.lesson, view.at, view.judgements) != (before.lesson, before.at, before.judgements):
-            self._page, self._first = None, 0
+            self._page, self._first = None, -1 if self._is_typing else self._top
         self._redraw()
         if view.hints > before.hints and view.at == before.at:
             # A new hint is at the end.
@@ -79,7 +85,8 @@ class LessonPanel(LinesPanel, can_focus=True):
         title = f"{_TITLE} ↓{below}" if below else _TITLE
         if title != self.border_title:
             self.border_title = title
-        pages = with_keys_of(self.app, "{lesson-down} reads on") if below and not self._is_typing else ""
+        turns = below and not self._is_typing and self.can_focus
+        pages = with_keys_of(self.app, "{lesson-down} reads on") if turns else ""
         words = "↑↓ text · ←→ steps · M menu" if self.has_focus else pages.replace("[", "\\[")
         if words != self.border_subtitle:
             self.border_subtitle = words
@@ -92,6 +99,10 @@ class LessonPanel(LinesPanel, can_focus=True):
     def set_typing(self, is_typing: bool) -> None:
         """While the user types in the program, the page keys are the editor's."""
         self._is_typing = is_typing
+        if is_typing:
+            # There may be little room: what is to be done comes first.
+            self._first = -1
+            self._redraw()
         self._show_subtitle()
 
     def action_scroll_text(self, by: int) -> None:

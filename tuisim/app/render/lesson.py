@@ -49,6 +49,10 @@ class LessonView:
     """Whether the last run did not begin at the lesson's start."""
     done: Step | None = None
     """The step that has just been done."""
+    story: str = ""
+    """What the run did that has passed it; empty if it was not about a run."""
+    remark: str = ""
+    """Why the last note does not pass the step."""
     next_title: str = ""
     """Title of the next lesson; empty if this is the last."""
 
@@ -80,7 +84,7 @@ def draw_lesson(view: LessonView, page: int, first: int, width: int, height: int
     Args:
         view: The lesson.
         page: The page to show, see `LessonView.page`.
-        first: The first row of the text to show, if it has so many.
+        first: The first row of the text to show, if it has so many; -1: the title of the step.
         width: Columns.
         height: Rows.
     """
@@ -89,6 +93,9 @@ def draw_lesson(view: LessonView, page: int, first: int, width: int, height: int
     text = list(_end(view, width) if page >= view.last_page else _page(view, page, width))
     head = [_head(view, page, width)]
     room = max(0, height - len(head))
+    if first < 0:
+        titles = (at for at, line in enumerate(text) if line and line[0][0].startswith(f"{page + 1}. "))
+        first = next(titles, 0)
     first = max(0, min(first, len(text) - room))
     return LessonPicture([*head, *text[first : first + room]], first, max(0, len(text) - first - room))
 
@@ -110,13 +117,14 @@ def _page(view: LessonView, page: int, width: int) -> Iterator[Line]:
     lesson, step = view.lesson, view.lesson.steps[page]
     is_current = page == view.at
     if is_current and view.done and not view.judgements:
-        yield from _done(view.done, width)
+        yield from _done(view.done, view.story, width)
     if page == 0 and not (is_current and view.judgements):
         yield from markdown_lines(lesson.intro, width)
         yield []
     yield from _wrapped(f"{page + 1}. {step.title}", width, _NAME)
     if is_current:
         yield from _result(view, step, width)
+        yield from _wrapped(view.remark, width, _BAD)
     yield from markdown_lines(step.text, width)
     if isinstance(step.check, Question):
         yield []
@@ -140,9 +148,10 @@ def _page(view: LessonView, page: int, width: int) -> Iterator[Line]:
         yield from _wrapped(f"On a real robot: {lesson.why}", width, _PALE)
 
 
-def _done(step: Step, width: int) -> Iterator[Line]:
-    """Yield that a step has just been done, why that was right, and how to read it again."""
+def _done(step: Step, story: str, width: int) -> Iterator[Line]:
+    """Yield that a step has just been done, by what, why that was right, and how to read it again."""
     yield from _wrapped(f"✓ {step.title}", width, _GOOD)
+    yield from _wrapped(story, width, _PALE)
     yield from _wrapped(step.why, width, _PLAIN)
     yield from _wrapped("M shows the steps before again.", width, _PALE)
     yield []
@@ -208,7 +217,7 @@ def _end(view: LessonView, width: int) -> Iterator[Line]:
     yield from _wrapped("✓ The lesson is done." if not skipped else "The end of the lesson.", width, _GOOD)
     yield []
     if view.done:
-        yield from _done(view.done, width)
+        yield from _done(view.done, view.story, width)
     yield from _wrapped(f"On a real robot: {view.lesson.why}", width, _PLAIN)
     yield []
     following = (

@@ -60,12 +60,10 @@ def larger(screen: LogScreen) -> None:
 
 def world(screen: LogScreen) -> None:
     """Show or hide the world beside the log."""
-    pane = screen.world
     if not has_poses(screen.model.opened):
         screen.say(NO_POSES)
         return
-    pane.display = pane.is_on = not pane.display
-    screen.call_after_refresh(screen.update)
+    screen.show_world(not screen.world.display)
 
 
 _FILTERS = (

@@ -1,0 +1,50 @@
+"""What a run did to meet the goals of a step, in a sentence for the student whose run it was."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from tuisim.goals.judgement import GoalState, Judgement
+from tuisim.goals.spec import Condition, Finish, Follow, Log, Pass, Print, Reach
+
+
+def story(judgements: Iterable[Judgement]) -> str:
+    """Return when and where a run met goals, such as `Your run: line 3 printed it at 5.42 s, at x = 1153 mm.`
+
+    Args:
+        judgements: Those of the goals of the step.
+    """
+    parts = dict.fromkeys(part for each in judgements for part in _parts(each))
+    return f"Your run: {'; '.join(parts)}." if parts else ""
+
+
+def _parts(judgement: Judgement) -> Iterator[str]:
+    if judgement.state is not GoalState.MET:
+        return
+    for condition in judgement.goal.parts:
+        if words := _words(condition, judgement):
+            yield words
+
+
+def _words(condition: Condition, judgement: Judgement) -> str:
+    """Return what met a condition; empty for those that only the program's text meets."""
+    change = judgement.changes[-1]
+    when, where = f"at {change.time_s:.2f} s", f"at x = {change.x_mm:.0f} mm, y = {change.y_mm:.0f} mm"
+    match condition:
+        case Reach(at_end=True):
+            return f"it ended {where}"
+        case Reach() | Pass():
+            return f"it was {where} {when}"
+        case Print(lines=lines, once=False):
+            last = "" if len(lines) == 1 else " the last"
+            return f"line {judgement.line} printed{last or ' it'} {when}, {where}"
+        case Print(lines=lines):
+            return f"it printed {len(lines)} such lines, each in its place"
+        case Log(name=name, levels=levels):
+            last = "" if len(levels) == 1 else "the last "
+            return f"line {judgement.line} logged {last}{name} {when}, {where}"
+        case Follow():
+            return "the sensor was on the line for long enough"
+        case Finish():
+            return f"it finished {when}"
+    return ""
