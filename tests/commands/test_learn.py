@@ -16,9 +16,9 @@ from tuisim.lessons.skeleton import SKELETON
 FAULTY = {
     "model answer": (
         ("500 / (3.14159 * 56)", "1"),
-        "line 54: the model answer does not pass “Drive them”: there: At the end the robot was 324 mm left of x = ",
+        "line 70: the model answer does not pass “Drive them”: there: At the end the robot was 324 mm left of x = ",
     ),
-    "wrong program": (("SpeedPercent(30), 5)", "SpeedPercent(30), 2.842)"), "this wrong program passes “Drive them”"),
+    "wrong program": (("SpeedPercent(30), 5)", "SpeedPercent(30), 2.842)"), "this wrong program (wrong place) passes “Drive them”"),
     "error": (("500 / (3.14159 * 56)", "1 / 0"), "it ended with: ZeroDivisionError: division by zero"),
 }
 
@@ -80,7 +80,7 @@ def test_status_for_a_tutor(here: Command, own: Path) -> None:
 def test_new_lesson_is_in_order(here: Command, home: Path) -> None:
     assert here("learn", "new", "mine.md").returncode == 0
     done = here("learn", "check", "mine.md")
-    assert (done.returncode, done.stdout) == (0, "mine.md: 2 steps, 1 goal: all is well\n")
+    assert (done.returncode, done.stdout) == (0, "mine.md: 2 steps, 2 goals, 5 wrong ways: all is well\n")
 
 
 @pytest.mark.parametrize(("change", "fault"), FAULTY.values(), ids=FAULTY)
@@ -153,7 +153,7 @@ BAD = {
     "no lessons in it": (("list", "--folder", "."), "no lessons in ."),
     "new exists": (("new", "there.md"), "there.md: exists already"),
     "new is no Markdown": (("new", "there.txt"), "is not a .md file"),
-    "check without file": (("check",), "FILE… is missing"),
+    "no such number": (("17",), "there is no lesson 17 (1 to 16. See `tuisim learn list`)"),
 }
 
 
@@ -164,6 +164,24 @@ def test_bad_words(words: tuple[str, ...], message: str, here: Command, tmp_path
         (tmp_path / "there.md").write_text("x")
     done = here("learn", *words)
     assert (done.returncode, message in done.stderr) == (2, True), done.stderr
+
+
+def test_lesson_by_its_number(here: Command, home: Path) -> None:
+    assert here("learn", "2", "--text").stdout.startswith("What the sensors see\n")
+
+
+def test_missing_wrong_way_is_a_warning(here: Command, tmp_path: Path) -> None:
+    (tmp_path / "mine.md").write_text("\n".join(
+        line for line in SKELETON.split("\n") if not line.startswith("excludes")
+    ))  # fmt: skip
+    done = here("learn", "check", "mine.md", "--no-runs")
+    assert "warning: mine.md, line 69: no wrong way “no sensor” is tried on “Drive them”, nor excluded" in done.stdout
+    assert (done.returncode, here("learn", "check", "mine.md", "--no-runs", "--strict").returncode) == (0, 1)
+
+
+def test_check_without_a_file_is_of_the_lessons_of_tuisim(here: Command) -> None:
+    lines = here("learn", "check", "--no-runs", "--strict").stdout.splitlines()
+    assert (len(lines), lines[0].partition(":")[0], lines[-1].partition(":")[0]) == (16, "first-run", "pid-line")
 
 
 def test_damaged_progress(here: Command, home: Path) -> None:

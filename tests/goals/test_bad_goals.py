@@ -119,6 +119,19 @@ BAD = {
         f"{GOOD}[[goal]]\nname = 'a'\nfinish = true\n",
         "line 6: goal[2].name: there are two goals 'a' (give each its own",
     ),
+    "range backwards": (
+        goal("print = { lines = 'x', x_mm = [[9, 5]] }"),
+        "line 7: goal[2].print.x_mm[1]: must be from left to right, got 9 to 5",
+    ),
+    "too few ranges": (
+        goal("print = { lines = ['x', 'y', 'z'], x_mm = [[1, 5], [2, 6]] }"),
+        "line 7: goal[2].print.x_mm: must have one entry, or 3, has 2",
+    ),
+    "unknown reading": (goal("read = { reading = 'colour' }"), "read.reading: no such value 'colour' (one of color"),
+    "as read of the wheels": (
+        goal("log = { name = 'x', levels = [1], reading = 'motor', as_read = true }"),
+        "log.as_read: is only for readings of colour sensors",
+    ),
     "all of what is not there": (goal("all = ['a', 'c']"), "line 7: goal[2].all: there is no goal 'c' (one of a, b)"),
     "before what is not there": (
         goal("print = 'x'", "before = 'aa'"),

@@ -312,7 +312,131 @@ OUTPUT = {
     ),
 }
 
-CASES = PLACES | OUTPUT
+LOOKS = "\nprint('Grey: ' + str(colorLeft.reflected_light_intensity_pc))\nprint('Grey: 50.2')\n"
+"""A program whose line 2 reads the sensor, and whose line 3 does not."""
+ON_GREY = (ahead(200, 1), wait(0.01, 2))
+GREY = world(920, background="Grey_bands")
+MEASURED = "log = { name = 'Grey', levels = [50.2], reading = 'color', as_read = true"
+COUNTED = (says("a: 1"), says("a: 1"), says("n: 2", 4))
+
+READINGS = {
+    "log as read": Case(f"{MEASURED} }}", (*ON_GREY, says("Grey: 50.196", 2)), "met", line=2, world=GREY, text=LOOKS),
+    "log as read, rounded": Case(f"{MEASURED} }}", (*ON_GREY, says("Grey: 50", 2)), "met", world=GREY, text=LOOKS),
+    "log a literal": Case(
+        f"{MEASURED} }}",
+        (*ON_GREY, says("Grey: 50.2", 3)),
+        "missed",
+        reason="but line 3 does not compute it from what the colour sensor read.",
+        world=GREY,
+        text=LOOKS,
+    ),
+    "log without a reading": Case(
+        f"{MEASURED} }}",
+        (ahead(200, 1), says("Grey: 50.2", 2)),
+        "missed",
+        reason="but the program had not read the colour sensor before.",
+        world=GREY,
+        text=LOOKS,
+    ),
+    "log what the sensor did not give": Case(
+        f"{MEASURED} }}",
+        (wait(0.01, 2), ahead(200, 1), says("Grey: 50.2", 2)),
+        "missed",
+        reason="but that is not what the colour sensor gave where the program had read it.",
+        world=GREY,
+        text=LOOKS,
+    ),
+    "log from elsewhere": Case(
+        f"{MEASURED}, x_mm = [[1000, 1050]] }}",
+        (*ON_GREY, says("Grey: 50.2", 2)),
+        "missed",
+        reason="read when the robot was at x = 1121 mm; it must be at x from 1000 to 1050 mm.",
+        line=2,
+        world=GREY,
+        text=LOOKS,
+    ),
+    "log from there": Case(
+        f"{MEASURED}, x_mm = [[1100, 1130]] }}",
+        (*ON_GREY, ahead(200, 1), says("Grey: 50.2", 2)),
+        "met",
+        world=GREY,
+        text=LOOKS,
+    ),
+    "log a count": Case("log = { name = 'n', levels = [2], counts = 'a' }", COUNTED, "met", line=4),
+    "log a wrong count": Case(
+        "log = { name = 'n', levels = [2], counts = 'a' }",
+        COUNTED[1:],
+        "missed",
+        reason="n: 2 was printed at 0.00 s, but the program had printed 1 sample a.",
+    ),
+    "print there": Case("print = { lines = 'x', x_mm = [[690, 710]] }", (ahead(200), says("x", 5)), "met", line=5),
+    "print elsewhere": Case(
+        "print = { lines = 'x', x_mm = [[690, 710]] }",
+        (says("x", 5), ahead(200)),
+        "missed",
+        reason="'x' was printed at 0.00 s, when the robot was at x = 500 mm; it must be at x from 690 to 710 mm.",
+        line=5,
+    ),
+    "print elsewhere, then there": Case(
+        "print = { lines = 'x', x_mm = [[690, 710]] }", (says("x", 5), ahead(200), says("x", 6)), "met", line=6
+    ),
+    "print what a reading decides": Case(
+        "print = { lines = 'Grey', reading = 'color' }", (*ON_GREY, says("Grey: 1", 2)), "met", text=LOOKS
+    ),
+    "print in any case": Case(
+        "print = { lines = 'Grey', reading = 'color' }",
+        (*ON_GREY, says("Grey: 1", 3)),
+        "missed",
+        reason="but nothing that the colour sensor read decides that: line 3 prints it in any case.",
+        text=LOOKS,
+    ),
+    "print without a new reading": Case(
+        "print = { lines = ['1', '2'], reading = 'color' }",
+        (*ON_GREY, says("Grey: 1", 2), wait(1, 1), says("Grey: 1", 2), ahead(50, 1), says("Grey: 2", 2)),
+        "met",
+        text=LOOKS,
+    ),
+    "print once": Case("print = { lines = ['a', 'b'], once = true }", (says("a"), says("b"), wait(1)), "met", 1.0),
+    "print twice": Case(
+        "print = { lines = ['a', 'b'], once = true }",
+        (says("a"), says("b"), says("b", 3), wait(1)),
+        "missed",
+        reason="3 such lines were printed, 2 are asked for.",
+        line=3,
+    ),
+    "read": Case("read = { reading = 'color', times = 2 }", (wait(0.05, 2),), "met", 0.02, line=2, text=LOOKS),
+    "read too rarely": Case(
+        "read = { reading = 'color', times = 9 }",
+        (wait(0.05, 2),),
+        "missed",
+        reason="The program read the colour sensor 5 times; 9 are needed.",
+        text=LOOKS,
+    ),
+    "read elsewhere": Case(
+        "read = { reading = 'color', x_mm = [[600, 700]] }",
+        (wait(0.01, 2), ahead(200, 1)),
+        "missed",
+        reason="read the colour sensor 0 times at x from 600 to 700 mm; 1 are needed.",
+        text=LOOKS,
+    ),
+    "read nothing": Case("read = { reading = 'gyro' }", ON_GREY, "missed", reason="did not read the gyro.", text=LOOKS),
+    "use by a reading": Case(
+        "use = { calls = 'off', reading = 'gyro' }",
+        ON_GREY,
+        "met",
+        text="while gyro.angle < 9:\n    pass\ntank_drive.off()\n",
+    ),
+    "use in any case": Case(
+        "use = { calls = 'off', reading = 'gyro' }",
+        ON_GREY,
+        "missed",
+        reason="Nothing that the gyro read decides how the program calls off.",
+        line=2,
+        text="gyro.angle\ntank_drive.off()\n",
+    ),
+}
+
+CASES = PLACES | OUTPUT | READINGS
 
 
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES)

@@ -17,6 +17,8 @@ from tuisim.lessons.events import (
     Visited,
     Watched,
     is_met,
+    note_fault,
+    unready,
 )
 from tuisim.lessons.spec import Break, Check, Export, Note, Question, Run, Show, Visit, Watch
 
@@ -27,6 +29,11 @@ CHOICE = Question("Q", "the light", choices=("the tick", "the light"))
 def runs(*seeds: int, met: str = "a b", from_start: bool = True) -> list[Event]:
     """Runs that have met goals."""
     return [JudgedRun(f"r{at}", seed, frozenset(met.split()), from_start) for at, seed in enumerate(seeds)]
+
+
+HERE = Question("Q", 50.2, within=0.5, at_x_mm=(200.0, 400.0), where="the band: m")
+SEEN = Question("Q", 50.2, within=0.5, seen=("instrumentation", "chart"))
+RAN = Question("Q", 50.2, within=0.5, run=True, printed="Error")
 
 
 CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
@@ -54,6 +61,13 @@ CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
     "choice by text": (CHOICE, [Typed("the light")], True),
     "another choice": (CHOICE, [Typed("1")], False),
     "no such choice": (CHOICE, [Typed("0")], False),
+    "number, at its place": (HERE, [Typed("50.2", x_mm=300.0)], True),
+    "number, elsewhere": (HERE, [Typed("50.2", x_mm=500.0)], False),
+    "number that was looked at": (SEEN, [Typed("50.2", seen=frozenset({"chart", "code"}))], True),
+    "number that was not looked at": (SEEN, [Typed("50.2", seen=frozenset({"code"}))], False),
+    "number of a run": (RAN, [Typed("50.2", printed=("x", "NameError: y"))], True),
+    "number of another run": (RAN, [Typed("50.2", printed=("x",))], False),
+    "number without a run": (RAN, [Typed("50.2", printed=(), has_run=False)], False),
     "watch": (Watch("error"), [Watched(" error")], True),
     "another watch": (Watch("error"), [Watched("error2")], False),
     "breakpoint": (Break(r"left.*<"), [BreakMet("left.red% < 10")], True),
@@ -66,6 +80,8 @@ CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
     "visit": (Visit(1, 2), [Visited(1.5)], True),
     "visit of another instant": (Visit(1, 2), [Visited(2.1)], False),
     "panel": (Show("chart"), [Shown("world"), Shown("chart")], True),
+    "panel of a paused program": (Show("debug", paused=True), [Shown("debug", paused=True)], True),
+    "panel while it runs": (Show("debug", paused=True), [Shown("debug", paused=False)], False),
     "nothing": (Show("chart"), [], False),
 }
 
@@ -73,3 +89,38 @@ CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
 @pytest.mark.parametrize(("check", "events", "passes"), CASES.values(), ids=CASES)
 def test_check(check: Check, events: Sequence[Event], passes: bool) -> None:
     assert is_met(check, events) is passes
+
+
+UNREADY = {
+    "elsewhere": (HERE, Typed("1", x_mm=1120.4), "The robot is at x = 1120 mm. The question is about the band: m."),
+    "not looked": (SEEN, Typed("1", seen=frozenset()), "Look first: Instrumentation or Chart shows it."),
+    "no run": (RAN, Typed("1", has_run=False), "Run the program first: the question is about its run."),
+    "another run": (RAN, Typed("1", printed=("x",)), "The run in view has not printed that: do what the step says"),
+    "ready": (HERE, Typed("1", x_mm=300.0), ""),
+}
+
+
+@pytest.mark.parametrize(("question", "typed", "words"), UNREADY.values(), ids=UNREADY)
+def test_what_a_question_needs_first(question: Question, typed: Typed, words: str) -> None:
+    found = unready(question, typed)
+    assert found.startswith(words)
+    assert bool(found) is bool(words)
+
+
+NOTE = Note("grey", 50.2)
+NOTES = {
+    "wrong band": (
+        Noted("grey", 86.27),
+        "Your note “grey” is on samples with a mean of 86.3; this step is about those",
+    ),
+    "no samples": (Noted("grey"), "Your note “grey” is on no samples"),
+    "wrong text": (Noted("?", 50.2), "Your note “?” is on the right samples, but its text"),
+    "right": (Noted("grey", 50.2), ""),
+}
+
+
+@pytest.mark.parametrize(("note", "words"), NOTES.values(), ids=NOTES)
+def test_why_a_note_does_not_pass(note: Noted, words: str) -> None:
+    found = note_fault(NOTE, note)
+    assert found.startswith(words)
+    assert bool(found) is bool(words)

@@ -9,7 +9,7 @@ import pytest
 from tuisim.errors import ConfigError
 from tuisim.lessons.files import load_lesson, name_of
 from tuisim.lessons.skeleton import SKELETON
-from tuisim.lessons.spec import CHECKS, Question, Run
+from tuisim.lessons.spec import CHECKS, Question, Run, Way
 
 HEAD = "title = 'T'\nwhy = 'W'\n"
 GOAL = "[[goal]]\nname = 'end'\nfinish = true\n"
@@ -68,6 +68,27 @@ BAD = {
         lesson(HEAD + ASK, "## A\n```python wrong\n```\n"),
         ", line 11: this step does not run a program",
     ),
+    "place without words": (
+        step("question = { ask = 'Q', answer = 5, at_x_mm = [1, 2] }"),
+        "step[1].question.where: goes with at_x_mm",
+    ),
+    "place backwards": (
+        step("question = { ask = 'Q', answer = 5, at_x_mm = [2, 1], where = 'x' }"),
+        "step[1].question.at_x_mm: must be from left to right, got 2 to 1",
+    ),
+    "no such view": (
+        step("question = { ask = 'Q', answer = 5, seen = ['analyzer'] }"),
+        "step[1].question.seen[1]: there is no panel 'analyzer' (did you mean analyser",
+    ),
+    "no such way": (
+        lesson(HEAD + GOAL + RUN, "## A\n```python answer\n```\n```python wrong: no sensors\n```\n"),
+        "no such value 'no sensors' (one of literal answer, no sensor",
+    ),
+    "way of an answer": (
+        lesson(HEAD + GOAL + RUN, "## A\n```python answer: no sensor\n```\n"),
+        "only a wrong program goes a wrong way",
+    ),
+    "excludes no way": (step("run = 'end'\nexcludes = { sensor = 'x' }"), "step[1].excludes.sensor: no such key"),
     "two programs": (
         lesson(HEAD + ASK, "```python program\n```\n## A\n```python program\n```\n"),
         ", line 13: there are two programs to complete",
@@ -128,3 +149,33 @@ def test_parts_of_a_lesson(tmp_path: Path) -> None:
 
 def test_skeleton_describes_every_check() -> None:
     assert [kind for kind in CHECKS if f"#   {kind} = " not in SKELETON] == []
+
+
+WAYS = {
+    "run": ("run = 'end'", ["literal answer", "no sensor", "wrong order", "wrong place"]),
+    "run that excludes": ("run = 'end'\n[step.excludes]\n'no sensor' = 'x'\n'wrong order' = 'y'",
+                          ["literal answer", "wrong place"]),
+    "question": ("wrong = ['4']\nquestion = { ask = 'Q', answer = 5 }", ["no sensor", "wrong order", "wrong place"]),
+    "question of a place": ("question = { ask = 'Q', answer = 5, at_x_mm = [1, 2], where = 'x', run = true }",
+                            ["literal answer"]),
+    "question after a look": ("question = { ask = 'Q', answer = 'a', choices = ['a', 'b'], seen = ['chart'] }",
+                              ["wrong order", "wrong place"]),
+    "note": ("model = 'x'\nnote = { matches = 'x' }", ["literal answer", "wrong place"]),
+    "note on a band": ("model = 'x'\nwrong = ['y']\nnote = { matches = 'x', level = 50 }", []),
+    "panel": ("show = 'chart'", []),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("keys", "missing"), WAYS.values(), ids=WAYS)
+def test_wrong_ways_that_are_missing(keys: str, missing: list[str], tmp_path: Path) -> None:
+    path = tmp_path / "it.md"
+    path.write_text(step(keys) if "run = 'end'" in keys else step(keys).replace("```python answer\npass\n```\n", ""))
+    assert list(load_lesson(path).steps[0].missing_ways()) == missing
+
+
+def test_wrong_program_that_goes_a_way_covers_it(tmp_path: Path) -> None:
+    path = tmp_path / "it.md"
+    body = "## A\n```python answer\n```\n```python wrong: no sensor\npass\n```\n"
+    path.write_text(lesson(HEAD + GOAL + RUN, body))
+    (one,) = load_lesson(path).steps
+    assert Way.SENSOR not in one.missing_ways()

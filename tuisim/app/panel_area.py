@@ -87,7 +87,7 @@ class PanelArea(BorderMover):
         """The panel shown where there is room for one only."""
         self._shape = ""
         """The form of the screen for which `moved` was loaded; empty before the first layout."""
-        self._is_stacked = False
+        self.is_stacked = False
         """Whether a roomy panel stands above the lesson, and nothing else is shown."""
         self._roomy: tuple[str, int, int] | None = None
         """The panel that needs a number of columns and rows."""
@@ -239,7 +239,7 @@ class PanelArea(BorderMover):
     def _wanted(self) -> tuple[list[str], list[str]]:
         """Return the ids of the panels to show, by priority, and those for what space is left."""
         width, height = self.size
-        self._is_stacked = False
+        self.is_stacked = False
         wanted, fill = wanted_panels(self.preset, self._asked, width, height)
         if self._roomy:
             panel, columns, rows = self._roomy
@@ -247,7 +247,7 @@ class PanelArea(BorderMover):
             wanted = with_room(panel, wanted, (columns, rows), (width, height), self.preset)
             if wanted == [panel] and keeps_lesson:
                 # Its lines need the whole width, but not all rows.
-                self.alone, self._is_stacked = "", True
+                self.alone, self.is_stacked = "", True
                 return [panel, "lesson"], []
             self.alone = panel if wanted == [panel] else ""
             return wanted, []
@@ -260,7 +260,7 @@ class PanelArea(BorderMover):
         if not self.size:
             return
         wanted, fill = self._wanted()
-        if self._is_stacked:
+        if self.is_stacked:
             self.arrangement = stacked(wanted[0], wanted[1], self.size.width, self.size.height)
         else:
             self.arrangement = arrange(wanted, self.size.width, self.size.height, fill, self.preset, self.moved)

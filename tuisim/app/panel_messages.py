@@ -41,14 +41,14 @@ class PanelMessages(ActionHost, TerminalApp):
 
     def on_code_typing_changed(self, message: Code.TypingChanged) -> None:
         self.situation_changed()
-        if lesson := self.workspace.panel_area.lesson:
-            lesson.set_typing(message.typing)
+        area = self.workspace.panel_area
         if not message.typing:
-            self.workspace.panel_area.maximize("")
+            area.maximize("")
         else:
-            beside_lesson = self.workspace.panel_area.shown("lesson")
-            columns = _LESSON_COLUMNS if beside_lesson else ROOMY_COLUMNS
-            self.workspace.panel_area.make_room("code", columns, ROOMY_ROWS)
+            columns = _LESSON_COLUMNS if area.shown("lesson") else ROOMY_COLUMNS
+            area.make_room("code", columns, ROOMY_ROWS)
+        if area.lesson:
+            area.lesson.set_typing(message.typing, is_low=area.is_stacked)
 
     def _end_former_text(self) -> None:
         """End a run of the text before the edit: the user wants the new one to run."""

@@ -88,6 +88,8 @@ class Evidence:
         self.falsified = self.end.summary if self.end is not None and self.end.end is End.FALSIFIED else ""
         """What the program has falsified; empty if its recording can be trusted."""
         self.records: Array = run.telemetry.array()
+        self.memo: dict[str, Any] = {}
+        """What conditions have computed from it, and may need again."""
 
     @cached_property
     def times_s(self) -> Array:

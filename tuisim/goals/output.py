@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from itertools import islice
 
 from tuisim.core.profile import NS_PER_S
+from tuisim.errors import counted
 from tuisim.goals.evidence import Evidence, Moment, Span
 from tuisim.goals.found import Found
 from tuisim.goals.provenance import provenance_of
@@ -15,6 +17,8 @@ from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.samples import Sample
 
 _MOST_SHOWN = 60
+_MOST_TRIED = 1000
+"""Of so many lines that say what is asked for, one must have been printed where and how it must be."""
 
 
 def _shown(text: str) -> str:
@@ -37,13 +41,13 @@ def find_printed(condition: Print, evidence: Evidence, span: Span) -> Found:
         search = re.compile(pattern).search
         start = at if condition.in_order else 0
         fault = Found()
-        for place in range(start, len(rows)):
+        fitting = (place for place in range(start, len(rows)) if search(rows[place][1].text))
+        for place in islice(fitting, _MOST_TRIED):
             row = rows[place][1]
-            if search(row.text):
-                found = _fault(condition, count, row, since, evidence)
-                if not found:
-                    break
-                fault = fault if fault.reason else Found(None, found, row.line)
+            found = _fault(condition, count, row, since, evidence)
+            if not found:
+                break
+            fault = fault if fault.reason else Found(None, found, row.line)
         else:
             # Of the line that the reason quotes.
             about = rows[-1][1].line if rows and line is None else line
@@ -132,13 +136,13 @@ def find_levels(condition: Log, evidence: Evidence, span: Span) -> Found:
     for count, level in enumerate(condition.levels):
         start = at if condition.in_order else 0
         fault = Found()
-        for place in range(start, len(samples)):
+        near = (place for place in range(start, len(samples)) if _near(samples[place][1], level, condition))
+        for place in islice(near, _MOST_TRIED):
             sample = samples[place][1]
-            if _near(sample, level, condition):
-                found = _not_measured(condition, count, sample, evidence)
-                if not found:
-                    break
-                fault = fault if fault.reason else Found(None, found, sample.line)
+            found = _not_measured(condition, count, sample, evidence)
+            if not found:
+                break
+            fault = fault if fault.reason else Found(None, found, sample.line)
         else:
             return fault if fault.reason else _missing_level(condition, count, samples, start, last, evidence)
         at = place + 1
@@ -150,9 +154,9 @@ def find_levels(condition: Log, evidence: Evidence, span: Span) -> Found:
 def _not_measured(condition: Log, count: int, sample: Sample, evidence: Evidence) -> str:
     """Return why a sample near its level does not count, in a sentence; empty if it does."""
     value = f"{sample.name}: {sample.value:.6g} was printed at {sample.time_ns / NS_PER_S:.2f} s"
-    counted = sum(one.name == condition.counts and one.tick <= sample.tick for _, one in evidence.samples)
-    if condition.counts and counted != sample.value:
-        return f"{value}, but the program had printed {counted:,} samples {condition.counts}."
+    printed = sum(one.name == condition.counts and one.tick <= sample.tick for _, one in evidence.samples)
+    if condition.counts and printed != sample.value:
+        return f"{value}, but the program had printed {counted(printed, 'sample')} {condition.counts}."
     reading, place = condition.reading, _range(condition, count)
     known = provenance_of(evidence.program.text, reading) if reading else None
     if reading is not None and known is not None and not known.gives(sample.line):
@@ -164,10 +168,10 @@ def _not_measured(condition: Log, count: int, sample: Sample, evidence: Evidence
     ticks = ticks[ticks <= sample.tick]
     if not len(ticks):
         return f"{value}, but the program had not read the {NOUNS[reading]} before."
-    if place is not None and not len(there := within_x(ticks, place, evidence)):
+    there = ticks if place is None else within_x(ticks, place, evidence)
+    if place is not None and not len(there):
         x_mm = evidence.place_mm(int(ticks[-1]))[0]
         return f"{value}, read when the robot was at x = {x_mm:.0f} mm; it must be at {range_words(place)}."
-    there = ticks if place is None else there
     if condition.as_read and not is_as_read(sample.value, there, evidence):
         return f"{value}, but that is not what the {NOUNS[reading]} gave where the program had read it."
     return ""

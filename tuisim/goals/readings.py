@@ -41,9 +41,12 @@ def read_ticks(reading: Reading, evidence: Evidence) -> Array:
     """Return the ticks in which the program took such a reading, in ascending order: a reading takes time."""
     import numpy as np
 
-    known = provenance_of(evidence.program.text, reading)
-    lines = sorted(known.lines()) if known else []
-    found: Array = np.flatnonzero(np.isin(evidence.records["line"], lines))
+    name = f"{reading} is read"
+    if name not in evidence.memo:
+        known = provenance_of(evidence.program.text, reading)
+        lines = sorted(known.lines()) if known else []
+        evidence.memo[name] = np.flatnonzero(np.isin(evidence.records["line"], lines))
+    found: Array = evidence.memo[name]
     return found
 
 
@@ -55,18 +58,33 @@ def within_x(ticks: Array, found: Range, evidence: Evidence) -> Array:
 
 
 def is_as_read(value: float, ticks: Array, evidence: Evidence) -> bool:
-    """Return whether a level of light is what a colour sensor gave in one of some ticks, in percent or raw."""
+    """Return whether a level of light is what a colour sensor gave in some of the ticks in which the program read it.
+
+    Args:
+        value: The level: of red or of all channels in percent, or of red from 0 to 255.
+        ticks: Some of `read_ticks`.
+        evidence: The recording.
+    """
     import numpy as np
 
+    every = read_ticks(Reading.COLOR, evidence)
+    if "light as read" not in evidence.memo:
+        evidence.memo["light as read"] = _light(evidence.records[every], evidence)
     off = _ROUNDED + _NOISE_SHARE * evidence.spec.world.noise.light
-    records = evidence.records[ticks]
+    there = evidence.memo["light as read"][:, np.isin(every, ticks)]
+    return bool((np.abs(there - value) <= off).any())
+
+
+def _light(records: Array, evidence: Evidence) -> Array:
+    """Return the levels of light that each colour sensor would give without noise, shape (levels, ticks)."""
+    import numpy as np
+
+    rows = []
     for sensor in evidence.spec.robot.color_sensors:
         channels = quiet_color_columns(records, sensor, evidence.mat)
-        values = [channels[name].astype("i8") for name in columns(sensor)]
-        red, mean = values[0] / 255 * 100, sum(values) / 765 * 100
-        if any(bool((np.abs(each - value) <= off).any()) for each in (red, mean, values[0])):
-            return True
-    return False
+        red, green, blue = (channels[name].astype("i8") for name in columns(sensor))
+        rows += [red / 255 * 100, (red + green + blue) / 765 * 100, red]
+    return np.array(rows).reshape(len(rows), len(records))
 
 
 def find_read(condition: Read, evidence: Evidence, span: Span) -> Found:

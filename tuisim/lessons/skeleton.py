@@ -26,17 +26,27 @@ name = "there"
 say = "Stop at x = 1000 mm."
 reach = { x_mm = 1000, within_mm = 5, at_end = true }
 
+[[goal]]
+name = "says"
+say = "Print where you are when you have arrived: a line X: and the number, from the motor's position."
+hint = "500 + tank_drive.left_motor.position / 360 * 3.14159 * 56"
+log = { name = "X", levels = [1000], within = 5, reading = "motor", x_mm = [[995, 1005]] }
+
 # One [[step]] for each section ## below, in the same order, with exactly one check:
 #   run = ["GOAL", …]            a run meets goals; also run = { goals = ["GOAL"], times = 3, seeds = true }
 #   question = { ask = "…", answer = 50.2, within = 1 }     or answer = "a text", or choices = ["one", "another"]
+#       also what must have happened: at_x_mm = [230, 411] and where = "the grey band: m moves it back" say where the
+#       robot must be, seen = ["instrumentation"] what was looked at, run = true that there was a run, printed a REGEX
 #   watch = "x"                  the variable is watched while the program is paused
 #   breakpoint = "REGEX"         a run stops at a breakpoint with such a text
 #   export = ".csv"              the log is exported to such a file
 #   note = { level = 50.2 }      a note is written in the analyser on samples with such a mean
 #   visit = { from_s = 1, to_s = 2 }                        a past instant of a run is in view
-#   show = "instrumentation"     a panel is on the screen
+#   show = "instrumentation"     a panel is on the screen; also { panel = "debug", paused = true }
 # Further keys: hints, a list of texts; why, a sentence that appears when the step is done and says why that is right;
-# model and wrong, texts that pass and that do not, to test the check.
+# model and wrong, texts that pass and that do not, to test the check; excludes, the wrong ways that the step does not
+# admit, each with the reason. There are four: a literal answer, no sensor, wrong order, wrong place. A goal keeps them
+# out with reading, x_mm, as_read, once, after … in log and print, and with read and use: `tuisim guide goal-files`.
 [[step]]
 name = "turns"
 hints = ["One rotation moves the robot by the circumference of a wheel.", "That is 56 mm times pi."]
@@ -46,11 +56,17 @@ why = "One rotation is 3.14159 × 56 = 175.9 mm, and 500 / 175.9 = 2.842."
 ask = "How many rotations of a 56 mm wheel are 500 mm?"
 answer = 2.842
 within = 0.01
+[step.excludes]
+"no sensor" = "It is calculated."
+"wrong order" = "It is one number."
+"wrong place" = "A rotation is the same everywhere."
 
 [[step]]
 name = "drive"
 hints = ["`tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 1)` drives one rotation."]
-run = ["there"]
+why = "500 mm divided by 175.9 mm for each rotation is 2.842 rotations."
+run = ["there", "says"]
+excludes = { "no sensor" = "The motors count the rotations themselves." }
 +++
 
 One rotation of a wheel moves the robot by the wheel's circumference.
@@ -65,14 +81,27 @@ The wheels have a diameter of 56 mm. Press `Q` and type the number.
 
 ## Drive them
 
-Change the program with `d`, and run it with `R`.
+Change the program with `d`, and run it with `R`. Then let it print where it has arrived, from the position of the left
+motor, as a line `X: ` and the number.
 
 ```python answer
 tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 500 / (3.14159 * 56))
+print("X: " + str(500 + tank_drive.left_motor.position / 360 * 3.14159 * 56))
 ```
 
-```python wrong
+```python wrong: wrong place
 tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 5)
+print("X: " + str(500 + tank_drive.left_motor.position / 360 * 3.14159 * 56))
+```
+
+```python wrong: literal answer
+tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 500 / (3.14159 * 56))
+print("X: 1000")
+```
+
+```python wrong: wrong order
+print("X: " + str(1000 + tank_drive.left_motor.position))
+tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 500 / (3.14159 * 56))
 ```
 """
 

@@ -60,7 +60,7 @@ class LessonPanel(LinesPanel, can_focus=True):
             return
         before, self._content = self._content, view
         if (view.lesson, view.at, view.judgements) != (before.lesson, before.at, before.judgements):
-            self._page, self._first = None, -1 if self._is_typing else self._top
+            self._page, self._first = None, self._top
         self._redraw()
         if view.hints > before.hints and view.at == before.at:
             # A new hint is at the end.
@@ -96,12 +96,16 @@ class LessonPanel(LinesPanel, can_focus=True):
         """Whether there is more text above or below."""
         return self._picture.first > 0 or self._picture.below > 0
 
-    def set_typing(self, is_typing: bool) -> None:
-        """While the user types in the program, the page keys are the editor's."""
-        self._is_typing = is_typing
-        if is_typing:
-            # There may be little room: what is to be done comes first.
-            self._first = -1
+    def set_typing(self, is_typing: bool, is_low: bool = False) -> None:
+        """While the user types in the program, the page keys are the editor's.
+
+        Args:
+            is_typing: Whether typing begins.
+            is_low: Whether there is little room below the editor: what is to be done comes first then.
+        """
+        self._is_typing, self._top = is_typing, -1 if is_typing and is_low else 0
+        if self._top:
+            self._page, self._first = None, self._top
             self._redraw()
         self._show_subtitle()
 

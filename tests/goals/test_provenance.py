@@ -1,0 +1,68 @@
+"""Which lines of a program depend on a reading: those that compute from one, and those that one decides on."""
+
+from __future__ import annotations
+
+import pytest
+
+from tuisim.goals.provenance import Provenance, provenance_of
+from tuisim.goals.spec import Reading
+
+VALUE, DECIDED, FREE = (True, True), (False, True), (False, False)
+
+LINES = {
+    "printed": ("print(colorLeft.reflected_light_intensity_pc)", 1, VALUE),
+    "literal": ("print('Grey: 50.2')", 1, FREE),
+    "literal beside a reading": ("colorLeft.rgb; print('Grey: 50.2')", 1, FREE),
+    "variable": ("x = colorLeft.rgb[0]\ny = x / 2\nprint('G', y)", 3, VALUE),
+    "another variable": ("x = colorLeft.rgb[0]\ny = 50.2\nprint('G', y)", 3, FREE),
+    "in several lines": ("print(\n    'Grey:',\n    colorLeft.rgb,\n)", 1, VALUE),
+    "two names at once": ("a, b = colorLeft.rgb[:2]\nprint(b)", 2, VALUE),
+    "attribute": ("robot.light = colorLeft.rgb\nprint(robot.light)", 2, VALUE),
+    "list": ("a = []\na.append(colorLeft.color)\nfor x in a:\n    print(x)", 4, VALUE),
+    "literal list": ("colorLeft.color\nfor x in ['Red']:\n    print(x)", 3, FREE),
+    "returned": ("def light():\n    return colorLeft.rgb\nprint(light())", 3, VALUE),
+    "passed": ("def show(x):\n    print(x)\nshow(colorLeft.color)", 2, VALUE),
+    "passed a literal": ("def show(x):\n    print(x)\nshow('Red')", 2, FREE),
+    "passed where a reading decides": (
+        "def show(x):\n    print(x)\nif colorLeft.color == 5:\n    show('Red')",
+        2,
+        VALUE,
+    ),
+    "chosen": ("if colorLeft.color == 5:\n    name = 'Red'\nelse:\n    name = ''\nprint(name)", 5, VALUE),
+    "chosen in an expression": ("print('Red' if colorLeft.color == 5 else '')", 1, VALUE),
+    "under an if": ("if colorLeft.color == 5:\n    print('Red')", 2, DECIDED),
+    "under another if": ("colorLeft.color\nif 1 < 2:\n    print('Red')", 3, FREE),
+    "after a loop that a reading ends": ("while colorLeft.color != 5:\n    pass\nprint('Red')", 3, DECIDED),
+    "before that loop": ("print('Red')\nwhile colorLeft.color != 5:\n    pass", 1, FREE),
+    "after a break": ("while True:\n    if colorLeft.color == 5:\n        break\nprint('Red')", 4, DECIDED),
+    "after a loop of the clock": ("while get_clock() < 5:\n    colorLeft.color\nprint('Red')", 3, FREE),
+    "counted": ("n = 0\nwhile colorLeft.color != 5:\n    n = n + 1\nprint(n)", 4, VALUE),
+    "counted otherwise": ("n = 0\nwhile colorLeft.color != 5:\n    n += 1\nprint(n)", 4, VALUE),
+    "set in that loop": ("while colorLeft.color != 5:\n    n = get_clock()\nprint(n)", 3, DECIDED),
+    "match": ("match colorLeft.color:\n    case 5:\n        print('Red')", 3, DECIDED),
+    "walrus": ("while (c := colorLeft.color) != 5:\n    print(c)", 2, VALUE),
+    "method": ("class R:\n    def see(self):\n        return colorLeft.color\nprint(R().see())", 4, VALUE),
+    "thread": (
+        "def f():\n    print('Red')\nwhile colorLeft.color != 5:\n    pass\nThread(target=f).start()",
+        2,
+        DECIDED,
+    ),
+    "try": ("try:\n    x = colorLeft.color\nfinally:\n    print(x)", 4, VALUE),
+    "unknown line": ("print('Red')", 9, VALUE),
+}
+
+
+@pytest.mark.parametrize(("text", "line", "depends"), LINES.values(), ids=LINES)
+def test_what_a_line_depends_on(text: str, line: int, depends: tuple[bool, bool]) -> None:
+    found = Provenance(text, Reading.COLOR)
+    assert (found.gives(line), found.decides(line)) == depends
+
+
+def test_lines_that_read() -> None:
+    text = "x = colorLeft.rgb\ny = gyro.angle\nprint(\n    colorRight\n    .color\n)"
+    assert Provenance(text, Reading.COLOR).lines() == {1, 4, 5}
+    assert Provenance(text, Reading.GYRO).lines() == {2}
+
+
+def test_text_that_is_no_python() -> None:
+    assert provenance_of("print(", Reading.COLOR) is None

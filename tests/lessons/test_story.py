@@ -1,0 +1,33 @@
+"""What is said of the run that has passed a step."""
+
+from __future__ import annotations
+
+import pytest
+
+from tuisim.goals.judgement import Change, GoalState, Judgement
+from tuisim.goals.spec import Avoid, Condition, Finish, Follow, Goal, Log, Pass, Print, Reach, Together
+from tuisim.lessons.story import story
+
+SAID: dict[str, tuple[Condition, str]] = {
+    "end": (Reach(x_mm=1150, at_end=True), "it ended at x = 1153 mm, y = 500 mm"),
+    "reach": (Reach(x_mm=1150), "it was at x = 1153 mm, y = 500 mm at 5.42 s"),
+    "pass": (Pass(((1150, 500),)), "it was at x = 1153 mm, y = 500 mm at 5.42 s"),
+    "print": (Print(("x",)), "line 3 printed it at 5.42 s, at x = 1153 mm, y = 500 mm"),
+    "print lines": (Print(("x", "y")), "line 3 printed the last at 5.42 s, at x = 1153 mm, y = 500 mm"),
+    "print once": (Print(("x", "y"), once=True), "it printed 2 such lines, each in its place"),
+    "log": (Log("Grey", (50.2,)), "line 3 logged Grey at 5.42 s, at x = 1153 mm, y = 500 mm"),
+    "log levels": (Log("Grey", (50.2, 0)), "line 3 logged the last Grey at 5.42 s, at x = 1153 mm, y = 500 mm"),
+    "follow": (Follow(("left",), darker_than=50), "the sensor was on the line for long enough"),
+    "finish": (Finish(), "it finished at 5.42 s"),
+    "two": (Together((Finish(), Avoid(("f",)))), "it finished at 5.42 s"),
+}
+
+
+@pytest.mark.parametrize(("condition", "words"), SAID.values(), ids=SAID)
+def test_story(condition: Condition, words: str) -> None:
+    met = Judgement(Goal("a", condition), (Change(542, 5.42, GoalState.MET, 1152.9, 500.0),), line=3)
+    assert story([met, met]) == f"Your run: {words}."
+
+
+def test_nothing_is_said_of_what_was_not_met() -> None:
+    assert story([Judgement(Goal("a", Finish()), (Change(1, 0.1, GoalState.MISSED, 1, 2),), "No.")]) == ""
