@@ -14,11 +14,13 @@ from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import notices, ready, settings, until
 from tuisim.analysis.source import NOTES_FILE, Note, write_notes
+from tuisim.app.analyser.app import Analyser
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.dialogs.question import LinePrompt
 from tuisim.app.lesson import goals_of
 from tuisim.app.panels import PANELS
+from tuisim.app.panels.lesson import LessonPanel
 from tuisim.app.render.lesson import LessonPicture, LessonView, draw_lesson
 from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
@@ -455,15 +457,15 @@ def _lesson_view(tmp_path: Path, **changes: Any) -> LessonView:
 @pytest.mark.usefixtures("home")
 def test_pages_of_a_lesson(tmp_path: Path) -> None:
     view = _lesson_view(tmp_path, states=(StepState.DONE, StepState.SKIPPED, StepState.OPEN), at=2)
-    view = replace(view, done=replace(view.lesson.steps[1], why="Far enough."))  # type: ignore[union-attr]
+    view = replace(view, story="Your run: so.", done=replace(view.lesson.steps[1], why="Far enough."))  # type: ignore[union-attr]
     missed = Judgement(view.lesson.goals[0], (Change(1, 0.1, GoalState.MISSED, 1, 2),), "Too short.")  # type: ignore[union-attr]
 
     def page(number: int, **changes: Any) -> Sequence[str]:
         lines = draw_lesson(replace(view, **changes), number, 0, 40, 30).lines
         return ["".join(text for text, _ in line).rstrip() for line in lines]
 
-    assert page(2)[:3] == ["Try it                               ✓–●", "✓ Drive", "Far enough."]
-    assert page(2)[3:6] == ["M shows the steps before again.", "", "3. Do it"]
+    assert page(2)[:4] == ["Try it                               ✓–●", "✓ Drive", "Your run: so.", "Far enough."]
+    assert page(2)[4:7] == ["M shows the steps before again.", "", "3. Do it"]
     assert "skipped" in page(1)
     assert "✗ Drive." in page(1, at=1, judgements=(missed,))
     assert page(2)[-1] == "Next: open the panel Chart."
@@ -501,6 +503,85 @@ async def test_answer_that_is_not_right_says_what_to_do(text: str, words: str, t
         await until(pilot, lambda: words in str(app.screen.query_one("#message", Static).content))
         # The readings at the bottom stay in view.
         assert app.screen.query_one(".dialog").region.y == 0
+
+
+PLACED = "question = { ask = 'What?', answer = 5, at_x_mm = [600, 700], where = 'the right: → moves it' }"
+
+
+@pytest.mark.usefixtures("home")
+async def test_answer_about_another_place_is_not_wrong(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path, PLACED)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        app.lesson.skip_step()
+        await type_answer(pilot, app, "5")
+        words = "The robot is at x = 500 mm. The question is about the right: → moves it."
+        await until(pilot, lambda: words in str(app.screen.query_one("#message", Static).content))
+        assert load_progress()["try"].of("do").tries == 0
+        await pilot.press("escape", *["right"] * 12)
+        await until(pilot, lambda: app.run_controller.pose.x_mm == 620)
+        await type_answer(pilot, app, "5")
+        await until(pilot, lambda: states().get("do") == "done")
+
+
+@pytest.mark.usefixtures("home")
+async def test_note_that_does_not_pass_is_told_why(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path, "note = { matches = 'dark', level = 86 }\nmodel = 'dark'")).run_test(
+        size=SMALL
+    ) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        app.lesson.skip_step()
+        await _note(pilot, app)
+        words = "Your note “dark” is on samples with a mean of 50.0; this step is about those with 86."
+        await until(pilot, lambda: words in " ".join(shown(app).split()))
+
+
+@pytest.mark.usefixtures("home")
+async def test_panel_of_a_paused_program(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path, "show = { panel = 'debug', paused = true }")).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        app.lesson.skip_step()
+        await pilot.press("G")
+        await until(pilot, lambda: app.panel_area.shown("debug"))
+        app.lesson.update()
+        assert "do" not in states()
+        await pilot.press("n")
+        await until(pilot, lambda: states().get("do") == "done")
+
+
+@pytest.mark.usefixtures("home")
+async def test_lesson_is_in_sight_while_one_types_in_a_small_terminal(tmp_path: Path) -> None:
+    async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await pilot.press("d")
+        await until(pilot, lambda: app.panel_area.is_stacked)
+        # The step, not the introduction before it.
+        await until(pilot, lambda: "1. Think" in shown(app).split("\n")[1])
+        code, lesson = (app.panel_area.arrangement.boxes[panel] for panel in ("code", "lesson"))
+        assert (code.width, code.height, lesson.height) == (80, 12, 11)
+        await pilot.press("escape")
+        await until(pilot, lambda: app.panel_area.shown("world"))
+
+
+@pytest.mark.usefixtures("home")
+@pytest.mark.parametrize(("size", "has_world"), [(SMALL, False), (LARGE, True)], ids=["80", "120"])
+async def test_lesson_is_beside_the_log(size: tuple[int, int], has_world: bool, tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path, PLACED)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        await run_over(pilot, app)
+        await pilot.press("l")
+        await until(pilot, lambda: isinstance(app.screen, Analyser) and app.screen.is_open)
+        analyser = app.screen
+        assert isinstance(analyser, Analyser)
+        beside = analyser.query_one(LessonPanel)
+        await until(pilot, lambda: beside.region.width >= 32 and analyser.world.display is has_world)
+        await pilot.press("w")
+        await until(pilot, lambda: analyser.world.display is not has_world)
+        assert beside.display is has_world
+        await pilot.press("q")
+        await until(pilot, lambda: app.lesson._beside is None)
 
 
 @pytest.mark.usefixtures("home")

@@ -40,7 +40,7 @@ class LessonPanel(LinesPanel, can_focus=True):
         self._page: int | None = None
         """The page that the user has turned to; None for that of the step to do."""
         self._first = self._top
-        """First row of the text that is shown."""
+        """First row of the text that is shown; -1: the title of the step, whatever the size."""
         self._picture = LessonPicture([])
         self._is_typing = False
 
@@ -64,7 +64,7 @@ class LessonPanel(LinesPanel, can_focus=True):
         self._redraw()
         if view.hints > before.hints and view.at == before.at:
             # A new hint is at the end.
-            self._first += self._picture.below
+            self._first = self._picture.first + self._picture.below
             self._redraw()
 
     def _redraw(self) -> None:
@@ -76,7 +76,8 @@ class LessonPanel(LinesPanel, can_focus=True):
             return
         page = self._content.page if self._page is None else self._page
         self._picture = draw_lesson(self._content, page, self._first, size.width, size.height)
-        self._first = self._picture.first
+        if self._first >= 0:
+            self._first = self._picture.first
         self._text.set_lines(self._picture.lines)
         self._show_subtitle()
 
