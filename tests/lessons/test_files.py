@@ -80,6 +80,10 @@ BAD = {
         step("question = { ask = 'Q', answer = 5, seen = ['analyzer'] }"),
         "step[1].question.seen[1]: there is no panel 'analyzer' (did you mean analyser",
     ),
+    "too many starts": (
+        step("run = { goals = ['end'], also_from = [[1, 1, 0], [2, 2, 0], [3, 3, 0], [4, 4, 0]] }"),
+        "step[1].run.also_from: has 4 starts (at most 3)",
+    ),
     "no such way": (
         lesson(HEAD + GOAL + RUN, "## A\n```python answer\n```\n```python wrong: no sensors\n```\n"),
         "no such value 'no sensors' (one of literal answer, no sensor",

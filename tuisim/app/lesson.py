@@ -5,9 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, assert_never
 
+from tuisim.app import background
 from tuisim.app.panels import PANELS, PanelPlace
 from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
@@ -24,18 +26,20 @@ from tuisim.lessons.events import (
     JudgedRun,
     Noted,
     Shown,
+    TriedFrom,
     Typed,
     Visited,
     Watched,
     good_runs,
     is_met,
+    met_by,
     note_fault,
     unready,
     wanted_form,
 )
 from tuisim.lessons.files import load_lesson
 from tuisim.lessons.progress import LessonProgress, StepState
-from tuisim.lessons.spec import SEEABLE, Break, Export, Lesson, Note, Question, Run, Show, Step, Visit, Watch
+from tuisim.lessons.spec import SEEABLE, Break, Check, Export, Lesson, Note, Question, Run, Show, Step, Visit, Watch
 from tuisim.lessons.story import story
 from tuisim.protocol import PauseReason
 from tuisim.runs.store import load_run
@@ -49,6 +53,7 @@ if TYPE_CHECKING:
     from tuisim.app.render.lesson import LessonView
     from tuisim.app.run_controller import RunController
     from tuisim.app.services import AppServices
+    from tuisim.lessons.trial import Start
     from tuisim.runs.recorded_run import Recording
 
 NOTES_PERIOD_S = 0.5
@@ -109,9 +114,11 @@ class AppLesson:
         self._seen: set[str] = set()
         """What of `SEEABLE` was on the screen since the step began."""
         self._remark = ""
-        """Why the last note does not pass."""
+        """Why the last note, or the last program from another start, does not pass."""
         self._story = ""
         """What the run that has just passed a step did."""
+        self._tried = ""
+        """Id of the run whose program was last tried from other starts."""
         self._beside: LessonPanel | None = None
         """The panel beside a log that is open above the app."""
 
@@ -347,7 +354,41 @@ class AppLesson:
         yield JudgedRun(recording.run_id, recording.spec.seed, met, not self._is_elsewhere)
         if self.step is step:
             self._count_try(step, recording, judgements)
+            self._try_elsewhere(step.check, recording)
             self.show()
+
+    def _try_elsewhere(self, check: Check, recording: Recording) -> None:
+        """Try the program of a good run from the other starts of the step, in the background."""
+        assert isinstance(check, Run)
+        lesson, run_id = self.lesson, recording.run_id
+        is_good = any(run.run_id == run_id for run in met_by(check, self._events))
+        is_over = self._run_controller.state is RunPhase.ENDED
+        if lesson is None or not (is_good and is_over and check.also_from) or self._tried == run_id:
+            return
+        self._tried, self._remark = run_id, "Your program is now tried from another start …"
+
+        def work() -> list[tuple[Start, tuple[Judgement, ...]]]:
+            from tuisim.lessons.trial import tried_from
+
+            return tried_from(lesson, check, load_run(recording.folder))
+
+        then = partial(self._tried_elsewhere, check, run_id)
+        background.run(self._panel_area, work, then, self._app.complain, group="lesson")
+
+    def _tried_elsewhere(self, check: Run, run_id: str, found: list[tuple[Start, tuple[Judgement, ...]]]) -> None:
+        """Take in how the program did from other starts, unless the student has gone on meanwhile."""
+        if self.step is None or self.step.check is not check or self._tried != run_id:
+            return
+        self._remark = ""
+        for start, judgements in found:
+            met = frozenset(each.goal.name for each in judgements if each.state is GoalState.MET)
+            if self._take(TriedFrom(run_id, start, met)):
+                return
+            missed = [each for each in judgements if each.goal.name in check.goals and each.goal.name not in met]
+            if missed and not self._remark:
+                where = f"x = {start[0]:g}, y = {start[1]:g} mm"
+                self._remark = f"From another start, {where}, it does not work: {missed[0].reason}"
+        self.show()
 
     def _count_try(self, step: Step, recording: Recording, judgements: tuple[Judgement, ...]) -> None:
         """Count a run that has ended without passing as a try."""

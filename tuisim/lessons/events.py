@@ -23,6 +23,17 @@ class JudgedRun:
 
 
 @dataclass(frozen=True, slots=True)
+class TriedFrom:
+    """The program of a run was tried from another start."""
+
+    run_id: str
+    start: tuple[float, float, float]
+    """x, y and heading."""
+    met: frozenset[str]
+    """Names of the goals that it has met."""
+
+
+@dataclass(frozen=True, slots=True)
 class Typed:
     """An answer was typed. Unless it is said, everything that the question needs has happened."""
 
@@ -83,7 +94,7 @@ class Shown:
     """Whether a program was paused at that moment."""
 
 
-Event: TypeAlias = JudgedRun | Typed | Watched | BreakMet | Exported | Noted | Visited | Shown
+Event: TypeAlias = JudgedRun | TriedFrom | Typed | Watched | BreakMet | Exported | Noted | Visited | Shown
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?)\s*[^\d.,]*$")
 
@@ -115,9 +126,16 @@ def is_met(check: Check, events: Sequence[Event]) -> bool:
 
 def good_runs(check: Run, events: Sequence[Event]) -> int:
     """Return how many runs have passed a check so far."""
-    runs = [event for event in events if isinstance(event, JudgedRun)]
-    good = [run for run in runs if set(check.goals) <= run.met and (run.from_start or check.anywhere)]
+    tried = [event for event in events if isinstance(event, TriedFrom) and set(check.goals) <= event.met]
+    passed = {(one.run_id, one.start) for one in tried}
+    good = [run for run in met_by(check, events) if all((run.run_id, start) in passed for start in check.also_from)]
     return len({run.seed for run in good} if check.seeds else {run.run_id for run in good})
+
+
+def met_by(check: Run, events: Sequence[Event]) -> list[JudgedRun]:
+    """Return the runs that have met the goals of a check, whatever their programs do from other starts."""
+    runs = [event for event in events if isinstance(event, JudgedRun)]
+    return [run for run in runs if set(check.goals) <= run.met and (run.from_start or check.anywhere)]
 
 
 def is_right(question: Question, text: str) -> bool:

@@ -15,7 +15,7 @@ from msgspec import Meta
 
 from tuisim.config.options import PANELS
 from tuisim.errors import ConfigError, nearest, require_regex
-from tuisim.goals.spec import Goal, Range
+from tuisim.goals.spec import Goal, Heading, Range, X, Y
 
 SHOWABLE = (*PANELS, "debug", "brick", "obstacles", "goals")
 """Ids of the panels that a step can ask for."""
@@ -23,6 +23,7 @@ SEEABLE = (*SHOWABLE, "analyser")
 """Ids of what a student can look at for the answer to a question."""
 MAX_STEPS = 30
 MAX_HINTS = 10
+MAX_STARTS = 3
 
 Count = Annotated[int, Meta(ge=1, le=100)]
 Seconds = Annotated[float, Meta(ge=0, le=1e6)]
@@ -63,8 +64,13 @@ class Run:
     """Whether each of these runs needs another seed."""
     anywhere: bool = False
     """Whether a run may begin at another place than the lesson's start."""
+    also_from: tuple[tuple[X, Y, Heading], ...] = ()
+    """Further starts, x, y and heading: the program of a good run is tried from each, and must meet the goals, too.
+    One that knows the way by heart does not."""
 
     def __post_init__(self) -> None:
+        if len(self.also_from) > MAX_STARTS:
+            raise ConfigError(f"has {len(self.also_from)} starts", f"at most {MAX_STARTS}", key="also_from")
         if not self.goals:
             raise ConfigError("names no goal", "give the names of goals", key="goals")
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tuisim.batch.pool import run_many
 from tuisim.batch.task import Result, Task
@@ -11,15 +11,20 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import settings_of
 from tuisim.config.program_file import parse_program
 from tuisim.config.program_settings import program_settings
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import RunSpec
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.lessons.spec import Lesson, Question, Run, Step, Way
 from tuisim.runs.handle import RunOptions
+from tuisim.runs.run_folder import StoredRun
 from tuisim.source import source_lines
 
 TIME_LIMIT_S = 180.0
 """Simulated seconds that a program of a lesson may take."""
-_Key = tuple[str, int]
-"""The text of a program, and the seed."""
+Start = tuple[float, float, float]
+"""x, y and heading of the robot at the beginning."""
+_Key = tuple[str, int, Start | None]
+"""The text of a program, the seed, and the start; None for that of the lesson."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,8 +53,8 @@ def trials(lesson: Lesson) -> list[Trial]:
     return found
 
 
-def task_of(lesson: Lesson, text: str, seed: int, index: int = 0) -> Task:
-    """Return the run of a program in the world of a lesson, with a seed.
+def task_of(lesson: Lesson, text: str, seed: int, index: int = 0, start: Start | None = None) -> Task:
+    """Return the run of a program in the world of a lesson, with a seed, perhaps from another start.
 
     Raises:
         ConfigError: its magic line, or the world, is wrong.
@@ -58,7 +63,21 @@ def task_of(lesson: Lesson, text: str, seed: int, index: int = 0) -> Task:
     of_lesson = bool(lesson.settings)
     found = program_settings(source, lesson.settings, {"seed": seed}, in_world=of_lesson, of_task=of_lesson)
     spec = build_run_spec(found.settings)
-    return Task(index, source.program, spec, RunOptions(time_limit_s=TIME_LIMIT_S), lesson.goals)
+    return Task(index, source.program, _from(spec, start), RunOptions(time_limit_s=TIME_LIMIT_S), lesson.goals)
+
+
+def _from(spec: RunSpec, start: Start | None) -> RunSpec:
+    return spec if start is None else replace(spec, world=replace(spec.world, start=Pose(*start)))
+
+
+def tried_from(lesson: Lesson, check: Run, run: StoredRun) -> list[tuple[Start, tuple[Judgement, ...]]]:
+    """Try the program of a run from the other starts of a check, and judge that; blocks meanwhile."""
+    options = RunOptions(time_limit_s=TIME_LIMIT_S)
+    tasks = [
+        Task(index, run.program, _from(run.spec, start), options, lesson.goals)
+        for index, start in enumerate(check.also_from)
+    ]
+    return [(check.also_from[result.index], result.judgements) for result in run_many(tasks, jobs=1)]
 
 
 def faults(lesson: Lesson) -> list[str]:
@@ -68,10 +87,15 @@ def faults(lesson: Lesson) -> list[str]:
         ConfigError: a program's magic line, or the world, is wrong.
     """
     tried = trials(lesson)
-    keys: list[_Key] = list(dict.fromkeys((trial.text, trial.seed) for trial in tried))
-    tasks = [task_of(lesson, text, seed, index) for index, (text, seed) in enumerate(keys)]
+    keys: list[_Key] = list(dict.fromkeys(key for trial in tried for key in _keys(trial)))
+    tasks = [task_of(lesson, text, seed, index, start) for index, (text, seed, start) in enumerate(keys)]
     results = {keys[result.index]: result for result in run_many(tasks, jobs=1)}
-    return [fault for trial in tried for fault in _faults_of(lesson, trial, results[trial.text, trial.seed])]
+    return [fault for trial in tried for fault in _faults_of(lesson, trial, [results[key] for key in _keys(trial)])]
+
+
+def _keys(trial: Trial) -> list[_Key]:
+    assert isinstance(trial.step.check, Run)
+    return [(trial.text, trial.seed, start) for start in (None, *trial.step.check.also_from)]
 
 
 def warnings(lesson: Lesson) -> list[str]:
@@ -85,7 +109,9 @@ def warnings(lesson: Lesson) -> list[str]:
     return found
 
 
-def _faults_of(lesson: Lesson, trial: Trial, result: Result) -> Iterator[str]:
+def _faults_of(lesson: Lesson, trial: Trial, results: Sequence[Result]) -> Iterator[str]:
+    """Yield what is wrong with a trial, of which there is a result for each start."""
+    result = next((one for one in results if _missed(trial.step, one.judgements)), results[0])
     missed = _missed(trial.step, result.judgements)
     if trial.passes and missed:
         reasons = "; ".join(f"{each.goal.name}: {each.reason}" for each in missed)

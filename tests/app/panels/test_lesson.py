@@ -12,109 +12,17 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
-from tests.app.app_help import notices, ready, settings, until
+from tests.app.app_help import notices, ready, until
+from tests.app.lesson_help import LARGE, PROGRAM, SMALL, opened, run_over, shown, states, type_answer, with_lines
 from tuisim.analysis.source import NOTES_FILE, Note, write_notes
-from tuisim.app.analyser.app import Analyser
-from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
-from tuisim.app.dialogs.question import LinePrompt
-from tuisim.app.lesson import goals_of
 from tuisim.app.panels import PANELS
-from tuisim.app.panels.lesson import LessonPanel
 from tuisim.app.render.lesson import LessonPicture, LessonView, draw_lesson
 from tuisim.app.snapshot import RunPhase
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import settings_of
-from tuisim.config.program_file import read_program
 from tuisim.goals.judgement import Change, GoalState, Judgement
-from tuisim.lessons.files import load_lesson
-from tuisim.lessons.progress import StepState, load_progress, prepare_program, program_path
+from tuisim.lessons.progress import StepState, load_progress, program_path
 from tuisim.lessons.spec import SHOWABLE
-
-PROGRAM = "x = 1\nprint('Level: 50')\ntank_drive.on_for_seconds(SpeedPercent(30), SpeedPercent(30), 2)\n"
-LESSON = f"""\
-+++
-title = "Try it"
-why = "It matters."
-background = "Empty_Map"
-start = {{ x_mm = 500, y_mm = 500, heading_deg = 0 }}
-
-[[goal]]
-name = "far"
-say = "Drive."
-hint = "Faster."
-reach = {{ x_mm = 780, at_end = true }}
-
-[[step]]
-name = "number"
-hints = ["Half of 84.", "Six times seven."]
-question = {{ ask = "What is it?", answer = 42 }}
-wrong = ["41"]
-
-[[step]]
-name = "drive"
-run = "far"
-
-[[step]]
-name = "do"
-%s
-+++
-Hello
-
-```python program
-{PROGRAM}```
-## Think
-Read **this**.
-## Drive
-Go on.
-```python answer
-{PROGRAM}```
-## Do it
-Now.
-"""
-SMALL, LARGE = (80, 24), (120, 40)
-
-
-def opened(tmp_path: Path, check: str = "show = 'chart'") -> AppSettings:
-    """What `tuisim learn` makes of a lesson whose last step has a check."""
-    folder = tmp_path / "lessons"
-    folder.mkdir(exist_ok=True)
-    path = folder / "try.md"
-    path.write_text(LESSON % check)
-    lesson = load_lesson(path)
-    made = settings(lesson=lesson, goals=goals_of(lesson), lessons_folder=str(folder), speed=0.0)
-    spec = build_run_spec(settings_of(lesson.settings))
-    return replace(made, spec=spec, program=read_program(prepare_program(lesson)).program)
-
-
-def with_lines(settings_: AppSettings, count: int) -> AppSettings:
-    """The same with a lesson whose text has so many lines."""
-    assert settings_.lesson is not None
-    return replace(settings_, lesson=replace(settings_.lesson, intro="\n\n".join(f"Line {at}" for at in range(count))))
-
-
-def shown(app: LabApp) -> str:
-    """The text of the panel."""
-    panel = app.panel_area.lesson
-    lines = [] if panel is None else panel._picture.lines
-    return "\n".join("".join(text for text, _ in line).rstrip() for line in lines)
-
-
-async def type_answer(pilot: Pilot[Any], app: LabApp, text: str) -> None:
-    await pilot.press("Q")
-    await until(pilot, lambda: isinstance(app.screen, LinePrompt) and app.screen.is_ready)
-    await pilot.press(*text, "enter")
-
-
-async def run_over(pilot: Pilot[Any], app: LabApp) -> None:
-    """Run the program to its end."""
-    await pilot.press("R")
-    await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED and not app._last_words)
-
-
-def states(name: str = "try") -> dict[str, str]:
-    """The stored progress."""
-    return {step: each.state.value for step, each in load_progress()[name].steps.items()}
 
 
 @pytest.mark.slow
@@ -503,85 +411,6 @@ async def test_answer_that_is_not_right_says_what_to_do(text: str, words: str, t
         await until(pilot, lambda: words in str(app.screen.query_one("#message", Static).content))
         # The readings at the bottom stay in view.
         assert app.screen.query_one(".dialog").region.y == 0
-
-
-PLACED = "question = { ask = 'What?', answer = 5, at_x_mm = [600, 700], where = 'the right: → moves it' }"
-
-
-@pytest.mark.usefixtures("home")
-async def test_answer_about_another_place_is_not_wrong(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path, PLACED)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
-        app.lesson.skip_step()
-        app.lesson.skip_step()
-        await type_answer(pilot, app, "5")
-        words = "The robot is at x = 500 mm. The question is about the right: → moves it."
-        await until(pilot, lambda: words in str(app.screen.query_one("#message", Static).content))
-        assert load_progress()["try"].of("do").tries == 0
-        await pilot.press("escape", *["right"] * 12)
-        await until(pilot, lambda: app.run_controller.pose.x_mm == 620)
-        await type_answer(pilot, app, "5")
-        await until(pilot, lambda: states().get("do") == "done")
-
-
-@pytest.mark.usefixtures("home")
-async def test_note_that_does_not_pass_is_told_why(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path, "note = { matches = 'dark', level = 86 }\nmodel = 'dark'")).run_test(
-        size=SMALL
-    ) as pilot:
-        app = await ready(pilot)
-        app.lesson.skip_step()
-        app.lesson.skip_step()
-        await _note(pilot, app)
-        words = "Your note “dark” is on samples with a mean of 50.0; this step is about those with 86."
-        await until(pilot, lambda: words in " ".join(shown(app).split()))
-
-
-@pytest.mark.usefixtures("home")
-async def test_panel_of_a_paused_program(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path, "show = { panel = 'debug', paused = true }")).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
-        app.lesson.skip_step()
-        app.lesson.skip_step()
-        await pilot.press("G")
-        await until(pilot, lambda: app.panel_area.shown("debug"))
-        app.lesson.update()
-        assert "do" not in states()
-        await pilot.press("n")
-        await until(pilot, lambda: states().get("do") == "done")
-
-
-@pytest.mark.usefixtures("home")
-async def test_lesson_is_in_sight_while_one_types_in_a_small_terminal(tmp_path: Path) -> None:
-    async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
-        await pilot.press("d")
-        await until(pilot, lambda: app.panel_area.is_stacked)
-        # The step, not the introduction before it.
-        await until(pilot, lambda: "1. Think" in shown(app).split("\n")[1])
-        code, lesson = (app.panel_area.arrangement.boxes[panel] for panel in ("code", "lesson"))
-        assert (code.width, code.height, lesson.height) == (80, 12, 11)
-        await pilot.press("escape")
-        await until(pilot, lambda: app.panel_area.shown("world"))
-
-
-@pytest.mark.usefixtures("home")
-@pytest.mark.parametrize(("size", "has_world"), [(SMALL, False), (LARGE, True)], ids=["80", "120"])
-async def test_lesson_is_beside_the_log(size: tuple[int, int], has_world: bool, tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path, PLACED)).run_test(size=size) as pilot:
-        app = await ready(pilot)
-        await run_over(pilot, app)
-        await pilot.press("l")
-        await until(pilot, lambda: isinstance(app.screen, Analyser) and app.screen.is_open)
-        analyser = app.screen
-        assert isinstance(analyser, Analyser)
-        beside = analyser.query_one(LessonPanel)
-        await until(pilot, lambda: beside.region.width >= 32 and analyser.world.display is has_world)
-        await pilot.press("w")
-        await until(pilot, lambda: analyser.world.display is not has_world)
-        assert beside.display is has_world
-        await pilot.press("q")
-        await until(pilot, lambda: app.lesson._beside is None)
 
 
 @pytest.mark.usefixtures("home")

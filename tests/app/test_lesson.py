@@ -1,0 +1,121 @@
+"""What a step needs before it passes, and the lesson beside the editor and the log."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from textual.widgets import Static
+
+from tests.app.app_help import ready, until
+from tests.app.lesson_help import LARGE, SMALL, opened, run_over, shown, states, type_answer, with_lines
+from tuisim.analysis.source import NOTES_FILE, Note, write_notes
+from tuisim.app.analyser.app import Analyser
+from tuisim.app.app import LabApp
+from tuisim.app.panels.lesson import LessonPanel
+from tuisim.lessons.progress import load_progress, program_path
+
+PLACED = "question = { ask = 'What?', answer = 5, at_x_mm = [600, 700], where = 'the right: → moves it' }"
+
+
+@pytest.mark.usefixtures("home")
+async def test_answer_about_another_place_is_not_wrong(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path, PLACED)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        app.lesson.skip_step()
+        await type_answer(pilot, app, "5")
+        words = "The robot is at x = 500 mm. The question is about the right: → moves it."
+        await until(pilot, lambda: words in str(app.screen.query_one("#message", Static).content))
+        assert load_progress()["try"].of("do").tries == 0
+        await pilot.press("escape", *["right"] * 12)
+        await until(pilot, lambda: app.run_controller.pose.x_mm == 620)
+        await type_answer(pilot, app, "5")
+        await until(pilot, lambda: states().get("do") == "done")
+
+
+@pytest.mark.usefixtures("home")
+async def test_note_that_does_not_pass_is_told_why(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path, "note = { matches = 'dark', level = 86 }\nmodel = 'dark'")).run_test(
+        size=SMALL
+    ) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        app.lesson.skip_step()
+        await run_over(pilot, app)
+        recording = app.run_controller.timeline.recording
+        assert recording is not None
+        write_notes(recording.folder / NOTES_FILE, [Note("dark", 0.0, 0.1, "Level")])
+        words = "Your note “dark” is on samples with a mean of 50.0; this step is about those with 86."
+        await until(pilot, lambda: words in " ".join(shown(app).split()))
+
+
+@pytest.mark.usefixtures("home")
+async def test_panel_of_a_paused_program(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path, "show = { panel = 'debug', paused = true }")).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        app.lesson.skip_step()
+        await pilot.press("G")
+        await until(pilot, lambda: app.panel_area.shown("debug"))
+        app.lesson.update()
+        assert "do" not in states()
+        await pilot.press("n")
+        await until(pilot, lambda: states().get("do") == "done")
+
+
+@pytest.mark.usefixtures("home")
+async def test_lesson_is_in_sight_while_one_types_in_a_small_terminal(tmp_path: Path) -> None:
+    async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await pilot.press("d")
+        await until(pilot, lambda: app.panel_area.is_stacked)
+        # The step, not the introduction before it.
+        await until(pilot, lambda: "1. Think" in shown(app).split("\n")[1])
+        code, lesson = (app.panel_area.arrangement.boxes[panel] for panel in ("code", "lesson"))
+        assert (code.width, code.height, lesson.height) == (80, 12, 11)
+        await pilot.press("escape")
+        await until(pilot, lambda: app.panel_area.shown("world"))
+
+
+@pytest.mark.usefixtures("home")
+@pytest.mark.parametrize(("size", "has_world"), [(SMALL, False), (LARGE, True)], ids=["80", "120"])
+async def test_lesson_is_beside_the_log(size: tuple[int, int], has_world: bool, tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path, PLACED)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        await run_over(pilot, app)
+        await pilot.press("l")
+        await until(pilot, lambda: isinstance(app.screen, Analyser) and app.screen.is_open)
+        analyser = app.screen
+        assert isinstance(analyser, Analyser)
+        beside = analyser.query_one(LessonPanel)
+        await until(pilot, lambda: beside.region.width >= 32 and analyser.world.display is has_world)
+        await pilot.press("w")
+        await until(pilot, lambda: analyser.world.display is not has_world)
+        assert beside.display is has_world
+        await pilot.press("q")
+        await until(pilot, lambda: app.lesson._beside is None)
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("home")
+async def test_program_is_tried_from_another_start(tmp_path: Path) -> None:
+    made = opened(tmp_path)
+    text = (tmp_path / "lessons" / "try.md").read_text()
+    # 20 mm of tolerance, and a start 40 mm farther back.
+    wide = text.replace('run = "far"', "run = { goals = ['far'], also_from = [[460, 500, 0]] }")
+    (tmp_path / "lessons" / "try.md").write_text(wide)
+    async with LabApp(made).run_test(size=LARGE) as pilot:
+        app = await ready(pilot)
+        app.lesson.open("try")
+        app.lesson.skip_step()
+        await run_over(pilot, app)
+        words = "From another start, x = 460, y = 500 mm, it does not work: At the end the robot was 40 mm left of"
+        await until(pilot, lambda: words in " ".join(shown(app).split()))
+        assert "drive" not in states()
+        program = "tank_drive.on(30, 30)\nwhile ultrasonic.distance_centimeters > 156:\n    pass\ntank_drive.off()\n"
+        assert app.lesson.lesson is not None
+        program_path(app.lesson.lesson).write_text(program)
+        app.check_files()
+        await run_over(pilot, app)
+        await until(pilot, lambda: states().get("drive") == "done")
