@@ -15,7 +15,7 @@ from tuisim.app.app import LabApp
 from tuisim.app.panels.lesson import LessonPanel
 from tuisim.lessons.progress import load_progress, program_path
 
-PLACED = "question = { ask = 'What?', answer = 5, at_x_mm = [600, 700], where = 'the right: → moves it' }"
+PLACED = "question = { ask = 'What?', answer = 5, at_x_mm = [[600, 700]], where = 'the right: → moves it' }"
 
 
 @pytest.mark.usefixtures("home")

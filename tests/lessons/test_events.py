@@ -34,7 +34,7 @@ def runs(*seeds: int, met: str = "a b", from_start: bool = True) -> list[Event]:
 
 BACK = (460.0, 500.0, 0.0)
 FARTHER = Run(("a",), also_from=(BACK,))
-HERE = Question("Q", 50.2, within=0.5, at_x_mm=(200.0, 400.0), where="the band: m")
+HERE = Question("Q", 50.2, within=0.5, at_x_mm=((200.0, 400.0),), where="the band: m")
 SEEN = Question("Q", 50.2, within=0.5, seen=("instrumentation", "chart"))
 RAN = Question("Q", 50.2, within=0.5, run=True, printed="Error")
 

@@ -69,12 +69,12 @@ BAD = {
         ", line 11: this step does not run a program",
     ),
     "place without words": (
-        step("question = { ask = 'Q', answer = 5, at_x_mm = [1, 2] }"),
+        step("question = { ask = 'Q', answer = 5, at_x_mm = [[1, 2]] }"),
         "step[1].question.where: goes with at_x_mm",
     ),
     "place backwards": (
-        step("question = { ask = 'Q', answer = 5, at_x_mm = [2, 1], where = 'x' }"),
-        "step[1].question.at_x_mm: must be from left to right, got 2 to 1",
+        step("question = { ask = 'Q', answer = 5, at_x_mm = [[2, 1]], where = 'x' }"),
+        "step[1].question.at_x_mm[1]: must be from left to right, got 2 to 1",
     ),
     "no such view": (
         step("question = { ask = 'Q', answer = 5, seen = ['analyzer'] }"),
@@ -160,7 +160,7 @@ WAYS = {
     "run that excludes": ("run = 'end'\n[step.excludes]\n'no sensor' = 'x'\n'wrong order' = 'y'",
                           ["literal answer", "wrong place"]),
     "question": ("wrong = ['4']\nquestion = { ask = 'Q', answer = 5 }", ["no sensor", "wrong order", "wrong place"]),
-    "question of a place": ("question = { ask = 'Q', answer = 5, at_x_mm = [1, 2], where = 'x', run = true }",
+    "question of a place": ("question = { ask = 'Q', answer = 5, at_x_mm = [[1, 2]], where = 'x', run = true }",
                             ["literal answer"]),
     "question after a look": ("question = { ask = 'Q', answer = 'a', choices = ['a', 'b'], seen = ['chart'] }",
                               ["wrong order", "wrong place"]),

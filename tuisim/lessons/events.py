@@ -158,10 +158,9 @@ def unready(question: Question, event: Typed) -> str:
         return "The run in view has not printed that: do what the step says, and run again."
     if event.seen is not None and question.seen and not event.seen & set(question.seen):
         return f"Look first: {' or '.join(view.capitalize() for view in question.seen)} shows it."
-    if event.x_mm is not None and question.at_x_mm is not None:
-        left, right = question.at_x_mm
-        if not left <= event.x_mm <= right:
-            return f"The robot is at x = {event.x_mm:.0f} mm. The question is about {question.where}."
+    places, x_mm = question.at_x_mm, event.x_mm
+    if x_mm is not None and places and not any(left <= x_mm <= right for left, right in places):
+        return f"The robot is at x = {x_mm:.0f} mm. The question is about {question.where}."
     return ""
 
 

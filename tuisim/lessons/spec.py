@@ -88,8 +88,9 @@ class Question:
     within: Tolerance = 0.0
     """How far a number may be off."""
     choices: tuple[str, ...] = ()
-    at_x_mm: Range | None = None
-    """Where the robot must stand when the answer is typed: the question is about what it measures there."""
+    at_x_mm: tuple[Range, ...] = ()
+    """Where the robot must stand when the answer is typed, in one of these ranges; empty for anywhere. The question is
+    about what it measures there."""
     where: str = ""
     """The same in words, and how to get there, for a student whose robot is elsewhere."""
     seen: tuple[str, ...] = ()
@@ -106,10 +107,10 @@ class Question:
             raise ConfigError("is only for numbers", key="within")
         if self.choices and self.answer not in self.choices:
             raise ConfigError(f"{self.answer!r} is none of the choices", key="answer")
-        if self.at_x_mm is not None and self.at_x_mm[0] >= self.at_x_mm[1]:
-            left, right = self.at_x_mm
-            raise ConfigError(f"must be from left to right, got {left:g} to {right:g}", key="at_x_mm")
-        if (self.at_x_mm is None) is bool(self.where):
+        for number, (left, right) in enumerate(self.at_x_mm, start=1):
+            if left >= right:
+                raise ConfigError(f"must be from left to right, got {left:g} to {right:g}", key=f"at_x_mm[{number}]")
+        if bool(self.at_x_mm) is not bool(self.where):
             raise ConfigError("goes with at_x_mm", "the place in words, and how to get there", key="where")
         require_regex(self.printed, "printed")
         for number, panel in enumerate(self.seen, start=1):
