@@ -21,6 +21,7 @@ from textual.keys import format_key
 from textual.message import Message
 from textual.theme import ThemeProvider
 from textual.widget import Widget
+from textual.worker import Worker
 
 from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce
@@ -192,6 +193,19 @@ class ActionHost(DOMNode):
 
 class Palette(CommandPalette, ClosesOnce[None]):
     """Textual's command palette, as one of the app's screens that close once."""
+
+    def is_ready_for(self, event: events.Event) -> bool:
+        """Return whether what a key is meant for is there: the commands that were found, unless it is typed."""
+        types = isinstance(event, events.Key) and (event.is_printable or event.key in ("escape", "backspace"))
+        return super().is_ready_for(event) and (types or not any(map(self._is_search, self.workers)))
+
+    def _is_search(self, worker: Worker[Any]) -> bool:
+        return worker.node is self and worker.group == self._GATHER_COMMANDS_GROUP and not worker.is_finished
+
+    def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
+        """Let waiting keys go on once the commands are found."""
+        if event.worker.is_finished:
+            self.app.post_message(self.Changed())
 
     def _on_click(self, event: events.Click) -> None:  # type: ignore[override]
         # Where the terminal was until it became smaller there is nothing any more to be found.

@@ -200,6 +200,8 @@ _SIGNS = frozenset({
 class NumberInput(Input):
     """A text field for a number; letters and other characters remain keys of the app."""
 
+    takes_letters = False
+
     def on_mount(self) -> None:
         for action in self.app.ACTIONS.values() if isinstance(self.app, ActionHost) else ():
             for key in action.key.split(","):

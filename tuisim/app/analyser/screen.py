@@ -12,6 +12,7 @@ import numpy as np
 from rich.style import Style
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
+from textual.events import Event, Key
 from textual.widget import Widget
 
 from tuisim.analysis.model import RECKONING, Model
@@ -103,6 +104,15 @@ class LogScreen(ActionHost, ClosesOnce[None]):
                 yield self._beside.add_class("beside")
         yield self.key_footer
 
+    def is_ready_for(self, event: Event) -> bool:
+        """Return whether what a key is meant for is there: the log, unless the key works without one."""
+        is_there = self.is_open or not (isinstance(event, Key) and event.key in self._keys_of_log)
+        return super().is_ready_for(event) and is_there
+
+    @property
+    def _keys_of_log(self) -> set[str]:
+        return {key for action in self.ACTIONS.values() if action.why_not(None) for key in action.key.split(",")}
+
     def on_mount(self) -> None:
         self.world.is_on = self._beside is None or self.size.width >= _WIDE_COLS
         self.open(self.request)
@@ -175,6 +185,8 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.update()
         if before is None and opened.request.file and not model.log.layout.sure and self.is_current:
             self.ask_columns()
+        if before is None:
+            self.app.post_message(self.Changed())
         if opened.done and opened.log.notes != self._said:
             self._said = opened.log.notes
             for note in self._said:

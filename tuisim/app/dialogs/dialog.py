@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import ClassVar, Generic, TypeVar
 
 from rich.table import Table
@@ -11,6 +13,7 @@ from textual.await_complete import AwaitComplete
 from textual.binding import Binding, BindingType
 from textual.color import Color
 from textual.containers import Vertical
+from textual.events import Event, Key
 from textual.geometry import Region
 from textual.message import Message
 from textual.renderables.background_screen import BackgroundScreen
@@ -18,7 +21,10 @@ from textual.screen import ModalScreen
 from textual.strip import Strip
 from textual.widgets import Static
 
+from tuisim.app import background
+from tuisim.app.background import Made
 from tuisim.app.terminal.strips import JoinedStrip, LazyStrip
+from tuisim.errors import TuisimError
 
 Result = TypeVar("Result")
 
@@ -65,12 +71,36 @@ class ClosesOnce(ModalScreen[Result], Generic[Result]):
 
     is_ready = False
     """Whether it is mounted, and has focused the widget that gets the first key."""
+    _is_at_work = False
+    """Whether keys have to wait for a result."""
 
     def on_mount(self) -> None:
         self.call_after_refresh(self.app.call_later, self._become_ready)
 
     def _become_ready(self) -> None:
         self.is_ready = True
+        self.app.post_message(self.Changed())
+
+    def is_ready_for(self, event: Event) -> bool:
+        """Return whether what a key is meant for is there; those that follow wait with it."""
+        return self.is_ready and not (self._is_at_work and isinstance(event, Key) and event.key != "escape")
+
+    def wait_for(
+        self, work: Callable[[], Made], then: Callable[[Made], None], failed: Callable[[TuisimError], None]
+    ) -> None:
+        """Run a function in a thread; keys wait for its result, except for Escape.
+
+        Args:
+            work: Called in the thread.
+            then: Called with the result.
+            failed: Called with a TuisimError that `work` has raised.
+        """
+        self._is_at_work = True
+        background.run(self, work, partial(self._done, then), partial(self._done, failed))
+
+    def _done(self, then: Callable[[Made], None], result: Made) -> None:
+        self._is_at_work = False
+        then(result)
         self.app.post_message(self.Changed())
 
     @property

@@ -16,7 +16,6 @@ from textual.containers import VerticalScroll
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
-from tuisim.app import background
 from tuisim.app.branch import BRANCH_TAG
 from tuisim.app.dialogs.chooser import ListDialog
 from tuisim.app.dialogs.dialog import Dialog
@@ -108,7 +107,7 @@ class RunChooser(ListDialog):
     def on_mount(self) -> None:
         """Read the list in the background: there may be thousands of runs."""
         super().on_mount()
-        background.run(self, _stored_runs, self._fill, lambda error: self.say(str(error)))
+        self.wait_for(_stored_runs, self._fill, lambda error: self.say(str(error)))
 
     def _fill(self, runs: list[RunInfo]) -> None:
         self._runs = [run for run in runs if run.id != self._left_out]

@@ -13,7 +13,6 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.widgets import Input, Static
 
-from tuisim.app import background
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.dialogs.question import Form, form_list
 from tuisim.app.terminal.browser import offer
@@ -213,7 +212,7 @@ class ExportDialog(FileDialog):
         """Write the file in the background: it may be large."""
         self.say("Writing …")
         work = partial(_write, self._run_id, target, self._telemetry)
-        background.run(self, work, self._written, lambda error: self.failed(str(error)))
+        self.wait_for(work, self._written, lambda error: self.failed(str(error)))
 
     def _written(self, target: Path) -> None:
         self.app.notify(f"Log saved to {target}", markup=False)

@@ -264,6 +264,11 @@ class CodeArea(TextArea):
         """The mode, with the keys of vim, while the user types."""
         return self._state.mode if self.typing and self._motions is Motions.VIM else None
 
+    @property
+    def takes_letters(self) -> bool:
+        """Whether letters are typed, and none is a command."""
+        return self.typing and self._motions is not Motions.VIM
+
     def begin_typing(self, motions: Motions) -> None:
         """Let the user type, with these keys."""
         self.read_only = False

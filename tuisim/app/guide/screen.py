@@ -164,7 +164,12 @@ class GuideScreen(Dialog[None]):
     def __init__(self, keys: KeyPage, topic: Topic) -> None:
         super().__init__()
         self._keys, self._topic = keys, topic
-        self._question = ""
+        self._question = self._answered = ""
+
+    def is_ready_for(self, event: events.Event) -> bool:
+        """Return whether what a key is meant for is there: the results of the search, where it leads to them."""
+        leads_there = isinstance(event, events.Key) and event.key in ("enter", "tab", "shift+tab")
+        return super().is_ready_for(event) and not (leads_there and self._answered != self._question)
 
     def content(self) -> ComposeResult:
         yield Input(placeholder="Search: words or a question", compact=True, id="search")
@@ -230,6 +235,7 @@ class GuideScreen(Dialog[None]):
             return
         if not question.strip():
             self._contents.show_all(self._keys.title)
+            self._now_answered(question)
             return
         # The first search loads every command, for its page.
         work: Callable[[], list[Found]] = partial(search, question)
@@ -242,6 +248,11 @@ class GuideScreen(Dialog[None]):
         if found:
             self._contents.cursor_line = 0
             self._page.show((found[0].name, found[0].heading))
+        self._now_answered(question)
+
+    def _now_answered(self, question: str) -> None:
+        self._answered = question
+        self.app.post_message(self.Changed())
 
     @on(Input.Submitted)
     def _to_results(self) -> None:

@@ -7,7 +7,6 @@ import os
 import re
 import signal
 import sys
-from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from encodings import utf_8
@@ -34,6 +33,7 @@ from textual.drivers import linux_driver
 from textual.drivers.linux_driver import LinuxDriver
 from textual.filter import LineFilter
 from textual.geometry import Size
+from textual.message_pump import MessagePump
 from textual.screen import Screen
 from textual.selection import Selection
 from textual.theme import Theme
@@ -48,12 +48,13 @@ from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.graphics import kitty
 from tuisim.app.graphics.choice import graphics_of
 from tuisim.app.render.cells import PALETTE_256
-from tuisim.app.terminal import option_list
+from tuisim.app.terminal import input_order, option_list
 from tuisim.app.terminal.answers import AnswerParser, TerminalAnswered
 from tuisim.app.terminal.browser import in_browser, offer
 from tuisim.app.terminal.cell_view import RowsView
 from tuisim.app.terminal.compositor import ThoroughCompositor
 from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
+from tuisim.app.terminal.input_order import InputOrder
 from tuisim.app.terminal.picture_mode import PictureMode, color_depth, picture_mode_of
 from tuisim.app.terminal.probe import SILENT
 from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, QUESTIONS, TerminalFacts, cell_size_px
@@ -147,8 +148,7 @@ class TerminalApp(App[None]):
         self.terminal_facts = TerminalFacts()
         self.too_small: Size | None = None
         """Size of a terminal that is too small, else None."""
-        self._waiting_keys: deque[events.Key] = deque()
-        """Keys for a screen that is being opened."""
+        self._input = InputOrder(self, self._give, self._waits)
         for theme in (HIGH_CONTRAST, LIGHT):
             self.register_theme(theme)
         for name in UNUSED_THEMES:
@@ -184,13 +184,21 @@ class TerminalApp(App[None]):
             if was != self.too_small:
                 # The layout may stay the same, and would not be drawn then.
                 self.call_later(self.action_redraw)
-        elif isinstance(event, (events.InputEvent, events.Paste)) and self._ignores(event):
-            return
-        if isinstance(event, events.Key) and (self._waiting_keys or self._is_opening):
-            # A screen that is not mounted yet would lose it.
-            self._waiting_keys.append(events.Key(event.key, event.character))
+        elif isinstance(event, (events.InputEvent, events.Paste)):
+            if not self._ignores(event):
+                await (self._give if event.is_forwarded else self._input.take)(event)
             return
         await super().on_event(event)
+
+    async def _give(self, event: events.Event) -> None:
+        """Handle what the user does; it may have had to wait for what came before."""
+        if not self._ignores(event):
+            await super().on_event(event)
+
+    def _waits(self, event: events.Event) -> bool:
+        """Return whether the topmost screen is still being opened, so that it would lose a key."""
+        top = self.screen_stack[-1] if self.screen_stack else None
+        return isinstance(top, ClosesOnce) and not top.is_ready_for(event)
 
     def _ignores(self, event: events.Event) -> bool:
         """Return whether to ignore an event of the user: nothing can handle it, or its target is invisible or was just
@@ -211,8 +219,7 @@ class TerminalApp(App[None]):
     @on(ClosesOnce.Changed)
     async def give_waiting_keys(self) -> None:
         """Pass the keys that were pressed while a screen was being opened to the topmost screen."""
-        while self._waiting_keys and not self._is_opening:
-            await super().on_event(self._waiting_keys.popleft())
+        await self._input.go_on()
 
     @property
     def _is_opening(self) -> bool:
@@ -454,6 +461,12 @@ OptionList._move_page = option_list.move_page  # type: ignore[method-assign, ass
 linux_driver.XTermParser = AnswerParser  # type: ignore[attr-defined]
 linux_driver.getincrementaldecoder = lambda _: InputDecoder  # type: ignore[attr-defined, assignment]
 Widget.text_selection = property(text_selection)  # type: ignore[assignment]
+# Otherwise letters overtake the other keys.
+MessagePump.post_message = input_order.post_message  # type: ignore[method-assign]
+MessagePump._dispatch_message = input_order.dispatch_message  # type: ignore[method-assign]
+MessagePump._process_messages = input_order.process_messages  # type: ignore[method-assign]
+MessagePump.call_next = input_order.call_next  # type: ignore[method-assign]
+MessagePump.call_after_refresh = input_order.call_after_refresh  # type: ignore[method-assign]
 # Otherwise the cache of this method keeps what it is a method of: the drawn rows of a thousand widgets that are gone.
 StylesCache.get_inner_outer = classmethod(StylesCache.get_inner_outer)  # type: ignore[method-assign, arg-type, assignment]
 

@@ -1,0 +1,259 @@
+"""Input in the order of its arrival: the next key is given out when everything that the last one has caused is done.
+
+Textual hands a key to the widget with the focus. The widget takes letters at once; every other key goes on through the
+queue of each parent up to the app, which looks up its binding there. So a letter that arrives in the same burst is
+typed before the backspace, the arrow or the Enter in front of it has an effect. Here a key has its turn: messages that
+are posted while something of the turn is handled belong to it, and so do the callbacks that wait for the end of a
+message or, unless they are Textual's own, for the next refresh. The turn ends when none of them is left.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from asyncio import TimerHandle
+from collections import Counter, deque
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import partial
+from typing import Any
+from weakref import WeakSet
+
+from textual import events
+from textual._callback import invoke
+from textual.app import App
+from textual.message import Message
+from textual.message_pump import MessagePump
+from textual.widget import Widget
+from textual.widgets import Input
+
+_PATIENCE_S = 1.0
+"""A turn in which nothing has happened for so long is over: what it still waits for may never come."""
+_POINTER = (events.MouseMove, events.MouseScrollDown, events.MouseScrollUp)
+"""Comes in floods and has no turn of its own: it only keeps its place."""
+_TURN = "_turn"
+"""Attribute of a message that belongs to a turn."""
+
+
+class Turn:
+    """Everything that follows from one key.
+
+    Args:
+        ended: Called once, when all of it is done.
+    """
+
+    def __init__(self, ended: Callable[[], None]) -> None:
+        self._ended = ended
+        self._left: Counter[MessagePump] = Counter()
+        """How much of it waits at whom, or is being handled there."""
+        self._thread_id = threading.get_ident()
+        self.is_over = False
+        self.steps = 0
+        """How much of it has been done."""
+        _live.add(self)
+
+    @contextmanager
+    def step(self, pump: MessagePump) -> Iterator[None]:
+        """Do something of the turn that has been added; what it causes is added, too."""
+        token = _current.set(self)
+        try:
+            yield
+        finally:
+            _current.reset(token)
+            self.drop(pump, 1)
+
+    def add(self, pump: MessagePump) -> None:
+        """Let the turn last until one thing more is done."""
+        self._left[pump] += 1
+
+    def drop(self, pump: MessagePump, count: int | None = None) -> None:
+        """Count so many things as done; None for all at this place: it is gone, and they will never be."""
+        self.steps += 1
+        self._left[pump] -= self._left[pump] if count is None else count
+        if self._left[pump] <= 0:
+            del self._left[pump]
+        if not self._left:
+            self.end()
+
+    def end(self) -> None:
+        """Let the next key have its turn."""
+        if not self.is_over:
+            self.is_over = True
+            self._left.clear()
+            self._ended()
+
+    def later(self, pump: MessagePump, callback: Callable[[], Any]) -> Callable[[], Awaitable[Any]]:
+        """Return a callback, the call of which belongs to the turn."""
+        self.add(pump)
+
+        async def call() -> Any:
+            with self.step(pump):
+                return await invoke(callback)
+
+        return call
+
+    @property
+    def is_here(self) -> bool:
+        """Whether it still goes on, in this thread."""
+        return not self.is_over and threading.get_ident() == self._thread_id
+
+
+_current: ContextVar[Turn | None] = ContextVar("turn", default=None)
+"""The turn that what is being handled belongs to. Tasks and threads inherit it, also for longer than it lasts."""
+_live: WeakSet[Turn] = WeakSet()
+
+
+def _turn() -> Turn | None:
+    turn = _current.get()
+    return turn if turn is not None and turn.is_here else None
+
+
+_post, _dispatch, _process = MessagePump.post_message, MessagePump._dispatch_message, MessagePump._process_messages
+_call_next, _call_after_refresh = MessagePump.call_next, MessagePump.call_after_refresh
+
+
+def post_message(pump: MessagePump, message: Message) -> bool:
+    """Post a message. It belongs to the turn, unless a later one of its kind may replace it: that is about drawing."""
+    turn = _turn()
+    if turn is None or type(message).can_replace is not Message.can_replace:
+        return _post(pump, message)
+    turn.add(pump)
+    setattr(message, _TURN, turn)
+    posted = _post(pump, message)
+    if not posted:
+        turn.drop(pump, 1)
+    return posted
+
+
+async def dispatch_message(pump: MessagePump, message: Message) -> None:
+    """Handle a message, within the turn that it belongs to."""
+    turn: Turn | None = getattr(message, _TURN, None)
+    if turn is not None:
+        with turn.step(pump):
+            await _dispatch(pump, message)
+    elif isinstance(message, (events.Compose, events.Mount)):
+        # Nobody posts these: they belong to the turn in which the widget was made.
+        await _dispatch(pump, message)
+    else:
+        token = _current.set(None)
+        try:
+            await _dispatch(pump, message)
+        finally:
+            _current.reset(token)
+
+
+async def process_messages(pump: MessagePump) -> None:
+    """Handle messages until the end; those that are left then belong to no turn any more."""
+    try:
+        await _process(pump)
+    finally:
+        for turn in [*_live]:
+            turn.drop(pump)
+
+
+def call_next(pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> None:
+    """Call something after the current message, within the turn."""
+    if turn := _turn():
+        _call_next(pump, turn.later(pump, partial(callback, *args, **kwargs)))
+    else:
+        _call_next(pump, callback, *args, **kwargs)
+
+
+def call_after_refresh(pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> bool:
+    """Call something after the next refresh, within the turn; Textual's own callbacks only scroll, and may lag."""
+    turn = _turn()
+    if turn is None or _module(callback).startswith("textual."):
+        return _call_after_refresh(pump, callback, *args, **kwargs)
+    is_posted = _call_after_refresh(pump, turn.later(pump, partial(callback, *args, **kwargs)))
+    if not is_posted:
+        turn.drop(pump, 1)
+    return is_posted
+
+
+def takes_letters(widget: Widget) -> bool:
+    """Return whether every letter is typed into a widget, as its attribute of this name says; a field without one does."""
+    return bool(getattr(widget, "takes_letters", isinstance(widget, Input)))
+
+
+def _module(callback: Callable[..., Any]) -> str:
+    while isinstance(callback, partial):
+        callback = callback.func
+    return getattr(callback, "__module__", None) or ""
+
+
+class InputOrder:
+    """Gives out keys, and what else the user does, one after another.
+
+    Args:
+        app: The app.
+        give: Handles an event.
+        waits: Whether an event has to wait because what is to hear it is still being opened; `go_on` asks again.
+    """
+
+    def __init__(
+        self,
+        app: App[Any],
+        give: Callable[[events.Event], Awaitable[None]],
+        waits: Callable[[events.Event], bool],
+    ) -> None:
+        self._app, self._give, self._waits = app, give, waits
+        self._held: deque[events.Event] = deque()
+        self._turn: Turn | None = None
+        self._typed_into: Widget | None = None
+        """What took the last key as a letter."""
+        self._timer: TimerHandle | None = None
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether all that was taken has been handled."""
+        return not self._held and self._turn is None
+
+    async def take(self, event: events.Event) -> None:
+        """Give out an event, or hold it until those before it have had their turn."""
+        if self._held and isinstance(event, events.MouseMove) and isinstance(self._held[-1], events.MouseMove):
+            self._held.pop()
+        self._held.append(event)
+        await self.go_on()
+
+    async def go_on(self) -> None:
+        """Give out what may be given out now."""
+        while self._held and not self._waits(self._held[0]):
+            into = self._takes_letter(self._held[0])
+            if self._turn is not None and (into is None or into is not self._typed_into):
+                return
+            event, self._typed_into = self._held.popleft(), into
+            await (self._give if isinstance(event, _POINTER) else self._give_turn)(event)
+
+    def _takes_letter(self, event: events.Event) -> Widget | None:
+        """Return the field that takes a letter at once, and does nothing else with it."""
+        if not (isinstance(event, events.Key) and event.is_printable and self._app.screen_stack):
+            return None
+        focused = self._app.focused
+        return focused if focused is not None and takes_letters(focused) else None
+
+    async def _give_turn(self, event: events.Event) -> None:
+        """Give out an event as a new turn, or as more of the one that goes on: letters are typed in a row."""
+        turn, is_new = self._turn, self._turn is None
+        if turn is None:
+            turn = self._turn = Turn(self._ended)
+        turn.add(self._app)
+        with turn.step(self._app):
+            await self._give(event)
+        if is_new and not turn.is_over:
+            self._watch(turn)
+
+    def _watch(self, turn: Turn) -> None:
+        self._timer = asyncio.get_running_loop().call_later(_PATIENCE_S, self._check, turn, turn.steps)
+
+    def _check(self, turn: Turn, steps: int) -> None:
+        if not turn.is_over:
+            turn.end() if turn.steps == steps else self._watch(turn)
+
+    def _ended(self) -> None:
+        self._turn = None
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+        if self._held:
+            self._app.call_later(self.go_on)
