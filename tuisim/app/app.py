@@ -481,8 +481,9 @@ class LabApp(PanelMessages):
 
     def situation(self) -> Situation:
         """Return the state that decides which keys are available."""
-        runs = self.run_controller
-        return Situation(runs.state, runs.program is not None, bool(runs.run_id), runs.in_past, self.debugger.is_away)
+        runs, code = self.run_controller, self.panel_area.code
+        away, reads = self.debugger.is_away, code is not None and code.is_read
+        return Situation(runs.state, runs.program is not None, bool(runs.run_id), runs.in_past, away, reads)
 
     def action_target(self) -> Workspace:
         return self.workspace

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from tuisim import protocol
 from tuisim.app.editor.text_file import file_of_program, write_json
-from tuisim.app.editor.text_lines import same_lines
+from tuisim.app.editor.text_lines import code_line, same_lines
 from tuisim.app.snapshot import DebugState, PauseView
 from tuisim.breakpoints import Breakpoint, LineBreak, break_line_of, break_lines, moved, parse_break
 from tuisim.config.files import MAX_FILE_BYTES
@@ -192,15 +192,35 @@ class AppDebugger:
             marks = {line: _mark(one) for line, one in break_lines(self.breaks).items()}
             code.set_marks(marks)
 
-    def toggle_line(self, line: int) -> None:
-        """Set or remove the breakpoint on a line; a disabled one is enabled."""
-        there = break_lines(self.breaks).get(line)
+    def toggle_line(self, line: int, which: str = "") -> None:
+        """Set or remove the breakpoint on a line, or the next line of code; a disabled one is enabled. Say so.
+
+        Args:
+            line: From 1.
+            which: Which line that is, in words.
+        """
+        at = line if line in break_lines(self.breaks) else code_line(source_lines(self._text), line)
+        if not at:
+            self._app.say(f"No breakpoint: there is no code from line {line} on")
+            return
+        which = which if at == line else f"the next line of code after line {line}"
+        name = f"line {at}, {which}" if which else f"line {at}"
+        there = break_lines(self.breaks).get(at)
         if there is None:
-            self.set_breaks((*self.breaks, parse_break(str(line))))
+            self.set_breaks((*self.breaks, parse_break(str(at))))
+            self._app.say(f"Breakpoint on {name}")
         elif there.disabled:
             self.set_breaks(tuple(replace(one, disabled=False) if one is there else one for one in self.breaks))
+            self._app.say(f"Breakpoint enabled on {name}")
         else:
             self.set_breaks(tuple(one for one in self.breaks if one is not there))
+            self._app.say(f"Breakpoint removed from {name}")
+
+    @property
+    def current_line(self) -> int:
+        """The line shown as current, in the edited text; 0 if there is none."""
+        snapshot = self._run_controller.snapshot()
+        return self._lines().to_shown(snapshot.line) if self._run_controller.in_run or snapshot.past else 0
 
     # What comes from the run
 
@@ -257,6 +277,9 @@ class AppDebugger:
         for panel in ("code", "debug"):
             if not self._panel_area.shown(panel):
                 self._panel_area.toggle(panel)
+        # The arrow keys are for what is read now; a field that is typed into keeps them.
+        if self._panel_area.focused_panel() in ("", "world"):
+            self._app.call_after_refresh(self._panel_area.attend, "code")
 
     # Inspect
 

@@ -64,8 +64,8 @@ class Loader:
         self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
         self._goals, self._on_change, self._on_mat = goals, on_change, on_mat
         self._watch = Watch()
-        self._preparing = False
-        """Whether the mat of the next run is being prepared."""
+        self.is_preparing = True
+        """Whether the mat of the next run is being prepared, or will be: at first the app is drawn."""
         self._good: tuple[NextRun, Mat] | None = None
         """The last mat that was prepared, with its plan."""
         self.world_file = world_file
@@ -103,18 +103,18 @@ class Loader:
     def prepare_mat(self) -> None:
         """Prepare the mat in the background; `on_mat` is called when done."""
         spec = self._run_controller.next_run.spec
-        self._preparing = True
+        self.is_preparing = True
         work, failed = partial(prepare_mat, spec), partial(self._mat_failed, spec)
         background.run(self._panel_area, work, self._prepared, failed, group="mat", exclusive=True)
 
     def prepare_mat_again(self) -> None:
         """Prepare the mat once more if that has failed."""
-        if not self._preparing:
+        if not self.is_preparing:
             self.prepare_mat()
 
     def _mat_failed(self, spec: RunSpec, error: TuisimError) -> None:
         """Report the error in a mat, and restore the previous mat."""
-        self._preparing = False
+        self.is_preparing = False
         self._app.complain(error)
         run_controller = self._run_controller
         is_wanted = mat_key(run_controller.next_run.spec) == mat_key(spec)
@@ -123,7 +123,7 @@ class Loader:
             self._load(plan, run_controller.program)
 
     def _prepared(self, mat: Mat) -> None:
-        self._preparing = False
+        self.is_preparing = False
         run_controller = self._run_controller
         if mat.key == mat_key(run_controller.next_run.spec):
             same_picture = run_controller.mat is not None and run_controller.mat.key[:2] == mat.key[:2]
@@ -275,7 +275,7 @@ class Loader:
             self._app.say(NOT_NOW)
             return
         work = partial(_prepare_run, run)
-        self._preparing = False
+        self.is_preparing = False
         background.run(self._panel_area, work, self._show_run, self._app.complain, group="mat", exclusive=True)
 
     def _show_run(self, loaded: tuple[StoredRun, Mat, TuisimError | None]) -> None:

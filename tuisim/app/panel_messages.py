@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, assert_never
 
-from textual import on
+from textual import events, on
 
 from tuisim.app.action import ActionHost
 from tuisim.app.actions import time_travel
+from tuisim.app.actions.keys import RUN_KEYS
 from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.app.setup.next_run import with_obstacles
+from tuisim.app.terminal.input_order import takes_letters
 from tuisim.app.terminal.terminal_app import TerminalApp
 from tuisim.app.workspace import Workspace
 from tuisim.errors import TuisimError
@@ -38,6 +40,12 @@ class PanelMessages(ActionHost, TerminalApp):
 
     def situation_changed(self) -> None:
         """Update the footer."""
+
+    def _waits(self, event: events.Event) -> bool:
+        """Let the keys of a run wait also for the mat, without which none can start."""
+        is_of_run = isinstance(event, events.Key) and event.key in RUN_KEYS and len(self.screen_stack) == 1
+        waits = is_of_run and self.workspace.loader.is_preparing
+        return super()._waits(event) or (waits and not (self.focused and takes_letters(self.focused)))
 
     def on_code_typing_changed(self, message: Code.TypingChanged) -> None:
         self.situation_changed()

@@ -133,6 +133,8 @@ class Situation:
     """Whether an instant before the newest is viewed."""
     looks_back: bool = False
     """As `in_past`, and also for an earlier line of the newest tick or while such an instant is being computed."""
+    reads_code: bool = False
+    """Whether the code has the focus."""
 
 
 @dataclass(frozen=True, slots=True)

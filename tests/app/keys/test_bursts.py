@@ -11,10 +11,11 @@ from textual.app import App
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static, TextArea
 
-from tests.app.app_help import LOGS, settings, until
+from tests.app.app_help import LOGS, ready, settings, until
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import LabApp
+from tuisim.app.dialogs.cells import CellsCard
 from tuisim.app.terminal.answers import AnswerParser
 from tuisim.app.terminal.terminal_app import TerminalApp
 
@@ -27,7 +28,7 @@ EDITS = [BACKSPACE, BACKSPACE, BACKSPACE, DELETE, TAB, ENTER]
 SURFACES: dict[str, tuple[str, list[str]]] = {
     # What opens it, and what is pressed there, or in the lab once it is closed: no key that quits or runs.
     "editor": ("d", [*"abc :(#", *MOVES, *EDITS, CTRL_A, CTRL_F, CTRL_G, CTRL_U, CTRL_Y, CTRL_Z, F3, BACK_TAB]),
-    "dialogs": ("", [*"pvpv./", *MOVES, *EDITS, CTRL_S, "g", "T", CTRL_P]),
+    "dialogs": ("", [*"pvpv./", *MOVES, *EDITS, CTRL_S, "g", "T"]),
     "chooser": ("o", [*"pk./", *MOVES, *EDITS, BACK_TAB, "o"]),
     "analyser": ("", [*"bcdmnz+-", *MOVES, ENTER, TAB, BACKSPACE]),
 }
@@ -102,12 +103,16 @@ async def test_a_burst_does_what_its_keys_do(burst: str, tmp_path: Path, monkeyp
     assert one_write == one_by_one, keys
 
 
-async def test_backspace_is_not_overtaken_by_what_is_typed_after_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+async def test_backspace_is_not_overtaken_by_what_is_typed_after_it() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        await until(pilot, lambda: pilot.app.run_controller.mat is not None)  # type: ignore[attr-defined]
+        await ready(pilot)
         send(pilot, f"onew.csv{BACKSPACE * 3}parquet")
         await settle(pilot)
         assert pilot.app.screen.query_one(Input).value == "new.parquet"
+
+
+async def test_enter_waits_for_what_the_palette_finds() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        send(pilot, f"{CTRL_P}Glyphs of the world{ENTER}")
+        await until(pilot, lambda: isinstance(app.screen, CellsCard))

@@ -135,10 +135,10 @@ def _debugs() -> list[LabAction]:
         Action("step-into", "s", "Step into a function call", DEBUG, into, can, "into"),
         Action("step-out", "u", "Step out of this function", DEBUG, out, can, "out"),
         Action("line-back", "N", "Step back one line", DEBUG, program.line_back, _can_look_back, "line back"),
-        Action("break", "t", "Toggle a breakpoint on the cursor's line", DEBUG, program.toggle_break, can, "break"),
+        Action("break", "t", "Toggle a breakpoint: current line, or the cursor's in the code", DEBUG, program.toggle_break, can, "break"),
         Action("breaks", "T", "Breakpoints: add, edit, disable, delete", DEBUG, program.list_breaks, can),
         Action("watches", "w", "Watches: expressions to evaluate", DEBUG, program.list_watches, can),
-        Action("to-cursor", "L", "Run to the cursor's line", DEBUG, program.to_cursor, can),
+        Action("to-cursor", "L", "Run to the cursor's line", DEBUG, program.to_cursor, can, "to cursor"),
     ]
 
 
@@ -225,14 +225,26 @@ ACTIONS: Mapping[str, LabAction] = {
     )
 }
 """The actions by id."""
+RUN_KEYS = frozenset(
+    key
+    for action in ACTIONS.values()
+    if action.group in (PROGRAM, DEBUG, TIME)
+    for key in action.key.split(",")
+)
+"""Keys that start a run, or need one."""
 
 
 def _next_steps(now: Situation) -> tuple[str, ...]:
     """Return the ids of the likely next steps: out of the past, on with a run, to its results, or to a first run."""
+    code = ("to-cursor", "break") if now.reads_code else ()
     if now.looks_back:
-        return ("now", "branch")
+        return ("now", "branch", "line-back", "next-line", *code)
+    if now.state == RunPhase.PAUSED:
+        return ("stop", "pause", "next-line", "line-back", *code)
     if now.state in IN_RUN:
         return ("stop", "pause")
+    if now.reads_code:
+        return ("run", *code, "edit")
     return ("run", "analyse", "export", "panel-chart", "edit") if now.has_run else ("run", "open", "edit", "mats")
 
 

@@ -73,18 +73,33 @@ def to_cursor(workspace: Workspace) -> None:
 
 
 def toggle_break(workspace: Workspace) -> None:
-    """Set or remove a breakpoint on the cursor's line in the code."""
-    if line := _cursor_line(workspace):
-        workspace.debugger.toggle_line(line)
+    """Set or remove a breakpoint on the line that is shown as current, or on the cursor's if the code has the focus."""
+    code = workspace.panel_area.code
+    current = workspace.debugger.current_line
+    if current and not (code and code.is_read):
+        workspace.debugger.toggle_line(current, "the current one")
+    elif code and code.is_read:
+        workspace.debugger.toggle_line(code.cursor_line, "where the cursor is")
+    else:
+        _go_to_code(workspace)
 
 
 def _cursor_line(workspace: Workspace) -> int:
     """Return the line of the cursor; show the code first if it is hidden."""
-    if not workspace.panel_area.shown("code"):
-        workspace.panel_area.toggle("code")
-        workspace.app.say("The cursor in the code sets the line: tab moves the focus there")
-        return 0
-    return workspace.panel_area.code.cursor_line if workspace.panel_area.code else 0
+    area = workspace.panel_area
+    if area.shown("code"):
+        return area.code.cursor_line if area.code else 0
+    _go_to_code(workspace)
+    return 0
+
+
+def _go_to_code(workspace: Workspace) -> None:
+    """Give the code the focus, so that the user can choose a line."""
+    area = workspace.panel_area
+    if not area.shown("code"):
+        area.toggle("code")
+    workspace.app.call_after_refresh(area.attend, "code")
+    workspace.app.say("The cursor in the code sets the line: the arrow keys move it")
 
 
 def list_breaks(workspace: Workspace) -> None:

@@ -312,7 +312,7 @@ class CodeArea(TextArea):
             self.post_message(self.Wanted(EditorCommand(step.wanted.value)))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave the keys of undo, redo and the pages to the app while the user does not type."""
+        """Leave the keys of undo and redo, of the pages, home and end to the app while the user does not type."""
         return self.typing if action in _TYPING_ACTIONS else super().check_action(action, parameters)
 
     def action_want(self, command: str) -> None:
@@ -389,7 +389,9 @@ class CodeArea(TextArea):
                 self.post_message(self.GutterClicked(row + 1))
 
 
-_TYPING_ACTIONS = frozenset({"undo", "redo", "cursor_page_up", "cursor_page_down"})
+_TYPING_ACTIONS = frozenset(
+    {"undo", "redo", "cursor_page_up", "cursor_page_down", "cursor_line_start", "cursor_line_end"}
+)
 _PRESS = {Motions.VIM: press_vim, Motions.EMACS: press_emacs}
 """What does the work of keys that are not the usual ones."""
 MAX_UNDO = 100

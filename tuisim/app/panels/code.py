@@ -114,6 +114,11 @@ class Code(Vertical):
         return self._area.cursor_location[0] + 1
 
     @property
+    def is_read(self) -> bool:
+        """Whether the cursor in the text is what the arrow keys move."""
+        return self._area.has_focus
+
+    @property
     def typing(self) -> bool:
         """Whether the user types in the text."""
         return self._area.typing
@@ -225,6 +230,9 @@ class Code(Vertical):
             return
         self._lit_at_s = now
         self.show_line(line)
+        if (lit := self._line_shown(line)) and not self.typing and (snapshot.past or snapshot.state is RunPhase.PAUSED):
+            # From here the arrow keys go on.
+            self._area.move_to_code(lit)
 
     def show_line(self, line: int) -> None:
         """Highlight a line of the run's text, 0 for none, at its place in the text shown."""

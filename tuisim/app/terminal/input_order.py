@@ -30,6 +30,8 @@ from textual.widgets import Input
 
 _PATIENCE_S = 1.0
 """A turn in which nothing has happened for so long is over: what it still waits for may never come."""
+_ASK_AGAIN_S = 0.1
+"""Between two looks at whether what a key waits for is there, for what does not tell."""
 _POINTER = (events.MouseMove, events.MouseScrollDown, events.MouseScrollUp)
 """Comes in floods and has no turn of its own: it only keeps its place."""
 _TURN = "_turn"
@@ -188,7 +190,7 @@ class InputOrder:
     Args:
         app: The app.
         give: Handles an event.
-        waits: Whether an event has to wait because what is to hear it is still being opened; `go_on` asks again.
+        waits: Whether an event has to wait because what is to hear it is still being opened.
     """
 
     def __init__(
@@ -203,6 +205,7 @@ class InputOrder:
         self._typed_into: Widget | None = None
         """What took the last key as a letter."""
         self._timer: TimerHandle | None = None
+        self._asks_again = False
 
     @property
     def is_idle(self) -> bool:
@@ -224,6 +227,13 @@ class InputOrder:
                 return
             event, self._typed_into = self._held.popleft(), into
             await (self._give if isinstance(event, _POINTER) else self._give_turn)(event)
+        if self._held and self._turn is None and not self._asks_again:
+            self._asks_again = True
+            self._app.set_timer(_ASK_AGAIN_S, self._ask_again)
+
+    async def _ask_again(self) -> None:
+        self._asks_again = False
+        await self.go_on()
 
     def _takes_letter(self, event: events.Event) -> Widget | None:
         """Return the field that takes a letter at once, and does nothing else with it."""
