@@ -42,5 +42,8 @@ QUESTIONS = {
     "always start with the light theme": "settings",
     "remap a key": "settings",
     "vim keys in the editor": "settings",
+    "run faster than real time": "virtual-time",
+    "move the robot to another start": "options",
+    "black outside the mat": "how-sensors-see",
     "is it safe to run a program from somebody else": "security",
 }

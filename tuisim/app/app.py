@@ -310,8 +310,7 @@ class LabApp(PanelMessages):
         self.feed = Feed(recording) if recording else None
         self._last_words = last_words
         self.panel_area.clear_log()
-        if self.panel_area.brick:
-            self.panel_area.brick.release_all()
+        self.panel_area.release_buttons()
         self.document.run_changed()
         self.document.run_ended_at(error_line)
         self.debugger.run_changed()
@@ -411,15 +410,15 @@ class LabApp(PanelMessages):
                 chart.append(name, times, values)
 
     def _ask_user(self, prompt: str) -> None:
-        if not self.panel_area.shown("output"):
-            self.panel_area.toggle("output")
+        self.panel_area.bring("output")
         if self.panel_area.output:
             self.panel_area.output.ask(prompt)
 
     def _ended(self, ended: Ended, stood: str) -> None:
-        if self.panel_area.brick:
-            self.panel_area.brick.release_all()
+        self.panel_area.release_buttons()
         good = ended.end in GOOD_ENDS
+        if not good:
+            self.panel_area.bring("output")
         notice, self._last_words = end_words(ended, stood)
         self.notify(notice, severity="information" if good else "error", markup=False)
         self.debugger.ended()

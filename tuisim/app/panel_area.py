@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar, cast
 from textual import events
 from textual.message import Message
 from textual.widget import Widget
+from textual.widgets._toast import ToastRack
 
 from tuisim.app.layout.arrangement import (
     Preset,
@@ -52,6 +53,10 @@ class _Mounted(Generic[PanelWidget]):
 
     def __get__(self, area: PanelArea | None, owner: type[PanelArea]) -> PanelWidget | None:
         return cast("PanelWidget | None", area.panels.get(self._panel) if area is not None else None)
+
+
+_NOTICE_COLUMNS = 24
+"""Columns that are enough for a notice."""
 
 
 class PanelArea(BorderMover):
@@ -271,7 +276,17 @@ class PanelArea(BorderMover):
                 styles = self._panel(panel).styles
                 styles.width, styles.height = box.width, box.height
                 styles.offset = (box.x, box.y)
+        self._place_notices()
         self.post_message(self.Rearranged())
+
+    def _place_notices(self) -> None:
+        """Show notices beside the chart, not on its time axis, if it is at the bottom and there is room beside it."""
+        box, left = self.arrangement.boxes.get("chart"), 0
+        is_below = box is not None and box.x == 0 and box.y + box.height == self.size.height
+        if box is not None and is_below and self.size.width - box.width >= _NOTICE_COLUMNS:
+            left = box.width
+        for rack in self.screen.query(ToastRack):
+            rack.styles.margin = (0, 0, 1, left)
 
     def _panel(self, panel: str) -> Widget:
         if panel not in self.panels:
@@ -292,6 +307,16 @@ class PanelArea(BorderMover):
     def focus_world(self) -> None:
         """Focus the world if it is shown; the focus of a dialog above the panels stays."""
         self.screen.set_focus(self.world if self.shown("world") else None)
+
+    def bring(self, panel: str) -> None:
+        """Show a panel, unless it is shown already."""
+        if not self.shown(panel):
+            self.toggle(panel)
+
+    def release_buttons(self) -> None:
+        """Let go of the buttons of the brick."""
+        if self.brick:
+            self.brick.release_all()
 
     def attend(self, panel: str) -> None:
         """Focus a panel that has been opened, if it can have the focus; the world if it was closed."""

@@ -146,7 +146,7 @@ _FORMS = (
     ("sample Colour < 90", f"{{which}} sample that matches; operators: {spelled()}"),
     ("print REGEX", "{which} printed line that matches the regular expression"),
     ("start, end", "the first and the latest instant"),
-    ("… back", "a line, sample or print, searched backwards"),
+    ("… back, … first", "a line, sample or print: searched backwards, or from the start of the run"),
 )
 """The accepted forms, with what they mean."""
 
@@ -177,7 +177,7 @@ class _Search:
 
     @property
     def words(self) -> str:
-        return f"{self.side} {self.at / self.recording.spec.profile.tick_hz:.2f} s"
+        return "in this run" if self.at < 0 else f"{self.side} {self.at / self.recording.spec.profile.tick_hz:.2f} s"
 
     def tick_of(self, fits: Callable[[OutputRow], bool]) -> int | None:
         """Return the tick of the next matching row that is at another tick than the current one."""
@@ -208,6 +208,7 @@ def find(text: str, timeline: Timeline) -> int:
         raise ConfigError("there is no run yet")
     word, _, rest = text.strip().partition(" ")
     rest, back = re.subn(r"(?:^|\s+)back$", "", rest.strip())
+    rest, first = re.subn(r"\s+first$", "", rest)
     word = word.lower()
     if not back and (word == "start" or word == "end") and not rest:
         return 0 if word == "start" else recording.newest
@@ -216,7 +217,8 @@ def find(text: str, timeline: Timeline) -> int:
     if not back and word == "tick" and rest.isdecimal():
         return _within(int(rest), recording)
     # Nothing can be found after the newest instant.
-    search = _Search(recording, timeline.tick, bool(back) or timeline.tick >= recording.newest)
+    backwards = bool(back) or timeline.tick >= recording.newest
+    search = _Search(recording, -1, False) if first else _Search(recording, timeline.tick, backwards)
     if word == "line" and rest.isdecimal():
         return _line(search, int(rest))
     if word == "sample" and re.fullmatch(_NAME, rest):

@@ -9,11 +9,15 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import zip_longest
+from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Self, TextIO
 
 from tuisim.errors import printable
@@ -27,6 +31,12 @@ def echo(line: str = "") -> None:
     """Write one line to stdout."""
     with progress_hidden(sys.stdout):
         print(printable(line))
+
+
+def echo_wrapped(line: str) -> None:
+    """Write one line to stdout, broken between words where a terminal is narrower."""
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else len(line)
+    echo_lines("\n".join(wrap(line, max(width, 1), break_long_words=False, break_on_hyphens=False)))
 
 
 def echo_lines(text: str) -> None:
@@ -59,6 +69,14 @@ def echo_error(line: str) -> None:
     """Write one line to stderr."""
     with progress_hidden(sys.stderr):
         print(printable(line), file=sys.stderr, flush=True)
+
+
+def echo_written(file: str | Path) -> None:
+    """Tell who watches which files an export has written."""
+    from tuisim.logs.export import files_in_words
+
+    if is_watched():
+        echo_error(f"written: {files_in_words(Path(file))}")
 
 
 def echo_error_lines(text: str) -> None:
@@ -95,19 +113,75 @@ class CsvOut:
             sys.stdout.write("\n".join(map(printable, text.split("\n"))) if sys.stdout.isatty() else text)
 
 
+_GOOD_CELLS, _LEAST_CELLS = 20, 8
+"""Texts are broken into lines of so many characters at least, or, if there is no room, of so many."""
+
+
 def table(heads: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    """Return rows of text under their heads, with aligned columns; columns of numbers are right-aligned."""
-    cells = [list(heads), *([printable(str(cell)) for cell in row] for row in rows)]
-    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    """Return rows of text under their heads, with aligned columns; columns of numbers are right-aligned.
+
+    In a terminal that is too narrow for it, the longest texts are broken between words; if that is not enough, heads of
+    several words take a line for each, and the gaps are narrower. Numbers and dates stay whole.
+    """
     right = [bool(rows) and all(isinstance(row[at], int | float) for row in rows) for at in range(len(heads))]
-    lines = [
-        "  ".join(
+    body = [[printable(str(cell)) for cell in row] for row in rows]
+    room = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
+    columns = list(zip(*body, strict=True)) if body else [()] * len(heads)
+    figures = [all(cell.strip()[:1].isdecimal() for cell in column if cell) for column in columns]
+    found = ""
+    above = _stacked(heads)
+    for lines, gap, least in (([[*heads]], "  ", _GOOD_CELLS), (above, "  ", _GOOD_CELLS), (above, " ", _LEAST_CELLS)):
+        cells = [*lines, *body]
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        if room is not None:
+            widths = _cut_to(room, widths, figures, gap, least)
+        found = _aligned([line for row in cells for line in _wrapped(row, widths)], widths, right, gap)
+        if room is None or _total(widths, gap) <= room:
+            break
+    return found
+
+
+def _stacked(heads: Sequence[str]) -> list[list[str]]:
+    """Return heads as lines of one word each, the last of them in the last line."""
+    words = [head.split() for head in heads]
+    count = max(map(len, words), default=0) or 1
+    return [[([""] * (count - len(word)) + word)[at] for word in words] for at in range(count)]
+
+
+def _total(widths: Sequence[int], gap: str) -> int:
+    return sum(widths) + len(gap) * (len(widths) - 1)
+
+
+def _wrapped(row: Sequence[str], widths: Sequence[int]) -> Iterator[tuple[str, ...]]:
+    """Yield the lines of a row whose texts are broken between words; a longer word is cut, and marked."""
+    texts = [
+        [word if len(word) <= width else word[: width - 1] + "…" for word in wrap(cell, width, break_long_words=False)]
+        if len(cell) > width
+        else [cell]
+        for cell, width in zip(row, widths, strict=True)
+    ]
+    yield from zip_longest(*texts, fillvalue="")
+
+
+def _cut_to(room: int, widths: Sequence[int], figures: Sequence[bool], gap: str, least: int) -> list[int]:
+    """Return the widths of columns with the widest texts made narrower until they fit, as far as they can be."""
+    widths = [*widths]
+    while _total(widths, gap) > room:
+        texts = [at for at, is_figure in enumerate(figures) if not is_figure and widths[at] > least]
+        if not texts:
+            break
+        widths[max(texts, key=widths.__getitem__)] -= 1
+    return widths
+
+
+def _aligned(cells: Sequence[Sequence[str]], widths: Sequence[int], right: Sequence[bool], gap: str) -> str:
+    return "\n".join(
+        gap.join(
             cell.rjust(width) if at_right else cell.ljust(width)
             for cell, width, at_right in zip(line, widths, right, strict=True)
         ).rstrip()
         for line in cells
-    ]
-    return "\n".join(lines)
+    )
 
 
 SHOWN_AFTER_S = 1.0

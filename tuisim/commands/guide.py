@@ -61,7 +61,11 @@ def _show(lines: list[Line]) -> None:
     from tuisim.guide.text import written
 
     styled = sys.stdout.isatty() and "NO_COLOR" not in os.environ
-    click.echo_via_pager(written(lines, styled=styled), color=None)
+    text = written(lines, styled=styled)
+    if len(lines) < shutil.get_terminal_size().lines:
+        click.echo(text, nl=False)
+    else:
+        click.echo_via_pager(text, color=None)
 
 
 def _search(words: str) -> int:

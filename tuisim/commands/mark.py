@@ -16,7 +16,7 @@ from tuisim.batch.parameters import parse_seeds
 from tuisim.batch.task import Keep
 from tuisim.charts.files import write_whole
 from tuisim.commands.batch_options import jobs_option, keep_option
-from tuisim.commands.echo import Progress, echo, echo_error, echo_lines, table, tell
+from tuisim.commands.echo import Progress, echo, echo_error, echo_lines, echo_wrapped, table, tell
 from tuisim.commands.interruption import Interrupted, signals_raise
 from tuisim.commands.listings import names_of
 from tuisim.commands.run_options import input_option, timeout_option
@@ -300,7 +300,7 @@ def _print(sheet: Sheet, ignored: Sequence[str]) -> None:
         text = "\n".join([text, "", *reasons])
     echo_lines(text)
     echo()
-    echo(summary_of(sheet))
+    echo_wrapped(summary_of(sheet))
     if ignored:
         echo_error(f"note: not marked, because they are no Python programs: {listed(ignored)}")
 

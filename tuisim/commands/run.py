@@ -9,7 +9,7 @@ from typing import Any
 
 from tuisim.breakpoints import parse_breakpoints, parse_watch
 from tuisim.commands import exit_status
-from tuisim.commands.echo import Progress, echo_error, is_watched, tell
+from tuisim.commands.echo import Progress, echo_error, echo_written, is_watched, tell
 from tuisim.commands.listings import names_of
 from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
 from tuisim.commands.relay import Follower, Interrupts
@@ -240,6 +240,7 @@ def _export(done: Sequence[StoredRun], arguments: Arguments) -> None:
         tell(f"writing {target}")
         try:
             write(target)
+            echo_written(target)
         except (ExportError, LogError) as error:
             errors.append(error)
         except KeyboardInterrupt:

@@ -5,12 +5,25 @@ from __future__ import annotations
 import os
 import re
 import shlex
+import shutil
+import sys
 from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from tuisim.commands.echo import Progress, echo, echo_error, echo_json, echo_json_head, echo_lines, size, table, tell
+from tuisim.commands.echo import (
+    Progress,
+    echo,
+    echo_error,
+    echo_json,
+    echo_json_head,
+    echo_lines,
+    echo_written,
+    size,
+    table,
+    tell,
+)
 from tuisim.commands.exit_status import describe, last_state
 from tuisim.commands.movies import movie, picture
 from tuisim.config.command_line import AS_JSON, Group, Value, argument, command, option
@@ -51,6 +64,11 @@ def _needed(words: Sequence[str], action: str) -> Sequence[str]:
     return words
 
 
+_ALL_COLUMNS = 110
+"""In a narrower terminal the list of runs leaves out profile, seed, samples and size."""
+_FEWER = (0, 1, 2, 3, 6, 7, 10, 11)
+
+
 @command(AS_JSON, name="list")
 def list_runs(as_json: bool) -> int:
     """List the stored runs and their sizes."""
@@ -61,7 +79,7 @@ def list_runs(as_json: bool) -> int:
     elif not runs:
         echo(f"no runs yet in {store.home}")
     else:
-        rows = [
+        rows: list[tuple[object, ...]] = [
             (
                 *(run.number, run.created[:19].replace("T", " "), run.program, run.background, run.profile, run.seed),
                 *(run.end, f"{run.time_s or 0:.2f}", "" if run.samples is None else str(run.samples)),
@@ -69,7 +87,24 @@ def list_runs(as_json: bool) -> int:
             )
             for run in runs
         ]
-        heads = ("RUN", "UTC", "PROGRAM", "MAT", "PROFILE", "SEED", "END", "SECONDS", "SAMPLES", "    SIZE", "", "")
+        heads: tuple[str, ...] = (
+            "RUN",
+            "UTC",
+            "PROGRAM",
+            "MAT",
+            "PROFILE",
+            "SEED",
+            "END",
+            "SECONDS",
+            "SAMPLES",
+            "    SIZE",
+            "",
+            "",
+        )
+        if sys.stdout.isatty() and shutil.get_terminal_size().columns < _ALL_COLUMNS:
+            heads, rows = tuple(heads[at] for at in _FEWER), [tuple(row[at] for at in _FEWER) for row in rows]
+            # The year and the seconds are left out, too.
+            rows = [(number, str(created)[5:16], *rest) for number, created, *rest in rows]
         echo_lines(table(heads, rows))
     return 0
 
@@ -270,11 +305,13 @@ def export(words: Sequence[str], telemetry: str | None) -> int:
         for file in files:
             tell(f"writing {file}")
             export_samples(runs, file)
+            echo_written(file)
         if telemetry is not None:
             tell(f"writing {telemetry}")
             if note := damage_note(runs[0]):
                 echo_error(f"note: {note}")
             export_telemetry(runs[0], telemetry)
+            echo_written(telemetry)
     return 0
 
 

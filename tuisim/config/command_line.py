@@ -102,12 +102,20 @@ def argument(name: str, metavar: str, names: Callable[[], Iterable[str]] | None 
     return click.Argument([name], metavar=metavar, type=Value(names=names), **how)
 
 
+def _close_names(typed: str, names: Iterable[str]) -> list[str]:
+    """Return the names that may have been meant; a typed word may be the end of a longer name."""
+    known = [*names]
+    ends = {name[-len(typed) :] for name in known}
+    close = [name for end in get_close_matches(typed, ends, 2, 0.75) for name in known if name.endswith(end)]
+    return list(dict.fromkeys([*close, *get_close_matches(typed, known, 2)]))[:2]
+
+
 def _wrong_use(error: click.UsageError, ctx: click.Context) -> ConfigError:
     """Return what Click says as a ConfigError: what was wrong, and what is allowed."""
     see = f"see `{ctx.command_path} --help`" if ctx.command.add_help_option else ""
     if isinstance(error, click.NoSuchOption):
         names = {flag.lstrip("-"): flag for param in ctx.command.params for flag in param.opts}
-        near = [names[name] for name in get_close_matches(error.option_name.lstrip("-"), names, 2)]
+        near = [names[name] for name in _close_names(error.option_name.lstrip("-"), names)]
         return ConfigError(f"no such option: {error.option_name}", did_you_mean(near) or see)
     if isinstance(error, click.MissingParameter) and isinstance(error.param, click.Argument):
         return ConfigError(f"{error.param.make_metavar(ctx)} is missing", see)

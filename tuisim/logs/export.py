@@ -217,6 +217,18 @@ Metadata = Mapping[str, Any]
 """The metadata of a log, ready for JSON."""
 
 
+def files_in_words(target: Path) -> str:
+    """Return what an export has written: the file, and the one beside it if there is one."""
+    exporter = EXPORTERS.get(target.suffix.lower())
+    beside = f"; what it is and its units: {companion_of(target).name}" if exporter and exporter.companion else ""
+    return f"{target}{beside}"
+
+
+def is_companion(path: Path) -> bool:
+    """Return whether a file is the second one of an export, by its name."""
+    return path.suffix.lower() == ".json" and Path(path.stem).suffix.lower() in EXPORTERS
+
+
 def companion_of(path: Path) -> Path:
     """Return the file for the metadata of a file in a format without metadata."""
     return path.with_name(path.name + ".json")

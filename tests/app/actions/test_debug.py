@@ -144,9 +144,13 @@ async def test_into_and_out_of_calls(home: object) -> None:
 async def test_a_breakpoint_holds_and_is_kept_with_the_program(home: object) -> None:
     async with LabApp(settings(COUNTS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
+        # It belongs to a line that the user sees: the first press goes to the code.
+        await pilot.press("t")
+        assert not app.debugger.breaks
         cursor_to(app, 5)
         await pilot.press("t")
         assert [one.text for one in app.debugger.breaks] == ["5"]
+        assert "Breakpoint on line 5, where the cursor is" in notices(app)
         await pilot.press("R")
         await stands(pilot, app, 5)
         assert any("Break 5" in text for text in notices(app))

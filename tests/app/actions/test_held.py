@@ -56,6 +56,10 @@ async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> N
         app = await held(pilot)
         tick, start = app.run_controller.timeline.newest, app.run_controller.pose
         app.run_controller.set_noise(NoiseSpec(20, 0))
+        # The code is what one reads: the arrow keys move in it.
+        await pilot.press("up", "right")
+        assert app.run_controller.pose == start
+        await pilot.press("escape")
         for key in ("up", "up", "right", "p", "p", "p"):
             await pilot.press(key)
         assert app.run_controller.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)

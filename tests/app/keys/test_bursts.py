@@ -49,7 +49,7 @@ async def settle(pilot: Pilot[Any]) -> None:
     app = pilot.app
     assert isinstance(app, TerminalApp)
     await pilot.pause()
-    await until(pilot, lambda: app._exit or app._input.is_idle and all(one.is_finished for one in app.workers))
+    await until(pilot, lambda: app._exit or (app._input.is_idle and all(one.is_finished for one in app.workers)))
     await pilot.pause()
 
 

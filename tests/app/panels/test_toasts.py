@@ -28,6 +28,17 @@ NOTICES = {
 }
 
 
+async def test_a_notice_does_not_cover_the_axis_of_the_chart() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24), notifications=True) as pilot:
+        app = await ready(pilot)
+        await pilot.press("c")
+        await until(pilot, lambda: app.panel_area.shown("chart") and bool(app.panel_area.panels["chart"].region))
+        app.say(NOTICES["long"][0])
+        await until(pilot, lambda: any(toast.region for toast in app.screen.query(Toast)))
+        chart = app.panel_area.panels["chart"].region
+        assert [toast for toast in app.screen.query(Toast) if toast.region.overlaps(chart)] == []
+
+
 @pytest.mark.quick_cases("two")
 @pytest.mark.parametrize("texts", NOTICES.values(), ids=list(NOTICES))
 async def test_notices_cover_neither_mat_nor_readings_nor_keys(texts: list[str]) -> None:

@@ -135,7 +135,9 @@ def _debugs() -> list[LabAction]:
         Action("step-into", "s", "Step into a function call", DEBUG, into, can, "into"),
         Action("step-out", "u", "Step out of this function", DEBUG, out, can, "out"),
         Action("line-back", "N", "Step back one line", DEBUG, program.line_back, _can_look_back, "line back"),
-        Action("break", "t", "Toggle a breakpoint: current line, or the cursor's in the code", DEBUG, program.toggle_break, can, "break"),
+        Action(
+            "break", "t", "Breakpoint on the current line, or the cursor's", DEBUG, program.toggle_break, can, "break"
+        ),
         Action("breaks", "T", "Breakpoints: add, edit, disable, delete", DEBUG, program.list_breaks, can),
         Action("watches", "w", "Watches: expressions to evaluate", DEBUG, program.list_watches, can),
         Action("to-cursor", "L", "Run to the cursor's line", DEBUG, program.to_cursor, can, "to cursor"),
@@ -226,10 +228,7 @@ ACTIONS: Mapping[str, LabAction] = {
 }
 """The actions by id."""
 RUN_KEYS = frozenset(
-    key
-    for action in ACTIONS.values()
-    if action.group in (PROGRAM, DEBUG, TIME)
-    for key in action.key.split(",")
+    key for action in ACTIONS.values() if action.group in (PROGRAM, DEBUG, TIME) for key in action.key.split(",")
 )
 """Keys that start a run, or need one."""
 

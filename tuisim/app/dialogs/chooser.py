@@ -29,6 +29,7 @@ from tuisim.config.robots import ROBOTS, load_robot, ports_of
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import TuisimError
+from tuisim.logs.export import is_companion
 
 if TYPE_CHECKING:
     from tuisim.config.mats import Background
@@ -55,7 +56,11 @@ def files_here(suffixes: Iterable[str], fits: Callable[[Path], object] | None = 
         fits: Raises TuisimError for a file that must not be listed.
     """
     wanted = tuple(suffixes)
-    found = sorted(path for path in Path.cwd().iterdir() if path.suffix.lower() in wanted and path.is_file())
+    found = sorted(
+        path
+        for path in Path.cwd().iterdir()
+        if path.suffix.lower() in wanted and not is_companion(path) and path.is_file()
+    )
     if fits:
         found = [path for path in found[:MAX_TRIED] if _passes(fits, path)]
     return Group(f"In {Path.cwd().name or '/'}", [(str(path), path.name, "") for path in found])

@@ -18,7 +18,7 @@ from tuisim.app.dialogs.question import Form, form_list
 from tuisim.app.terminal.browser import offer
 from tuisim.config.folders import user_path
 from tuisim.errors import ConfigError, TuisimError, shortened
-from tuisim.logs.export import LISTED, check_target, export_samples, export_telemetry
+from tuisim.logs.export import LISTED, check_target, export_samples, export_telemetry, files_in_words
 from tuisim.runs.store import RunStore
 
 
@@ -215,7 +215,7 @@ class ExportDialog(FileDialog):
         self.wait_for(work, self._written, lambda error: self.failed(str(error)))
 
     def _written(self, target: Path) -> None:
-        self.app.notify(f"Log saved to {target}", markup=False)
+        self.app.notify(f"Log saved to {files_in_words(target)}", markup=False)
         offer(self.app, target)
         self.dismiss(target)
 

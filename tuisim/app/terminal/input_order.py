@@ -174,7 +174,7 @@ def call_after_refresh(pump: MessagePump, callback: Callable[..., Any], *args: A
 
 
 def takes_letters(widget: Widget) -> bool:
-    """Return whether every letter is typed into a widget, as its attribute of this name says; a field without one does."""
+    """Return whether every letter is typed into a widget: its attribute of this name, else whether it is a field."""
     return bool(getattr(widget, "takes_letters", isinstance(widget, Input)))
 
 

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tuisim.app.graphics import kitty
-from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, NAME_QUERY, QUESTIONS, TerminalFacts, facts_in
+from tuisim.app.terminal.queries import ANSWER, ATTRIBUTES_QUERY, NAME_QUERY, QUESTIONS, TerminalFacts, facts_in
 from tuisim.config.options import AUTO, CellSet
 
 ANSWER_S = 0.4
@@ -205,7 +205,7 @@ def _asked() -> CellSet:
     keys, so a terminal that answers nothing is asked for as little as possible.
     """
     fd = sys.stdin.fileno()
-    before = termios.tcgetattr(fd)
+    before, position = termios.tcgetattr(fd), b""
     try:
         tty.setcbreak(fd, termios.TCSANOW)
         position = _ask(fd, WIDTH_QUERY, _POSITION.search)
@@ -214,9 +214,27 @@ def _asked() -> CellSet:
         if cols != 1:
             return cells_of("", cols)
         answers = _ask(fd, NAME_QUERY + ATTRIBUTES_QUERY, _has_attributes)
+        position += answers
         return cells_of(facts_in(answers.decode("latin-1")).name, cols)
     finally:
+        _typed.append(_without_answers(position))
         termios.tcsetattr(fd, termios.TCSANOW, before)
+
+
+_typed: list[bytes] = []
+"""What was read with the answers, and is none."""
+
+
+def take_typed() -> str:
+    """Return what the user has typed while the terminal was asked, once."""
+    typed = b"".join(_typed).decode(errors="replace")
+    _typed.clear()
+    return typed
+
+
+def _without_answers(data: bytes) -> bytes:
+    text = _POSITION.sub(b"", data).decode("latin-1")
+    return ANSWER.sub("", text).encode("latin-1")
 
 
 def _ask(fd: int, query: str, is_answered: Callable[[bytes], object], output: int | None = None) -> bytes:

@@ -56,7 +56,7 @@ from tuisim.app.terminal.compositor import ThoroughCompositor
 from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
 from tuisim.app.terminal.input_order import InputOrder
 from tuisim.app.terminal.picture_mode import PictureMode, color_depth, picture_mode_of
-from tuisim.app.terminal.probe import SILENT
+from tuisim.app.terminal.probe import SILENT, take_typed
 from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, QUESTIONS, TerminalFacts, cell_size_px
 from tuisim.app.terminal.screenshot import save_screenshot, screen_cells
 from tuisim.app.terminal.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors
@@ -462,11 +462,11 @@ linux_driver.XTermParser = AnswerParser  # type: ignore[attr-defined]
 linux_driver.getincrementaldecoder = lambda _: InputDecoder  # type: ignore[attr-defined, assignment]
 Widget.text_selection = property(text_selection)  # type: ignore[assignment]
 # Otherwise letters overtake the other keys.
-MessagePump.post_message = input_order.post_message  # type: ignore[method-assign]
-MessagePump._dispatch_message = input_order.dispatch_message  # type: ignore[method-assign]
-MessagePump._process_messages = input_order.process_messages  # type: ignore[method-assign]
-MessagePump.call_next = input_order.call_next  # type: ignore[method-assign]
-MessagePump.call_after_refresh = input_order.call_after_refresh  # type: ignore[method-assign]
+MessagePump.post_message = input_order.post_message  # type: ignore[method-assign, assignment]
+MessagePump._dispatch_message = input_order.dispatch_message  # type: ignore[method-assign, assignment]
+MessagePump._process_messages = input_order.process_messages  # type: ignore[method-assign, assignment]
+MessagePump.call_next = input_order.call_next  # type: ignore[method-assign, assignment]
+MessagePump.call_after_refresh = input_order.call_after_refresh  # type: ignore[method-assign, assignment]
 # Otherwise the cache of this method keeps what it is a method of: the drawn rows of a thousand widgets that are gone.
 StylesCache.get_inner_outer = classmethod(StylesCache.get_inner_outer)  # type: ignore[method-assign, arg-type, assignment]
 
@@ -487,6 +487,8 @@ class TerminalDriver(LinuxDriver):
     def run_input_thread(self) -> None:
         """Take in what is typed; end the app when the terminal is gone."""
         try:
+            for message in AnswerParser().feed(take_typed()):
+                self.process_message(message)
             super().run_input_thread()
         except (EOFError, OSError):
             # Not every shell tells its jobs.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tuisim.analysis.events import crossings
-from tuisim.commands.echo import CsvOut, echo_json, echo_lines, table
+from tuisim.commands.echo import CsvOut, echo_json, echo_lines, echo_wrapped, echo_written, table
 from tuisim.commands.logs.sources import names_of, open_sources, the_source
 from tuisim.config.command_line import Arguments
 from tuisim.errors import ConfigError
@@ -64,7 +64,8 @@ def bands(arguments: Arguments) -> int:
     }  # fmt: skip
     show_rows(rows, arguments, formats)
     if not arguments.json and not arguments.out:
-        echo_lines("\n".join(notes))
+        for note in notes:
+            echo_wrapped(note)
     return 0
 
 
@@ -177,6 +178,7 @@ def export(arguments: Arguments) -> int:
     check_target(arguments.out)
     log = the_source(arguments)
     export_log(log, _chosen_part(log, arguments), arguments.out)
+    echo_written(arguments.out)
     return 0
 
 
@@ -261,6 +263,7 @@ def write_frame(frame: pd.DataFrame, arguments: Arguments) -> None:
     check_target(arguments.out)
     metadata = {"format": ANALYSIS_FORMAT, "table": arguments.action, "columns": list(frame.columns)}
     export_frame(frame, arguments.out, metadata)
+    echo_written(arguments.out)
 
 
 def _plain(value: Any) -> Any:

@@ -62,7 +62,7 @@ def copy_pane(screen: LogScreen) -> None:
 
 def export(screen: LogScreen) -> None:
     """Ask for the file to export the rows of the pane to; of the table, only the columns shown."""
-    from tuisim.logs.export import EXPORTERS, LISTED, check_target
+    from tuisim.logs.export import EXPORTERS, LISTED, check_target, files_in_words
 
     pane = screen.pane.name_shown
     if pane != "table" and not PANES[pane].rows(screen.model):
@@ -74,7 +74,7 @@ def export(screen: LogScreen) -> None:
         model = screen.model
         frame = None if pane == "table" else pane_frame(pane, model)
         work = partial(_write_rows, model, frame, target)
-        saved = partial(_saved, screen, f"Rows saved to {target}", target)
+        saved = partial(_saved, screen, f"Rows saved to {files_in_words(target)}", target)
         background.run(screen, work, saved, screen.complain, group="export")
 
     forms = tuple((suffix, exporter.contents) for suffix, exporter in EXPORTERS.items())
