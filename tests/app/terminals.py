@@ -12,6 +12,15 @@ from pathlib import Path
 
 from tests.running import PATIENCE_S
 
+_SLOWLY = """
+import runpy, time
+from asyncio.base_events import BaseEventLoop as Loop
+turn = Loop._run_once
+Loop._run_once = lambda loop: (time.sleep(0.01), turn(loop))
+runpy.run_module("tuisim", run_name="__main__", alter_sys=True)
+"""
+"""The app on a slow machine: each turn of its event loop takes 10 ms more."""
+
 
 class Terminal:
     """A tmux session of its own with one program in it."""
@@ -20,8 +29,9 @@ class Terminal:
         self._tmux = ["tmux", "-L", name, "-f", "/dev/null"]
         self._folder = folder
 
-    def start(self, arguments: list[str], columns: int, rows: int) -> None:
-        command = shlex.join([sys.executable, "-m", "tuisim", *arguments])
+    def start(self, arguments: list[str], columns: int, rows: int, *, slowly: bool = False) -> None:
+        program = ["-c", _SLOWLY] if slowly else ["-m", "tuisim"]
+        command = shlex.join([sys.executable, *program, *arguments])
         size = ["-x", str(columns), "-y", str(rows)]
         shell = f"{command}; echo EXIT $?; exec cat"
         # Where these two are set, they win over the size of the terminal.

@@ -37,6 +37,7 @@ BAD = {
     "pen colour": ("run prog.py -P reed", "-P: no such colour 'reed' (did you mean red"),
     "unknown option": ("run prog.py --zigzag", "no such option: --zigzag (see `tuisim run --help`)"),
     "misspelt option": ("run prog.py --exprot x.csv", "no such option: --exprot (did you mean --export"),
+    "misspelt end of an option": ("run prog.py --nosie", "no such option: --nosie (did you mean --sensornoise"),
     "misspelt shared option": ("prog.py --backgroud Loop", "no such option: --backgroud (did you mean --background"),
     "misspelt option of an action": ("runs show 1 --jsno", "no such option: --jsno (did you mean --json?)"),
     "option of another action": ("runs show 1 --telemetry t.csv", "no such option: --telemetry (see `tuisim runs show"),

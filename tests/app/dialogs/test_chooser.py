@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pytest
 from textual.app import App
 from textual.widgets import Input
 
-from tuisim.app.dialogs.chooser import Chooser, Group
+from tuisim.app.dialogs.chooser import Chooser, Group, files_here
 
 
 async def test_what_is_typed_goes_into_the_field_and_is_chosen() -> None:
@@ -29,3 +32,10 @@ async def test_enter_without_typing_takes_the_list() -> None:
         await pilot.press("down", "enter")
         await pilot.pause()
     assert chosen == ["a.py"]
+
+
+def test_the_second_file_of_an_export_is_not_listed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("robot.json", "log.csv", "log.csv.json", "my.robot.json"):
+        Path(name).touch()
+    assert [name for _, name, _ in files_here([".json"]).entries] == ["my.robot.json", "robot.json"]

@@ -201,6 +201,7 @@ async def test_words_find_their_instants() -> None:
         timeline.go(None)
         # At the end there is nothing after.
         assert find("sample Colour", timeline) == find("sample", timeline) == newest
+        assert find("sample Colour < 90 first", timeline) == dark
         timeline.go(dark)
         assert find("sample Colour back", timeline) == max(r.tick for r in rows if r.tick < dark)
         assert find("sample", timeline) == min(r.tick for r in rows if r.tick > dark)

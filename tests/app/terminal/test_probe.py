@@ -113,3 +113,18 @@ def test_a_terminal_is_asked(
     assert (b"\x1b[>0q" in terminal.seen) is asks_name
     # Nothing of the question stays on the screen.
     assert terminal.seen.rstrip(b"\x1b[>0qc").endswith(b"\r\x1b[K") or asks_name
+
+
+def test_what_is_typed_while_the_terminal_is_asked_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = Answers({b"[6n": b"R\x1b[9;2R", b"[c": b"\x7f" + ATTRIBUTES + b"\x1b[A"})
+    monkeypatch.setenv("TERM", "xterm-256color")
+    monkeypatch.setattr(probe, "first_environment", lambda: {"LANG": "C.UTF-8"})
+    monkeypatch.setattr(probe, "ANSWER_S", PATIENCE_S)
+    probe.take_typed()
+    with open(terminal.inside, "rb+", buffering=0, closefd=False) as tty:
+        monkeypatch.setattr(sys, "stdin", tty)
+        monkeypatch.setattr(sys, "stdout", tty)
+        best_cells()
+    terminal.close()
+    assert probe.take_typed() == "R\x7f\x1b[A"
+    assert probe.take_typed() == ""
