@@ -63,8 +63,10 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
     if os.sep in word or word.lower().endswith((SUFFIX, *FILE_SUFFIXES)):
         return user_path(word)
     found = lesson_paths(folder)
-    if word not in found and word.isdecimal() and 1 <= int(word) <= len(found):
-        return list(found.values())[int(word) - 1]
+    # By its text: a number of thousands of digits is no number for Python.
+    numbered = {str(number): path for number, path in enumerate(found.values(), start=1)}
+    if word not in found and word.lstrip("0") in numbered:
+        return numbered[word.lstrip("0")]
     if word not in found and word.isdecimal():
         raise ConfigError(f"there is no lesson {word}", f"1 to {len(found)}. See `tuisim learn list`")
     if word not in found:
