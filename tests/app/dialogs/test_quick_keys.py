@@ -61,7 +61,7 @@ async def test_a_key_too_many_leaves_the_lab_as_it_is(keys: str) -> None:
 
 IN_THE_ANALYSER = {
     "note": "m A enter enter",
-    "palette": "ctrl+p enter enter escape",
+    "palette": "ctrl+p enter enter",
 }
 
 
