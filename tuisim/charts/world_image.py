@@ -207,7 +207,8 @@ def _parts(
     parts[inside_mm >= edge_mm] = _BODY
     wheel_mm = max(outline.wheel_width_mm, 1.2 * px_mm)
     beside = np.abs(across - outline.half_width_mm + wheel_mm / 2) <= wheel_mm / 2
-    parts[beside & (np.abs(ahead) <= outline.wheel_radius_mm)] = _WHEEL
+    if outline.has_wheels:
+        parts[beside & (np.abs(ahead) <= outline.wheel_radius_mm)] = _WHEEL
     # In few pixels the nose sticks out by one, and it is never thinner than that, so that the heading can be seen.
     is_small = 2 * outline.half_width_mm < _FEW_PX[cell_cols] * px_mm
     nose_mm = _NOSE_PX[cell_cols] * px_mm if is_small else 0.0

@@ -18,7 +18,7 @@ from tuisim.config.program_robot.assembly import BuiltRobot, build_robot
 from tuisim.config.program_robot.course import uses_course_names
 from tuisim.config.program_robot.mentions import mentions_in
 from tuisim.config.program_robot.report import USUAL, in_words
-from tuisim.config.program_robot.source import imports_library, read_modules
+from tuisim.config.program_robot.source import data_files, imports_library, read_modules
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.source import Program
@@ -79,7 +79,7 @@ def facts_of(program: Program) -> SourceFacts:
         modules = read_modules(program)
         if not modules or not imports_library(modules):
             return SourceFacts()
-        robot = build_robot(mentions_in(modules), program.name, USUAL)
+        robot = build_robot(mentions_in(modules, data_files(program)), program.name, USUAL)
         return SourceFacts(True, uses_course_names(modules, program.text), robot)
     except RecursionError:
         return SourceFacts()

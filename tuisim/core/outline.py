@@ -31,6 +31,7 @@ class RobotOutline:
     wheel_width_mm: float
     """The wheels are at both sides, inside the body."""
     wheel_radius_mm: float
+    has_wheels: bool
     pen_mm: Point
     color_sensors_mm: tuple[tuple[float, float, float], ...]
     """x, y and radius of the disc that each sees."""
@@ -60,6 +61,7 @@ def outline_of(robot: RobotSpec) -> RobotOutline:
         front_mm=max([0.0, robot.wheel_diameter_mm / 2, *(y + SENSOR_HOUSING_MM for y in sensors)]),
         wheel_width_mm=robot.wheel_width_mm,
         wheel_radius_mm=robot.wheel_diameter_mm / 2,
+        has_wheels=robot.has_wheels,
         pen_mm=(robot.pen.x_mm, robot.pen.y_mm),
         color_sensors_mm=tuple((sensor.x_mm, sensor.y_mm, sensor.diameter_mm / 2) for sensor in robot.color_sensors),
         bumpers_mm=tuple((touch.x_mm, touch.y_mm, touch.width_mm / 2) for touch in robot.touch_sensors),

@@ -310,7 +310,7 @@ class PenSpec:
 
 @dataclass(frozen=True, slots=True)
 class RobotSpec:
-    """A two-wheeled robot."""
+    """A robot with two wheels, or one that stands and only moves other motors."""
 
     name: str = "Default_Robot"
     wheel_diameter_mm: float = 56.0
@@ -321,6 +321,7 @@ class RobotSpec:
     weight: float = ROBOT_WEIGHTS["medium"]
     """0 changes speed at once; otherwise the acceleration is 5000 / weight degrees per second each second."""
     left_port: str = "outB"
+    """Port of the motor of the left wheel; empty, as `right_port`, on a robot without wheels."""
     right_port: str = "outC"
     color_sensors: tuple[ColorSensorSpec, ...] = (
         ColorSensorSpec("left", "in2", -20.0, 30.0),
@@ -345,8 +346,13 @@ class RobotSpec:
     """Turns of a wheel's motor for one turn of the wheel: above 1 the robot is slower than its motors."""
 
     @property
+    def has_wheels(self) -> bool:
+        """Whether motors drive the robot."""
+        return bool(self.left_port)
+
+    @property
     def wheel_motors(self) -> tuple[MotorSpec, MotorSpec]:
-        """The motors of the left and the right wheel."""
+        """The motors of the left and the right wheel, on no port if the robot has no wheels."""
         return MotorSpec(self.left_port, self.left_motor), MotorSpec(self.right_port, self.right_motor)
 
     @property
@@ -378,13 +384,9 @@ class RobotSpec:
         require(self.back_mm, -1000, 0, "back_mm")
         require(self.weight, 0, 1000, "weight")
         require(self.gear_ratio, 0.01, 100, "gear_ratio")
-        for key in ("left_port", "right_port"):
-            require_one_of(getattr(self, key), "port", OUTPUT_PORTS, key)
         for key in ("left_motor", "right_motor"):
             require_one_of(getattr(self, key), "kind of motor", MOTOR_KINDS, key)
-        if self.left_port == self.right_port:
-            raise RobotError(f"both motors are on {self.left_port}", "give each its own port", key="right_port")
-        used = {self.left_port, self.right_port}
+        used = self._check_wheel_ports()
         for motor in self.extra_motors:
             require_one_of(motor.port, "port", OUTPUT_PORTS, "motors")
             if motor.port in used:
@@ -402,6 +404,16 @@ class RobotSpec:
         self._check_names()
         for touch in self.touch_sensors:
             self._check_presser(touch)
+
+    def _check_wheel_ports(self) -> set[str]:
+        """Return the ports of the wheels."""
+        if self.left_port == self.right_port == "":
+            return set()
+        for key in ("left_port", "right_port"):
+            require_one_of(getattr(self, key), "port", OUTPUT_PORTS, key)
+        if self.left_port == self.right_port:
+            raise RobotError(f"both motors are on {self.left_port}", "give each its own port", key="right_port")
+        return {self.left_port, self.right_port}
 
     def _check_names(self) -> None:
         names = [sensor.name for sensor in self.color_sensors]

@@ -70,7 +70,7 @@ class Plugged:
 
 def plugged_in(robot: RobotSpec) -> dict[str, Plugged]:
     """Return the devices on the robot's ports, by short name such as `in1`."""
-    found = {motor.port: Plugged(KINDS[motor.kind].driver_name, "tacho-motor") for motor in robot.motors}
+    found = {motor.port: Plugged(KINDS[motor.kind].driver_name, "tacho-motor") for motor in robot.motors if motor.port}
     for kind, sensor in mounted(robot):
         found[sensor.port] = Plugged(kind.driver_name, kind.port_mode)
     return found
@@ -154,13 +154,17 @@ def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
         The brick, and its colour sensors by device path.
     """
     brick, robot, sim = Brick(CLASSES), session.sim.spec.robot, session.sim
-    motors = zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)
+    motors = [*zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)]
     tachos: dict[str, Tacho] = {}
     # Sorted by port, so that a class without an address finds the first port.
-    for at, (motor, simulated) in enumerate(sorted(motors, key=lambda found: found[0].port)):
+    on_ports = sorted((found for found in motors if found[0].port), key=lambda found: found[0].port)
+    for at, (motor, simulated) in enumerate(on_ports):
         tachos[motor.port] = tacho_of(session, simulated, motor.port, motor.kind)
         brick.add(MOTOR_CLASS, f"motor{at}", tachos[motor.port].device())
-    session.wheel_registers = tuple(tachos[wheel.port].registers for wheel in robot.motors[:2])
+    session.wheel_registers = tuple(
+        (tachos.get(motor.port) or tacho_of(session, simulated, motor.port, motor.kind)).registers
+        for motor, simulated in motors[:2]
+    )
     colors: dict[str, ColorDevice] = {}
     sensors: list[LegoSensor] = []
     for at, spec in enumerate(sorted(robot.sensors, key=lambda found: found.port)):

@@ -52,7 +52,8 @@ def lines(now: Snapshot, width: int, height: int) -> list[Line]:
         width: Columns, 18 or more for whole words.
         height: Rows; with fewer than 6, the last lines are omitted.
     """
-    motors = [_wheel(now, "LeftMotor", "L", width), _wheel(now, "RightMotor", "R", width)]
+    wheels = [_wheel(now, "LeftMotor", "L", width), _wheel(now, "RightMotor", "R", width)]
+    motors = wheels if now.spec.robot.has_wheels else []
     sensors = [(f"Sensor{at}", now.colors.get(s.name)) for at, s in enumerate(now.spec.robot.color_sensors, 1)]
     further = [
         *(

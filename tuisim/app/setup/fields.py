@@ -154,10 +154,12 @@ def _motor_port_field(key: str, label: str) -> Field:
     other = "right_port" if key == "left_port" else "left_port"
 
     def change(robot: RobotSpec, port: str) -> RobotSpec:
+        if not robot.has_wheels:
+            raise RobotError("the robot has no wheels", "choose another robot")
         swapped = getattr(robot, key) if getattr(robot, other) == port else getattr(robot, other)
         return replace(robot, **{key: port, other: swapped})
 
-    return _robot_field(key, label, lambda robot: str(getattr(robot, key)), change, OUTPUT_PORTS)
+    return _robot_field(key, label, lambda robot: getattr(robot, key) or "none", change, OUTPUT_PORTS)
 
 
 def _motor_kind_field(key: str, label: str) -> Field:

@@ -11,8 +11,10 @@ from tuisim.config.options import RobotChoice
 from tuisim.config.program_robot.library import Kind
 from tuisim.config.program_robot.mechanics import Mechanics, mechanics_in
 from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
-from tuisim.config.program_robot.places import NewSensors, places_for
+from tuisim.config.program_robot.places import Body, NewSensors, places_for, say_other_sides, with_sides
+from tuisim.config.program_robot.sizes import Size, sizes_in
 from tuisim.config.program_robot.wheels import Wheels, wheels_of
+from tuisim.config.program_robot.words import side_of
 from tuisim.core.spec import (
     INPUT_PORTS,
     ColorSensorSpec,
@@ -73,9 +75,11 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
         usual: The robot that is changed.
     """
     builder = _Builder(mentions, mechanics_in(mentions), usual)
-    changes = builder.with_presses({**builder.motors(), **builder.sensors()})
+    motors = builder.motors()
+    changes = builder.with_presses({**motors, **builder.sensors(motors)})
     if all(getattr(usual, key) == value for key, value in changes.items()):
         return None
+    changes |= builder.said_sizes(motors)
     shown = "".join(letter if letter.isprintable() else "?" for letter in name)[:_MAX_NAME]
     try:
         spec = replace(usual, name=f"Robot of {shown}", **changes)
@@ -119,7 +123,8 @@ class _Builder:
         extra = [self._further(port, kind) for port, kind in further_kinds.items()]
         changes["extra_motors"] = tuple(extra)
         for motor in extra:
-            stops = "" if motor.low_deg is None else f" with end stops at {motor.low_deg:g}° and {motor.high_deg:g}°"
+            ends = [f"{end:g}°" for end in (motor.low_deg, motor.high_deg) if end is not None]
+            stops = f" with {'end stops' if ends[1:] else 'an end stop'} at {' and '.join(ends)}" if ends else ""
             said = where.get(motor.port) or self._first(further_kinds[motor.port])
             self.parts.append(Part(f"{motor.kind} motor on {motor.port}{stops}", f"motors.{motor.port}", said))
         if wheels.doubt:
@@ -129,13 +134,13 @@ class _Builder:
     def _further(self, port: str, kind: Kind) -> MotorSpec:
         """Return a motor that drives no wheel, with the end stops that the program relies on."""
         known = any(one.port == port for one in self.mentions.devices)
-        low_deg, high_deg = self.mechanics.range_of(port if known else "") or (None, None)
+        low_deg, high_deg = self.mechanics.range_of(port if known else "")
         return MotorSpec(port, _motor_kind(kind), low_deg, high_deg)
 
     def _reversed(self, wheels: Wheels) -> dict[str, bool]:
         """Return which wheels the program says to be mounted the other way round."""
         turned = self.mechanics.reversed
-        sides = [side for side, port in (("left", wheels.left), ("right", wheels.right)) if port in turned]
+        sides = [side for side, port in (("left", wheels.left), ("right", wheels.right)) if port and port in turned]
         if sides:
             what = "both wheel motors" if len(sides) == 2 else f"the {sides[0]} wheel's motor"
             where = turned[wheels.left if "left" in sides else wheels.right]
@@ -149,9 +154,9 @@ class _Builder:
         for press in self.mechanics.presses:
             motor = motors.get(press.motor or next(iter(motors), ""))
             at = next((at for at, one in enumerate(touches) if press.touch in ("", one.port)), None)
-            if motor is None or motor.low_deg is None or at is None or touches[at].pressed_by:
-                continue
             end = "high" if press.stop.forwards else "low"
+            if motor is None or getattr(motor, f"{end}_deg") is None or at is None or touches[at].pressed_by:
+                continue
             touches[at] = replace(touches[at], pressed_by=motor.port, pressed_at=end)
             what = f"{Kind.TOUCH} on {touches[at].port} pressed by {motor.port}"
             path = _path(touches[at])
@@ -187,18 +192,33 @@ class _Builder:
             found["wheel_spacing_mm"] = pair.spacing_mm
         return found
 
+    def said_sizes(self, motors: Mapping[str, Any]) -> dict[str, float]:
+        """Return what constants of the program say about the wheels, where `MoveDifferential` says nothing."""
+        said = self._said_sizes(motors)
+        self._tell_sizes({key: size.mm for key, size in said.items()}, {key: size.where for key, size in said.items()})
+        return {key: size.mm for key, size in said.items()}
+
+    def _said_sizes(self, motors: Mapping[str, Any]) -> dict[str, Size]:
+        said = sizes_in(self.mentions)
+        sizes = {"wheel_diameter_mm": said.wheel, "wheel_spacing_mm": said.spacing}
+        return {
+            key: size
+            for key, size in sizes.items()
+            if size and motors["left_port"] and key not in motors and size.mm != getattr(self.usual, key)
+        }
+
+    def _tell_sizes(self, sizes: Mapping[str, float], where: Mapping[str, Where | None]) -> None:
+        for key, words in (("wheel_diameter_mm", "wheels of {:g} mm"), ("wheel_spacing_mm", "{:g} mm apart")):
+            if key in sizes:
+                self.parts.append(Part(words.format(sizes[key]), key, where[key]))
+
     def _tell_wheels(self, wheels: Wheels, changes: Mapping[str, Any]) -> None:
         moved = (wheels.left, wheels.right) != (self.usual.left_port, self.usual.right_port)
         kinds = [changes["left_motor"], changes["right_motor"]]
         medium = " (medium motors)" if kinds == ["medium"] * 2 else ""
-        what = f"wheels on {wheels.left} (left) and {wheels.right}{medium}"
+        what = f"wheels on {wheels.left} (left) and {wheels.right}{medium}" if wheels.left else "no wheels"
         self.parts.append(Part(what, "left_port", wheels.where, moved or bool(medium)))
-        if "wheel_diameter_mm" in changes:
-            what = f"wheels of {changes['wheel_diameter_mm']:g} mm"
-            self.parts.append(Part(what, "wheel_diameter_mm", wheels.where))
-        if "wheel_spacing_mm" in changes:
-            what = f"{changes['wheel_spacing_mm']:g} mm apart"
-            self.parts.append(Part(what, "wheel_spacing_mm", wheels.where))
+        self._tell_sizes(changes, dict.fromkeys(changes, wheels.where))
 
     def _kinds(self, mentions: Iterable[Mention]) -> dict[str, Kind]:
         """Return the kind of device on each port that is named; of several the one that is named most often."""
@@ -217,34 +237,51 @@ class _Builder:
 
     # Sensors
 
-    def sensors(self) -> dict[str, Any]:
-        """Return the fields of the robot that are about sensors."""
-        mentions = [one for one in self.mentions.devices if not one.kind.is_motor]
+    def sensors(self, motors: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the fields of the robot that are about sensors.
+
+        Args:
+            motors: The fields that are about motors and wheels.
+        """
+        mentions = with_sides([one for one in self.mentions.devices if not one.kind.is_motor])
         kinds = self._kinds(mentions)
         usual = {sensor.port: sensor for sensor in self.usual.sensors}
         by_port = {
             port: next(one for one in mentions if one.port == port and one.kind is kinds[port]) for port in kinds
         }
+        by_side = say_other_sides(by_port, usual)
         placed: dict[str, SensorSpec] = {}
         for port, kind in kinds.items():
-            if port in usual and kind in (KINDS[type(usual[port])], Kind.SENSOR):
+            is_there = port in usual and kind in (KINDS[type(usual[port])], Kind.SENSOR)
+            if is_there and not (by_side and kind is Kind.COLOR and side_of(by_port[port].names) != usual[port].name):
                 placed[port] = usual[port]
         waiting = {port: one for port, one in by_port.items() if port not in placed and one.kind is not Kind.SENSOR}
         wanted = [*waiting.items(), *self._without_port(mentions, kinds, placed, {*placed, *waiting})]
+        if by_side:
+            wanted.sort(key=lambda one: not side_of(one[1].names))
         left = [sensor for sensor in self.usual.sensors if sensor not in placed.values()]
         new = NewSensors()
         for port, mention in wanted:
             alike = [sensor for sensor in left if KINDS[type(sensor)] is mention.kind]
+            if by_side and mention.kind is Kind.COLOR and (side := side_of(mention.names)):
+                alike = [sensor for sensor in alike if sensor.name == side]
             if alike:
                 chosen = new.likeliest(alike, mention)
                 left.remove(chosen)
                 placed[port] = _on_port(chosen, port)
             else:
                 new.add(port, mention)
-        placed |= places_for(new, placed, self.usual, self.doubts)
+        placed |= places_for(new, placed, self._body(motors), self.doubts)
         self._stay(left, placed)
         self._tell_sensors(placed, by_port, mentions)
         return _fields(placed, self.usual)
+
+    def _body(self, motors: Mapping[str, Any]) -> Body:
+        said = {**{key: size.mm for key, size in self._said_sizes(motors).items()}, **motors}
+        spacing_mm, width_mm = (
+            said.get(key, getattr(self.usual, key)) for key in ("wheel_spacing_mm", "wheel_width_mm")
+        )
+        return Body((spacing_mm + width_mm) / 2, self.usual.back_mm)
 
     def _without_port(
         self, mentions: list[Mention], kinds: Mapping[str, Kind], placed: Mapping[str, SensorSpec], taken: set[str]

@@ -10,7 +10,9 @@ from dataclasses import dataclass, field
 from tuisim.config.program_robot import library
 from tuisim.config.program_robot.calls import Call, argument_of
 from tuisim.config.program_robot.scopes import FUNCTIONS, Bound, Defined, Function, Imported, Parameter, Scope
+from tuisim.config.program_robot.source import DataFiles
 from tuisim.config.program_robot.values import (
+    File,
     Instance,
     LibraryClass,
     LibraryModule,
@@ -41,6 +43,8 @@ class Evaluation:
 
     modules: Mapping[str, Scope]
     """Its own modules by name."""
+    files: DataFiles
+    """What it may read besides."""
     options: Mapping[str, list[tuple[ast.expr, Scope]]] = field(default_factory=dict)
     """The default of each option of argparse, by the name of its attribute."""
     calls: Mapping[Function, Sequence[Call]] = field(default_factory=dict)
@@ -90,6 +94,8 @@ class Evaluation:
                 yield from self.values(value, scope)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 yield from (-value for value in self.values(operand, scope) if isinstance(value, int | float))
+            case ast.BinOp(left=left, op=ast.Div()) if any(isinstance(one, File) for one in self.values(left, scope)):
+                yield from (File(name) for name in self._file_names(node, scope))
             case ast.BinOp(left=left, op=sign, right=right):
                 yield from self._computed(left, sign, right, scope)
             case ast.JoinedStr(values=parts):
@@ -104,7 +110,7 @@ class Evaluation:
 
     def within(self, function: Function, call: Call) -> Evaluation:
         """Return the expressions of the same program as they are while one call of a function runs."""
-        return Evaluation(self.modules, self.options, {**self.calls, function: [call]})
+        return Evaluation(self.modules, self.files, self.options, {**self.calls, function: [call]})
 
     # Names
 
@@ -318,6 +324,9 @@ class Evaluation:
                         if isinstance(name, str):
                             yield from self.attribute(base, name)
                 return
+            case ast.Name(id="open" | "Path") | ast.Attribute(attr="Path") if node.args:
+                yield from (File(name) for name in self._file_names(node.args[0], scope))
+                return
             case ast.Name(id=name) if name in _CONVERTED and node.args:
                 yield from self.values(node.args[0], scope)
                 return
@@ -334,6 +343,13 @@ class Evaluation:
         """Yield the result of a method of Python's own types."""
         if name in ("parse_args", "parse_known_args"):
             yield Options()
+        elif name in ("load", "loads") and node.args and isinstance(base, ast.Name) and base.id == "json":
+            for file in self.values(node.args[0], scope):
+                if isinstance(file, File) and (inside := self.files.values_in(file.name)) is not None:
+                    yield from self.values(inside, scope.top)
+        elif name in ("read", "read_text", "open"):
+            # The text of a file stands for the file.
+            yield from (value for value in self.values(base, scope) if isinstance(value, File))
         elif name == "get" and node.args:
             tables = [value for value in self.values(base, scope) if isinstance(value, Table)]
             for table in tables:
@@ -352,6 +368,17 @@ class Evaluation:
             for text in self.values(base, scope):
                 if isinstance(text, str):
                     yield str(getattr(text, name)())
+
+    def _file_names(self, node: ast.expr, scope: Scope) -> Iterator[str]:
+        """Yield the names of a file that an expression can be, from the program's own folder on."""
+        match node:
+            case ast.Call(func=ast.Attribute(attr="join"), args=[*_, last]) | ast.BinOp(op=ast.Div(), right=last):
+                # What comes before is most often the program's folder.
+                yield from (value for value in self.values(last, scope) if isinstance(value, str))
+            case _:
+                for value in self.values(node, scope):
+                    if isinstance(value, str | File):
+                        yield value if isinstance(value, str) else value.name
 
     def _view(self, name: str, table: Table) -> Table:
         keys = [key for key in table.keys if key is not None]

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from tuisim.config.program_robot import library
 from tuisim.config.program_robot.evaluation import Evaluation
 from tuisim.config.program_robot.library import Kind
 from tuisim.config.program_robot.mentions import Mentions, Pair, Where
-from tuisim.config.program_robot.scopes import Scope
-from tuisim.config.program_robot.values import Instance, OwnClass
+from tuisim.config.program_robot.scopes import FUNCTIONS, Bound, Scope
+from tuisim.config.program_robot.values import Instance, OwnClass, OwnFunction, Value
+from tuisim.config.program_robot.words import means_forwards
 
 _INVERSED, _NORMAL = "inversed", "normal"
 _ENDLESS = frozenset({"on", "run_forever", "run_direct"})
@@ -21,6 +22,7 @@ _ENDING = frozenset(
 )  # fmt: skip
 _SPEEDS = ("speed", "speed_sp", "duty_cycle_sp")
 _LENGTHS = ("degrees", "position", "position_sp")
+_TO_PLACE = frozenset({"on_to_position", "run_to_abs_pos"})
 _USUAL_REACH_DEG = 180.0
 _MARGIN_DEG = 45.0
 """How far the end stop, at which a motor finds its place, is from where it is at the start."""
@@ -54,17 +56,20 @@ class Mechanics:
     stops: dict[str, Stop] = field(default_factory=dict)
     presses: list[Press] = field(default_factory=list)
     reach_deg: dict[str, float] = field(default_factory=dict)
-    """The farthest that the program turns a motor in one move."""
+    """The farthest that the program turns a motor, from where it stands or from its end stop."""
+    endless: set[str] = field(default_factory=set)
+    """The motors that the program turns by an angle that is not known."""
 
-    def range_of(self, port: str) -> tuple[float, float] | None:
-        """Return the end stops of a motor, from its position at the start; None if it has none."""
+    def range_of(self, port: str) -> tuple[float | None, float | None]:
+        """Return the end stops of a motor, from its position at the start; None for a side without one."""
         stop = self.stops.get(port) or next((press.stop for press in self.presses if press.motor == port), None)
         if stop is None:
-            return None
+            return None, None
         reach = max(_USUAL_REACH_DEG, min(self.reach_deg.get(port, 0.0), _MOST_REACH_DEG)) + _MARGIN_DEG
         if stop.forwards is None:
             return -reach, reach
-        return (-reach, _MARGIN_DEG) if stop.forwards else (-_MARGIN_DEG, reach)
+        far = None if port in self.endless else reach
+        return (-far if far else None, _MARGIN_DEG) if stop.forwards else (-_MARGIN_DEG, far)
 
 
 def mechanics_in(mentions: Mentions) -> Mechanics:
@@ -80,6 +85,14 @@ class _Reader:
     evaluation: Evaluation
     found: Mechanics = field(default_factory=Mechanics)
     normal: set[str] = field(default_factory=set)
+    places: dict[str, set[float]] = field(default_factory=dict)
+    """The positions that the program says its motors have, as at an end stop, by port."""
+    targets: dict[str, set[float]] = field(default_factory=dict)
+    """The positions to which it turns them."""
+    backwards: dict[str, Where] = field(default_factory=dict)
+    """The motors that have negative speeds where the program says that it drives forwards."""
+    inside: dict[ast.Call, Evaluation] = field(default_factory=dict)
+    """What the program's expressions can be in an object, by the call that makes it."""
 
     def read(self) -> Mechanics:
         for pair in self.mentions.pairs:
@@ -91,23 +104,38 @@ class _Reader:
             for block in _blocks(scope):
                 for before, statement in zip([None, *block], block, strict=False):
                     self._read_press([*([before] if before else []), statement], scope)
+            if isinstance(scope.node, FUNCTIONS) and means_forwards(scope.node.name):
+                self._read_forwards(scope)
         for port in self.normal:
             # A program that turns the polarity to and fro tries it out.
             self.found.reversed.pop(port, None)
+        for port, where in self.backwards.items():
+            # With the polarity turned as well, the motor is mounted the usual way.
+            if self.found.reversed.pop(port, None) is None:
+                self.found.reversed[port] = where
+        for port, targets in self.targets.items():
+            far = max(abs(target - place) for target in targets for place in self.places.get(port, {0.0}))
+            self.found.reach_deg[port] = max(self.found.reach_deg.get(port, 0.0), far)
         return self.found
 
     def _read(self, node: ast.AST, scope: Scope) -> None:
         match node:
             case ast.Assign(targets=targets, value=value):
                 for target in targets:
-                    if isinstance(target, ast.Attribute) and target.attr == "polarity":
-                        for text in self.evaluation.values(value, scope):
-                            self._turn(self._known_motors(target.value, scope), text, _where(node, scope))
+                    if isinstance(target, ast.Attribute):
+                        self._read_assigned(target, value, scope)
             case ast.Call(func=ast.Attribute(value=base, attr="set_polarity"), args=[value, *_]):
                 for text in self.evaluation.values(value, scope):
                     self._turn(self._known_motors(base, scope), text, _where(node, scope))
             case ast.Attribute(value=base, attr="is_stalled"):
                 self._stall(base, scope, node)
+            case ast.While(test=ast.Compare(left=left, ops=[ast.Gt() | ast.GtE() | ast.NotEq()])):
+                match left:
+                    case (
+                        ast.Attribute(value=base, attr="speed")
+                        | ast.Call(func=ast.Name(id="abs"), args=[ast.Attribute(value=base, attr="speed")])
+                    ) if self._only_moves_endlessly(base, scope):
+                        self._stall(base, scope, node)
             case ast.Compare(left=left, comparators=[ast.Attribute(value=base, attr="state")]):
                 if "stalled" in self.evaluation.values(left, scope):
                     self._stall(base, scope, node)
@@ -115,11 +143,53 @@ class _Reader:
                 if "stalled" in self.evaluation.values(state, scope):
                     self._stall(base, scope, node)
             case ast.Call(func=ast.Attribute(value=base, attr="wait_until_not_moving")):
-                ports = self._motors(base, scope)
-                if self._moves(scope, ports, _ENDLESS) and not self._moves(scope, ports, _ENDING):
+                if self._only_moves_endlessly(base, scope):
                     self._stall(base, scope, node)
             case ast.Call(func=ast.Attribute(value=base, attr=name)) if name in _ENDING:
                 self._note_reach(node, name, self._motors(base, scope), scope)
+
+    def _read_assigned(self, target: ast.Attribute, value: ast.expr, scope: Scope) -> None:
+        match target.attr:
+            case "polarity":
+                for text in self.evaluation.values(value, scope):
+                    self._turn(self._known_motors(target.value, scope), text, _where(target, scope))
+            case "position":
+                for port in self._motors(target.value, scope):
+                    self.places.setdefault(port, set()).update(self._numbers(value, scope))
+            case "position_sp":
+                self._note_targets(value, self._motors(target.value, scope), scope)
+
+    def _read_forwards(self, scope: Scope) -> None:
+        """Note motors that a function, which is named for driving forwards, turns backwards only."""
+        speeds: dict[str, list[float]] = {}
+        where: dict[str, Where] = {}
+        for node in scope.body:
+            if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)):
+                continue
+            if node.func.attr not in (*_ENDLESS, *_ENDING) or node.func.attr in _TO_PLACE:
+                continue
+            if any(length < 0 for one in _lengths(node, node.func.attr) for length in self._numbers(one, scope)):
+                return
+            for port in self._known_motors(node.func.value, scope):
+                speeds.setdefault(port, []).extend(self._speeds(node, scope))
+                where.setdefault(port, _where(node, scope))
+        for port, found in speeds.items():
+            if found and max(found) < 0:
+                self.backwards[port] = where[port]
+
+    def _speeds(self, call: ast.Call, scope: Scope) -> Iterator[float]:
+        """Yield the speeds that a call gives, to one motor or to both of a pair."""
+        assert isinstance(call.func, ast.Attribute)
+        pairs = self._pairs(call.func.value, scope)
+        first, last = (0, 1) if not pairs or call.func.attr.startswith("on_for_distance") else (0, 2)
+        if any(pair.class_name == "MoveSteering" for pair in pairs):
+            first, last = 1, 2
+        given = [keyword.value for keyword in call.keywords if keyword.arg in (*_SPEEDS, "left_speed", "right_speed")]
+        for node in (*given, *call.args[first:last]):
+            yield from self._numbers(node.args[0] if isinstance(node, ast.Call) and node.args else node, scope)
+
+    def _numbers(self, node: ast.expr, scope: Scope) -> list[float]:
+        return [value for value in self.evaluation.values(node, scope) if isinstance(value, int | float)]
 
     def _turn(self, ports: Iterable[str], text: object, where: Where) -> None:
         for port in ports:
@@ -151,26 +221,44 @@ class _Reader:
     def _moves(self, scope: Scope, ports: Iterable[str], names: Iterable[str]) -> bool:
         return bool(self._calls(scope.body, ports, names, scope))
 
-    def _directions(self, nodes: Iterable[ast.AST], ports: Iterable[str], scope: Scope) -> Iterator[bool]:
+    def _only_moves_endlessly(self, base: ast.expr, scope: Scope) -> bool:
+        """Return whether a motor, in some part of the program, moves and never by itself ends to."""
+        ports = self._motors(base, scope)
+        return self._moves(scope, ports, _ENDLESS) and not self._moves(scope, ports, _ENDING)
+
+    def _directions(self, nodes: Sequence[ast.AST], ports: Iterable[str], scope: Scope) -> Iterator[bool]:
         """Yield whether the movements without an end among some nodes are forwards."""
+        ports = [*ports]
         for call in self._calls(nodes, ports, _ENDLESS, scope):
             given = [keyword.value for keyword in call.keywords if keyword.arg in _SPEEDS]
             for node in (*given, *call.args[:1]):
                 inside = node.args[0] if isinstance(node, ast.Call) and node.args else node
-                for value in self.evaluation.values(inside, scope):
-                    if isinstance(value, int | float) and value:
-                        yield value > 0
+                yield from (value > 0 for value in self._numbers(inside, scope) if value)
+        for one in nodes:
+            match one:
+                case ast.Assign(targets=[ast.Attribute(value=base, attr=name)], value=speed) if name in _SPEEDS:
+                    if {*ports} & {*self._motors(base, scope)}:
+                        yield from (value > 0 for value in self._numbers(speed, scope) if value)
 
-    def _note_reach(self, call: ast.Call, name: str, ports: Iterable[str], scope: Scope) -> None:
+    def _note_reach(self, call: ast.Call, name: str, ports: Sequence[str], scope: Scope) -> None:
         turns = 360.0 if name == "on_for_rotations" else 1.0
-        given = [keyword.value for keyword in call.keywords if keyword.arg in (*_LENGTHS, "rotations")]
-        if name.startswith("on_") and name != "on_for_seconds":
-            given += call.args[1:2]
-        for node in given:
-            for value in self.evaluation.values(node, scope):
-                if isinstance(value, int | float):
-                    for port in ports:
-                        self.found.reach_deg[port] = max(self.found.reach_deg.get(port, 0.0), abs(value) * turns)
+        for node in _lengths(call, name):
+            if name in _TO_PLACE:
+                self._note_targets(node, ports, scope)
+                continue
+            lengths = self._numbers(node, scope)
+            self.found.endless.update(() if lengths else ports)
+            for length in lengths:
+                for port in ports:
+                    self.found.reach_deg[port] = max(self.found.reach_deg.get(port, 0.0), abs(length) * turns)
+
+    def _note_targets(self, node: ast.expr, ports: Sequence[str], scope: Scope) -> None:
+        targets = self._numbers(node, scope)
+        if not targets:
+            self.found.endless.update(ports)
+            return
+        for port in ports:
+            self.targets.setdefault(port, set()).update(targets)
 
     # Touch sensors
 
@@ -198,7 +286,7 @@ class _Reader:
             for port in self._motors(node.func.value, scope)
         }  # fmt: skip
         if len(moved) == 1 and touches:
-            forwards = next(self._directions(nodes, moved, scope), None)
+            forwards = next(self._directions([*nodes, *scope.body], moved, scope), None)
             self.found.presses.append(Press(touches[0], moved.pop(), Stop(_where(last, scope), forwards)))
 
     # Devices
@@ -219,7 +307,7 @@ class _Reader:
             if pairs:
                 return [pair.left if node.attr == "left_motor" else pair.right for pair in pairs]
         found = [port for pair in self._pairs(node, scope) for port in (pair.left, pair.right)]
-        for value in self.evaluation.values(node, scope):
+        for value in self._values(node, scope):
             if isinstance(value, Instance):
                 found += [
                     one.port
@@ -227,6 +315,33 @@ class _Reader:
                     if one.kind in kinds and self._is_of(value, one.call, one.owner)
                 ]
         return list(dict.fromkeys(found))
+
+    def _values(self, node: ast.expr, scope: Scope) -> Sequence[Value]:
+        """Return what an expression can be at its place: by the nearest assignment above, and in its own object."""
+        match node:
+            case ast.Name(id=name):
+                known = [one for one in scope.names.get(name, ()) if isinstance(one, Bound) and one.scope is scope]
+                above = [one for one in known if one.node.lineno < node.lineno and not (one.path or one.is_item)]
+                if len(known) > 1 and above:
+                    return self._values(max(above, key=lambda one: one.node.lineno).node, scope)
+            case ast.Attribute(value=base, attr=name):
+                of = self._values(base, scope)
+                if any(isinstance(one, Instance) for one in of):
+                    return [value for one in of for value in self._evaluation_in(one).attribute(one, name)]
+        return self.evaluation.values(node, scope)
+
+    def _evaluation_in(self, value: Value) -> Evaluation:
+        """Return what the program's expressions can be in one object of a class of the program."""
+        match value:
+            case Instance(of=OwnClass(scope=scope), call=ast.Call() as call):
+                if call not in self.inside:
+                    self.inside[call] = self.evaluation
+                    if isinstance(init := self.evaluation.method(scope, "__init__"), OwnFunction):
+                        for made in self.evaluation.calls.get(init.node, ()):
+                            if made.node is call:
+                                self.inside[call] = self.evaluation.within(init.node, made)
+                return self.inside[call]
+        return self.evaluation
 
     def _pairs(self, node: ast.expr, scope: Scope) -> list[Pair]:
         found = []
@@ -242,6 +357,12 @@ class _Reader:
             return True
         from_init = call is not None and isinstance(call.func, ast.Attribute) and call.func.attr == "__init__"
         return from_init and isinstance(value.of, OwnClass) and value.of.scope is owner
+
+
+def _lengths(call: ast.Call, name: str) -> list[ast.expr]:
+    """Return what a call of a movement gives for its length or its end."""
+    given = [keyword.value for keyword in call.keywords if keyword.arg in (*_LENGTHS, "rotations")]
+    return given + call.args[1:2] if name.startswith("on_") and name != "on_for_seconds" else given
 
 
 def _where(node: ast.AST, scope: Scope) -> Where:

@@ -12,7 +12,7 @@ from tuisim.config.program_robot.evaluation import Evaluation
 from tuisim.config.program_robot.library import Kind, PairClass
 from tuisim.config.program_robot.reach import reachable, skipped
 from tuisim.config.program_robot.scopes import FUNCTIONS, Function, Parameter, Scope, scope_of
-from tuisim.config.program_robot.source import Module
+from tuisim.config.program_robot.source import DataFiles, Module
 from tuisim.config.program_robot.values import (
     LibraryClass,
     OwnClass,
@@ -93,19 +93,27 @@ class Mentions:
     """What its expressions can be."""
 
 
-def mentions_in(modules: dict[str, Module]) -> Mentions:
-    """Return what a program says about its robot."""
+def mentions_in(modules: dict[str, Module], files: DataFiles) -> Mentions:
+    """Return what a program says about its robot.
+
+    Args:
+        modules: The program and its own modules.
+        files: What it may read besides.
+    """
     scopes = {name: scope_of(module) for name, module in modules.items()}
-    return _Reader(scopes).read()
+    return _Reader(scopes, files).read()
 
 
 @dataclass(slots=True)
 class _Reader:
     modules: dict[str, Scope]
+    files: DataFiles
     scopes: list[Scope] = field(init=False)
     evaluation: Evaluation = field(init=False)
     made: list[tuple[str, Call]] = field(init=False, default_factory=list)
     """Each class of the library with a call that makes one of it."""
+    parts: set[ast.AST] = field(init=False, default_factory=set)
+    """The calls in `made`."""
     hints: dict[ast.AST, list[str]] = field(init=False, default_factory=dict)
     via: Call | None = field(init=False, default=None)
     """The call of the function that is being read, if it has several."""
@@ -114,7 +122,7 @@ class _Reader:
         self.scopes = reachable(self.modules)
         calls = [Call(node, scope) for scope in self.scopes for node in _calls_in(scope)]
         options = _options(calls)
-        self.evaluation = Evaluation(self.modules, options)
+        self.evaluation = Evaluation(self.modules, self.files, options)
         for _ in range(_ROUNDS):
             found: dict[Function, list[Call]] = {}
             self.made = []
@@ -122,7 +130,8 @@ class _Reader:
                 self._sort(call, found)
             if found == self.evaluation.calls:
                 break
-            self.evaluation = Evaluation(self.modules, options, found)
+            self.evaluation = Evaluation(self.modules, self.files, options, found)
+        self.parts = {call.node for _, call in self.made}
         for scope in self.scopes:
             self._note_names(scope)
         devices: list[Mention] = []
@@ -245,6 +254,11 @@ class _Reader:
             case ast.BoolOp(values=parts):
                 for part in parts:
                     self._hint(part, name)
+            case ast.Call(args=args):
+                # As in `elbow = Joint(LargeMotor(OUTPUT_B))`: the thing is named after its only part.
+                parts = [part for part in args if part in self.parts]
+                if len(parts) == 1 and value not in self.parts:
+                    self._hint(parts[0], name)
 
     # Devices
 
@@ -342,7 +356,7 @@ class _Reader:
                     for port in map(library.port_of, ports):
                         if port and kinds:
                             names = _names_in(key) if key is not None else ()
-                            yield Mention(kinds[0], port, where, names, owner)
+                            yield Mention(kinds[0], port, where, (*names, *self._called(call)), owner, call=call.node)
 
     # Pairs
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from tuisim.config.program_robot.library import Kind
 from tuisim.config.program_robot.mentions import Mention
 from tuisim.config.program_robot.words import Side, side_of
-from tuisim.core.spec import ColorSensorSpec, GyroSpec, InfraredSpec, RobotSpec, SensorSpec, TouchSpec, UltrasonicSpec
+from tuisim.core.spec import ColorSensorSpec, GyroSpec, InfraredSpec, SensorSpec, TouchSpec, UltrasonicSpec
 
 _BUMPER_MM = 60.0
-"""How far a bumper is ahead of the axle, before the front of the robot; and its width."""
+"""How far a bumper is ahead of the axle, before the front of the robot."""
 _LOOKS: Mapping[Side, tuple[float, float, float]] = {
     Side.FRONT: (0.0, 20.0, 0.0),
     Side.LEFT: (-60.0, 0.0, 90.0),
@@ -21,6 +21,7 @@ _LOOKS: Mapping[Side, tuple[float, float, float]] = {
     Side.MIDDLE: (0.0, 20.0, 0.0),
 }
 """x, y and direction of a sensor that looks to a side."""
+_ROW = (Side.LEFT, Side.MIDDLE, Side.RIGHT)
 _DOWN: Mapping[Side, tuple[float, float]] = {
     Side.MIDDLE: (0.0, 30.0),
     Side.FRONT: (0.0, 60.0),
@@ -29,6 +30,38 @@ _DOWN: Mapping[Side, tuple[float, float]] = {
     Side.BACK: (0.0, -60.0),
 }
 """x and y of a colour sensor."""
+
+
+def with_sides(mentions: Sequence[Mention]) -> list[Mention]:
+    """Return mentions with the sides of three colour sensors that one line makes: in a row, from left to right."""
+    calls = [one.call for one in mentions if one.kind is Kind.COLOR and one.port]
+    rows = [call for call in calls if call is not None and calls.count(call) == len(_ROW)]
+    unsaid = [one for one in mentions if one.call in rows and side_of(one.names) is Side.NONE]
+    sides = dict(zip(unsaid, _ROW, strict=True)) if len(unsaid) == len(_ROW) else {}
+    return [replace(one, names=(sides[one], *one.names)) if one in sides else one for one in mentions]
+
+
+def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorSpec]) -> bool:
+    """Return whether a program has a colour sensor that the usual robot lacks, and others where that has another one.
+
+    Args:
+        mentions: What the program makes, by port.
+        usual: The sensors of the usual robot, by port.
+    """
+    colors = {port: one for port, one in mentions.items() if one.kind is Kind.COLOR}
+    known = {port: usual[port].name for port in colors if isinstance(usual.get(port), ColorSensorSpec)}
+    said = {port: side_of(colors[port].names) for port in known}
+    return len(known) < len(colors) and any(side and side != known[port] for port, side in said.items())
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """How far a robot extends."""
+
+    half_width_mm: float
+    """To either side of its middle."""
+    back_mm: float
+    """Behind the axle, as a negative y."""
 
 
 @dataclass(slots=True)
@@ -49,7 +82,7 @@ class NewSensors:
 
 
 def places_for(
-    new: NewSensors, placed: Mapping[str, SensorSpec], usual: RobotSpec, doubts: list[str]
+    new: NewSensors, placed: Mapping[str, SensorSpec], body: Body, doubts: list[str]
 ) -> dict[str, SensorSpec]:
     """Return new sensors by port, at places and with names that no other sensor has."""
     found: dict[str, SensorSpec] = {}
@@ -64,7 +97,7 @@ def places_for(
                 del mentions[port]
         sides = _sides(mentions, first_free=not any(isinstance(sensor, _SPECS[kind]) for sensor in known), kind=kind)
         for port, side in sides.items():
-            sensor = make(port, side, names, usual)
+            sensor = make(port, side, names, body)
             names.add(sensor.name)
             found[port] = sensor
     return found
@@ -107,33 +140,35 @@ def _name(base: str, side: Side, names: set[str]) -> str:
     return next(name for name in choices if name not in names)
 
 
-def _color(port: str, side: Side, names: set[str], _usual: RobotSpec) -> SensorSpec:
+def _color(port: str, side: Side, names: set[str], _body: Body) -> SensorSpec:
     x_mm, y_mm = _DOWN[side]
     name = side.value if side.value not in names else _name("color", side, names)
     return ColorSensorSpec(name, port, x_mm, y_mm)
 
 
-def _ultrasonic(port: str, side: Side, names: set[str], _usual: RobotSpec) -> SensorSpec:
+def _ultrasonic(port: str, side: Side, names: set[str], _body: Body) -> SensorSpec:
     x_mm, y_mm, angle_deg = _LOOKS[side]
     return UltrasonicSpec(_name("ultrasonic", side, names), port, x_mm, y_mm, angle_deg)
 
 
-def _infrared(port: str, side: Side, names: set[str], _usual: RobotSpec) -> SensorSpec:
+def _infrared(port: str, side: Side, names: set[str], _body: Body) -> SensorSpec:
     x_mm, y_mm, angle_deg = _LOOKS[side]
     return InfraredSpec(_name("infrared", side, names), port, x_mm, y_mm, angle_deg)
 
 
-def _touch(port: str, side: Side, names: set[str], usual: RobotSpec) -> SensorSpec:
-    x_mm = {Side.LEFT: -50.0, Side.RIGHT: 50.0}.get(side, 0.0)
-    y_mm = usual.back_mm - 15.0 if side is Side.BACK else _BUMPER_MM
-    return TouchSpec(_name("touch", side, names), port, x_mm, y_mm, _BUMPER_MM)
+def _touch(port: str, side: Side, names: set[str], body: Body) -> SensorSpec:
+    # As wide as the robot, or half as wide: one of its corners would meet a wall before a narrow bumper does.
+    half_mm = body.half_width_mm
+    x_mm = {Side.LEFT: -half_mm / 2, Side.RIGHT: half_mm / 2}.get(side, 0.0)
+    y_mm = body.back_mm - 15.0 if side is Side.BACK else _BUMPER_MM
+    return TouchSpec(_name("touch", side, names), port, x_mm, y_mm, half_mm if x_mm else 2 * half_mm)
 
 
-def _gyro(port: str, _side: Side, names: set[str], _usual: RobotSpec) -> SensorSpec:
+def _gyro(port: str, _side: Side, names: set[str], _body: Body) -> SensorSpec:
     return GyroSpec(_name("gyro", Side.NONE, names), port)
 
 
-_MAKERS: Mapping[Kind, Callable[[str, Side, set[str], RobotSpec], Any]] = {
+_MAKERS: Mapping[Kind, Callable[[str, Side, set[str], Body], Any]] = {
     Kind.COLOR: _color,
     Kind.ULTRASONIC: _ultrasonic,
     Kind.GYRO: _gyro,

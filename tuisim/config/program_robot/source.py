@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import ast
+import json
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from tuisim.config.files import read_bytes
@@ -13,6 +14,7 @@ from tuisim.source import LIBRARIES, Program, decode_source
 
 MAX_MODULES = 100
 MAX_MODULE_BYTES = 1 << 20
+MAX_DATA_BYTES = 1 << 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +51,7 @@ def read_modules(program: Program) -> dict[str, Module]:
     tree = parsed(program.text)
     if tree is None:
         return {}
-    folder = Path(program.module_folder or Path(program.path).parent)
+    folder = _folder(program)
     found = {"": Module("", program.name, tree)}
     waiting = [found[""]]
     while waiting and len(found) < MAX_MODULES:
@@ -93,6 +95,42 @@ def _read(folder: Path, name: str) -> Module | None:
         return Module(name, str(path.relative_to(folder)), tree, is_package) if tree else None
     # A folder without __init__.py is a package, too.
     return Module(name, name, ast.Module([], []), is_package=True) if place.is_dir() else None
+
+
+@dataclass(slots=True)
+class DataFiles:
+    """The files with values beside a program that it may read."""
+
+    folder: Path
+    found: dict[str, ast.expr | None] = field(default_factory=dict)
+
+    def values_in(self, name: str) -> ast.expr | None:
+        """Return what a JSON file in the folder holds, as an expression of Python; None if nothing can be read."""
+        if name not in self.found:
+            self.found[name] = self._read(name)
+        return self.found[name]
+
+    def _read(self, name: str) -> ast.expr | None:
+        try:
+            path = (self.folder / name).resolve()
+            if not path.is_relative_to(self.folder.resolve()):
+                return None
+            data = read_bytes(path, MAX_DATA_BYTES, ConfigError)
+            if len(data) > MAX_DATA_BYTES:
+                return None
+            return ast.parse(repr(json.loads(data)), mode="eval").body
+        # What is wrong with the file is said when the program reads it.
+        except (ConfigError, OSError, RuntimeError, ValueError, SyntaxError, RecursionError, MemoryError):
+            return None
+
+
+def data_files(program: Program) -> DataFiles:
+    """Return the files beside a program."""
+    return DataFiles(_folder(program))
+
+
+def _folder(program: Program) -> Path:
+    return Path(program.module_folder or Path(program.path).parent)
 
 
 def imports_library(modules: dict[str, Module]) -> bool:

@@ -70,6 +70,14 @@ class Options:
 
 
 @dataclass(frozen=True, slots=True)
+class File:
+    """A file that the program reads, or the path to it."""
+
+    name: str
+    """As the program says it, from its own folder on."""
+
+
+@dataclass(frozen=True, slots=True)
 class Table:
     """A list, tuple, set or dict that is written out."""
 
@@ -100,5 +108,15 @@ class Table:
 
 Constant: TypeAlias = str | int | float | None
 Value: TypeAlias = (
-    Constant | LibraryModule | LibraryClass | OwnModule | OwnClass | OwnFunction | Instance | Parent | Options | Table
+    Constant
+    | LibraryModule
+    | LibraryClass
+    | OwnModule
+    | OwnClass
+    | OwnFunction
+    | Instance
+    | Parent
+    | Options
+    | File
+    | Table
 )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 
 from tuisim.config.program_robot.library import Kind
 from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
@@ -21,7 +20,7 @@ class Wheels:
 
     left: str
     right: str
-    """Their ports."""
+    """Their ports; empty if there are no wheels."""
     where: Where | None = None
     """What says so; None if nothing does."""
     pair: Pair | None = None
@@ -30,13 +29,15 @@ class Wheels:
 
 
 def wheels_of(mentions: Mentions, kinds: Mapping[str, Kind], usual: RobotSpec) -> Wheels:
-    """Return the motors that drive the wheels.
+    """Return the motors that drive the wheels; none if every port is taken by a motor that does something else.
 
     Args:
         kinds: The motors that the program names, by port.
         usual: The robot whose wheels stay where nothing says otherwise.
     """
-    return _of_pairs(mentions.pairs) or _of_single(mentions.devices, kinds) or _left_over(kinds, usual)
+    return (
+        _of_pairs(mentions.pairs) or _of_single(mentions.devices, kinds) or _left_over(mentions.devices, kinds, usual)
+    )
 
 
 def _of_pairs(pairs: Sequence[Pair]) -> Wheels | None:
@@ -89,16 +90,24 @@ def _in_order(motors: Sequence[Mention]) -> Wheels:
     return Wheels(left, right, by_port[left].where, doubt=doubt)
 
 
-def _left_over(kinds: Mapping[str, Kind], usual: RobotSpec) -> Wheels:
+def _left_over(devices: Sequence[Mention], kinds: Mapping[str, Kind], usual: RobotSpec) -> Wheels:
     """Return the usual wheels, on other ports if the program needs theirs."""
-    stay = [port for port in (usual.left_port, usual.right_port) if kinds.get(port, Kind.LARGE) is not Kind.MEDIUM]
+    ports = (usual.left_port, usual.right_port)
+    if all(port in ports and kind is not Kind.MEDIUM for port, kind in kinds.items()):
+        return Wheels(*ports)
+    tools = {one.port for one in devices if one.kind.is_motor and means_tool(one.names)}
+    stay = [port for port in ports if kinds.get(port, Kind.LARGE) is not Kind.MEDIUM and port not in tools]
     free = [*stay, *(port for port in OUTPUT_PORTS if port not in kinds and port not in stay)]
     if len(free) >= 2:
         left = usual.left_port if usual.left_port in free else _other(free, usual.right_port)
         right = usual.right_port if usual.right_port in free else _other(free, left)
         return Wheels(left, right)
-    alike = [pair for pair in _USUAL if kinds.get(pair[0]) is kinds.get(pair[1]) is not None]
-    left, right = (alike or [pair for pair in _USUAL if kinds.keys() >= set(pair)] or list(combinations(kinds, 2)))[0]
+    loose = [port for port in kinds if port not in tools]
+    alike = [pair for pair in _USUAL if {*pair} <= {*loose} and kinds[pair[0]] is kinds[pair[1]]]
+    pairs = alike or [pair for pair in _USUAL if {*pair} <= {*loose}]
+    if not pairs:
+        return Wheels("", "")
+    left, right = pairs[0]
     return Wheels(left, right, doubt=f"no two ports are free for wheels: the motors on {left} and {right} drive them")
 
 

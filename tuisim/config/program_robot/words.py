@@ -36,9 +36,27 @@ _LONG = {side.value: side for side in (Side.LEFT, Side.RIGHT)}
 _TOOL_WORDS = (
     "arm arms claw grip gripper grabber grab hand lift lifter lever crane fork forklift tool attachment attach head "
     "neck turret tilt shoot shooter cannon greifer kran hub pince bras garra tail flag hook catapult elbow wrist "
-    "base elevator steer steering lenkung medium extra top"
+    "base elevator steer steering lenkung medium extra top legs turntable carriage roller rollers conveyor chute "
+    "feeder pen x y z"
 )
 _TOOLS = frozenset(_TOOL_WORDS.split())
+
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+_FORWARDS = _words(
+    "forward forwards ahead vorwaerts vorwärts geradeaus avancer avance adelante avanzar avanti vooruit frente framat "
+    "naprzod"
+)
+_BACKWARDS = _words("back backward backwards reverse zurueck zurück reculer atras atrás indietro achteruit")
+_WHEEL = _words("wheel wheels tire tyre reifen raddurchmesser radumfang roue rueda roda ruota wiel")
+_DIAMETER = _words("diameter diam dia d durchmesser raddurchmesser diametre diamètre diametro diámetro mm cm")
+_GIRTH = _words("circumference circ umfang radumfang circonference circunferencia perimeter")
+_TRACK = _words("track wheelbase spurweite achsabstand radabstand")
+_APART = _words("distance spacing separation gap base track apart")
+_UNITS_MM = {"mm": 1.0, "cm": 10.0}
 
 
 def _parts(name: str) -> list[str]:
@@ -55,6 +73,37 @@ def side_of(names: Iterable[str]) -> Side:
                 if word in part and part != "bright":
                     return side
     return Side.NONE
+
+
+def means_diameter(name: str) -> bool:
+    """Return whether a number of that name is the diameter of a wheel."""
+    parts = {*_parts(name)}
+    return parts <= _WHEEL | _DIAMETER and bool(parts & _WHEEL) and bool(parts & _DIAMETER)
+
+
+def means_girth(name: str) -> bool:
+    """Return whether a number of that name is the circumference of a wheel."""
+    parts = {*_parts(name)}
+    return parts <= _WHEEL | _GIRTH | _UNITS_MM.keys() and bool(parts & _WHEEL) and bool(parts & _GIRTH)
+
+
+def means_spacing(name: str) -> bool:
+    """Return whether a number of that name is how far the wheels are apart."""
+    parts = {*_parts(name)} - {"axle", "width"}
+    if not parts <= _WHEEL | _TRACK | _APART | _UNITS_MM.keys():
+        return False
+    return bool(parts & _TRACK) or (bool(parts & _WHEEL) and bool(parts & _APART))
+
+
+def unit_mm(name: str) -> float:
+    """Return the unit that a name ends with, in mm; 0 if it says none."""
+    return next((_UNITS_MM[part] for part in _parts(name) if part in _UNITS_MM), 0.0)
+
+
+def means_forwards(name: str) -> bool:
+    """Return whether a function's name says that it drives forwards."""
+    parts = {*_parts(name)}
+    return bool(parts & _FORWARDS) and not parts & _BACKWARDS
 
 
 def means_tool(names: Iterable[str]) -> bool:

@@ -117,7 +117,7 @@ def _button_note(names: dict[str, Any]) -> str:
 def _motors(session: Session) -> list[tuple[str, Motor]]:
     sim = session.sim
     motors = zip(sim.spec.robot.motors, (sim.left, sim.right, *sim.others), strict=True)
-    return sorted(((spec.port, motor) for spec, motor in motors), key=lambda one: one[0])
+    return sorted(((spec.port, motor) for spec, motor in motors if spec.port), key=lambda one: one[0])
 
 
 def _motor_note(session: Session, outer: list[types.FrameType], until: str) -> str:
