@@ -91,7 +91,7 @@ COMMENTS = {
     "wheel_spacing_mm": "between the centres of the wheels",
     "back_mm": "how far the body reaches behind the axle, as a negative y",
     "weight": f"{', '.join(ROBOT_WEIGHTS)}, or a number",
-    "left_port": "outA … outD; both empty on a robot without wheels",
+    "left_port": "outA … outD",
     "left_reversed": "mounted the other way round: positive speeds turn the wheel backwards",
     "right_reversed": "mounted the other way round: positive speeds turn the wheel backwards",
     "gear_ratio": "motor turns per wheel turn",
@@ -343,7 +343,7 @@ def ports_of(robot: RobotSpec) -> list[tuple[str, str]]:
     found = [
         (motor.port, wheel if motor.kind == "large" else f"{wheel} ({motor.kind} motor)")
         for motor, wheel in zip(robot.wheel_motors, ("left wheel", "right wheel"), strict=True)
-        if motor.port
+        if robot.has_wheels
     ]
     found += [(motor.port, f"{motor.kind} motor") for motor in robot.extra_motors]
     found += [(sensor.port, sensor.name) for sensor in robot.sensors]

@@ -31,6 +31,8 @@ MAX_LIGHT_NOISE = 128
 MAX_MOTOR_NOISE = 500
 
 OUTPUT_PORTS = ("outA", "outB", "outC", "outD")
+NO_PORT = "none"
+"""In place of the ports of both wheels: the robot has none."""
 INPUT_PORTS = ("in1", "in2", "in3", "in4")
 
 ROBOT_WEIGHTS: Mapping[str, float] = {"weightless": 0.0, "light": 3.0, "medium": 6.0, "heavy": 9.0}
@@ -321,7 +323,7 @@ class RobotSpec:
     weight: float = ROBOT_WEIGHTS["medium"]
     """0 changes speed at once; otherwise the acceleration is 5000 / weight degrees per second each second."""
     left_port: str = "outB"
-    """Port of the motor of the left wheel; empty, as `right_port`, on a robot without wheels."""
+    """Port of the motor of the left wheel; `NO_PORT`, as `right_port`, on a robot without wheels."""
     right_port: str = "outC"
     color_sensors: tuple[ColorSensorSpec, ...] = (
         ColorSensorSpec("left", "in2", -20.0, 30.0),
@@ -348,7 +350,7 @@ class RobotSpec:
     @property
     def has_wheels(self) -> bool:
         """Whether motors drive the robot."""
-        return bool(self.left_port)
+        return self.left_port != NO_PORT
 
     @property
     def wheel_motors(self) -> tuple[MotorSpec, MotorSpec]:
@@ -407,7 +409,7 @@ class RobotSpec:
 
     def _check_wheel_ports(self) -> set[str]:
         """Return the ports of the wheels."""
-        if self.left_port == self.right_port == "":
+        if self.left_port == self.right_port == NO_PORT:
             return set()
         for key in ("left_port", "right_port"):
             require_one_of(getattr(self, key), "port", OUTPUT_PORTS, key)

@@ -16,6 +16,7 @@ from tuisim.core.motors import Motor
 from tuisim.core.sensors import mounted
 from tuisim.core.spec import (
     INPUT_PORTS,
+    NO_PORT,
     OUTPUT_PORTS,
     RobotSpec,
 )
@@ -70,7 +71,8 @@ class Plugged:
 
 def plugged_in(robot: RobotSpec) -> dict[str, Plugged]:
     """Return the devices on the robot's ports, by short name such as `in1`."""
-    found = {motor.port: Plugged(KINDS[motor.kind].driver_name, "tacho-motor") for motor in robot.motors if motor.port}
+    motors = [motor for motor in robot.motors if motor.port != NO_PORT]
+    found = {motor.port: Plugged(KINDS[motor.kind].driver_name, "tacho-motor") for motor in motors}
     for kind, sensor in mounted(robot):
         found[sensor.port] = Plugged(kind.driver_name, kind.port_mode)
     return found
@@ -157,7 +159,7 @@ def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
     motors = [*zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)]
     tachos: dict[str, Tacho] = {}
     # Sorted by port, so that a class without an address finds the first port.
-    on_ports = sorted((found for found in motors if found[0].port), key=lambda found: found[0].port)
+    on_ports = sorted((found for found in motors if found[0].port != NO_PORT), key=lambda found: found[0].port)
     for at, (motor, simulated) in enumerate(on_ports):
         tachos[motor.port] = tacho_of(session, simulated, motor.port, motor.kind)
         brick.add(MOTOR_CLASS, f"motor{at}", tachos[motor.port].device())

@@ -159,7 +159,7 @@ def _motor_port_field(key: str, label: str) -> Field:
         swapped = getattr(robot, key) if getattr(robot, other) == port else getattr(robot, other)
         return replace(robot, **{key: port, other: swapped})
 
-    return _robot_field(key, label, lambda robot: getattr(robot, key) or "none", change, OUTPUT_PORTS)
+    return _robot_field(key, label, lambda robot: str(getattr(robot, key)), change, OUTPUT_PORTS)
 
 
 def _motor_kind_field(key: str, label: str) -> Field:

@@ -17,6 +17,7 @@ from tuisim.config.program_robot.wheels import Wheels, wheels_of
 from tuisim.config.program_robot.words import side_of
 from tuisim.core.spec import (
     INPUT_PORTS,
+    NO_PORT,
     ColorSensorSpec,
     GyroSpec,
     InfraredSpec,
@@ -140,7 +141,7 @@ class _Builder:
     def _reversed(self, wheels: Wheels) -> dict[str, bool]:
         """Return which wheels the program says to be mounted the other way round."""
         turned = self.mechanics.reversed
-        sides = [side for side, port in (("left", wheels.left), ("right", wheels.right)) if port and port in turned]
+        sides = [side for side, port in (("left", wheels.left), ("right", wheels.right)) if port in turned]
         if sides:
             what = "both wheel motors" if len(sides) == 2 else f"the {sides[0]} wheel's motor"
             where = turned[wheels.left if "left" in sides else wheels.right]
@@ -204,7 +205,7 @@ class _Builder:
         return {
             key: size
             for key, size in sizes.items()
-            if size and motors["left_port"] and key not in motors and size.mm != getattr(self.usual, key)
+            if size and motors["left_port"] != NO_PORT and key not in motors and size.mm != getattr(self.usual, key)
         }
 
     def _tell_sizes(self, sizes: Mapping[str, float], where: Mapping[str, Where | None]) -> None:
@@ -216,7 +217,7 @@ class _Builder:
         moved = (wheels.left, wheels.right) != (self.usual.left_port, self.usual.right_port)
         kinds = [changes["left_motor"], changes["right_motor"]]
         medium = " (medium motors)" if kinds == ["medium"] * 2 else ""
-        what = f"wheels on {wheels.left} (left) and {wheels.right}{medium}" if wheels.left else "no wheels"
+        what = f"wheels on {wheels.left} (left) and {wheels.right}{medium}" if wheels.left != NO_PORT else "no wheels"
         self.parts.append(Part(what, "left_port", wheels.where, moved or bool(medium)))
         self._tell_sizes(changes, dict.fromkeys(changes, wheels.where))
 

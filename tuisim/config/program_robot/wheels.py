@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from tuisim.config.program_robot.library import Kind
 from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.config.program_robot.words import Side, means_tool, side_of
-from tuisim.core.spec import OUTPUT_PORTS, RobotSpec
+from tuisim.core.spec import NO_PORT, OUTPUT_PORTS, RobotSpec
 
 _USUAL = (("outB", "outC"), ("outA", "outD"), ("outA", "outB"), ("outC", "outD"), ("outA", "outC"), ("outB", "outD"))
 """Pairs of ports, those that robots have most often first."""
@@ -20,7 +20,7 @@ class Wheels:
 
     left: str
     right: str
-    """Their ports; empty if there are no wheels."""
+    """Their ports; `NO_PORT` if there are no wheels."""
     where: Where | None = None
     """What says so; None if nothing does."""
     pair: Pair | None = None
@@ -106,7 +106,7 @@ def _left_over(devices: Sequence[Mention], kinds: Mapping[str, Kind], usual: Rob
     alike = [pair for pair in _USUAL if {*pair} <= {*loose} and kinds[pair[0]] is kinds[pair[1]]]
     pairs = alike or [pair for pair in _USUAL if {*pair} <= {*loose}]
     if not pairs:
-        return Wheels("", "")
+        return Wheels(NO_PORT, NO_PORT)
     left, right = pairs[0]
     return Wheels(left, right, doubt=f"no two ports are free for wheels: the motors on {left} and {right} drive them")
 
