@@ -108,6 +108,7 @@ WRONG: dict[str, tuple[str, str]] = {
     "robot: name": ('name = "a\\nb"', "name: must be one line of text, got 'a\\nb'"),
     "robot: long name": (f"name = '{'a' * 101}'", "name: must be at most 100 characters, got 101"),
     "robot: motor port": ("left_port = 'outE'", "left_port: no such port 'outE' (one of outA, outB"),
+    "robot: one wheel": ("left_port = 'none'", "left_port: no such port 'none' (one of outA, outB"),
     "robot: motors": ("left_port = 'outC'", "right_port: both motors are on outC (give each its own port)"),
     "robot: sensors": (EYE + "port = 'in3'", "right.port: two sensors are on in3 (give each its own port, or remove"),
     "robot: half a pixel": (EYE + "diameter_mm = 2.5", "color_sensors.left.diameter_mm: must be a whole number"),

@@ -113,6 +113,10 @@ EXPLORER = {field.name: getattr(ROBOTS["Explorer"], field.name) for field in fie
         ("weight = 'heavy'", {"weight": 9.0}),
         ("weight = 4.5", {"weight": 4.5}),
         ("left_port = 'outA'\nright_port = 'outD'", {"left_port": "outA", "right_port": "outD"}),
+        (
+            "left_port = 'none'\nright_port = 'none'\n[motors.outC]\nlow_deg = -90",
+            {"left_port": "none", "right_port": "none", "extra_motors": (MotorSpec("outC", "medium", -90.0),)},
+        ),
         ("gyro = false\nultrasonic = false", {"gyro": None, "ultrasonic": None}),
         ("[gyro]\nport = 'in4'", {}),
         ("[pen]\ncolor = 'Teal'", {"pen": PenSpec(color="teal")}),

@@ -39,6 +39,11 @@ PORTS: Mapping[str, tuple[str, str]] = {
     "formatted": ("n = 4\nTouchSensor(f'in{n}')", "4 touch"),
     "percent": ("TouchSensor('in%d' % 4)", "4 touch"),
     "format": ("MediumMotor('out{}'.format('D'))", "D medium motor"),
+    "a row of three": ("[ColorSensor(p) for p in (INPUT_1, INPUT_2, INPUT_3)]", "1 left, 2 middle"),
+    "sides that are swapped": (
+        "cs_left, cs_right, cs_block = ColorSensor('in1'), ColorSensor('in2'), ColorSensor('in3')",
+        "1 left, 2 right, 3 middle",
+    ),
     "by keyword": ("MediumMotor(address=OUTPUT_A)", "A medium motor"),
     "conditional": ("import sys\nMediumMotor(OUTPUT_A if len(sys.argv) > 5 else OUTPUT_A)", "A medium motor"),
     "or": ("port = None\nMediumMotor(port or OUTPUT_D)", "D medium motor"),
@@ -186,7 +191,88 @@ STOPS: Mapping[str, tuple[str, tuple[float | None, float | None]]] = {
     "until it does not move": ("m.on(-10)\nm.wait_until_not_moving()", (-45, 225)),
     "a move that ends by itself": ("m.on_for_degrees(10, 90, block=False)\nm.wait_until_not_moving()", (None, None)),
     "no homing": ("m.on(10)\nm.off()", (None, None)),
+    "until it is slow": ("m.duty_cycle_sp = -30\nm.run_direct()\nwhile abs(m.speed) > 5: pass", (-45, 225)),
+    "then to an unknown place": (
+        "m.on(-10)\nwhile not m.is_stalled: pass\nm.run_to_abs_pos(position_sp=x)",
+        (-45, None),
+    ),
+    "then to places counted from there": (
+        "m.on(-10)\nwhile not m.is_stalled: pass\nm.position = -300\nm.on_to_position(20, 270)",
+        (-45, 615),
+    ),
 }
+
+
+@pytest.mark.parametrize(
+    ("text", "reversed_"),
+    [
+        ("def vorwaerts():\n    t.on(-40, -40)", True),
+        ("def drive_forward(speed=40):\n    t.on_for_rotations(-speed, -speed, 2)", True),
+        ("def forward():\n    t.on_for_degrees(-40, -40, -90)", False),
+        ("def move_forward_or_back():\n    t.on(-40, -40)", False),
+        ("def avanzar():\n    t.on(-40, 40)", False),
+        ("t.set_polarity('inversed')\ndef forward():\n    t.on(-40, -40)", False),
+    ],
+    ids=["fixed", "by default", "a negative way", "both directions", "a turn", "with polarity turned"],
+)
+def test_wheels_that_turn_backwards_to_drive_forwards_are_mounted_the_other_way_round(
+    text: str, reversed_: bool
+) -> None:
+    called = text[text.rindex("def ") + 4 :].split("(")[0]
+    found = built(f"t = MoveTank(OUTPUT_A, OUTPUT_D)\n{text}\n{called}()")
+    assert found is not None
+    assert (found.choice.spec.left_reversed, found.choice.spec.right_reversed) == (reversed_, reversed_)
+
+
+SAID_SIZES: Mapping[str, tuple[str, tuple[float, float]]] = {
+    "with units": ("WHEEL_DIAMETER_CM = 6.24\naxle_track_mm = 118", (62.4, 118.0)),
+    "without units": ("WHEEL_D = 6.24\nTRACK = 17.8", (62.4, 178.0)),
+    "in a dict": ("config = {'wheel_diameter': 43.2, 'wheelbase': 120}", (43.2, 120.0)),
+    "the circumference": ("WHEEL_CIRC_CM = 13.57", (43.2, 180.0)),
+    "a default": ("def turn(deg, track_mm=88): pass\nturn(5)", (56.0, 88.0)),
+    "a track of music": ("TRACK = 12", (56.0, 180.0)),
+    "no size of a robot": ("WHEEL_MM = 5000", (56.0, 180.0)),
+    "two sizes": ("WHEEL_MM = 30\nwheel_cm = 4.5", (56.0, 180.0)),
+    "said to the library": (
+        "MoveDifferential(OUTPUT_A, OUTPUT_D, EV3Tire, 100)\nWHEEL_MM = 50\nTRACK_MM = 90",
+        (43.2, 100.0),
+    ),
+}
+
+
+@pytest.mark.parametrize("case", SAID_SIZES)
+def test_what_constants_say_about_wheels(case: str) -> None:
+    text, expected = SAID_SIZES[case]
+    found = built(f"MoveTank(OUTPUT_A, OUTPUT_D)\n{text}")
+    assert found is not None
+    assert (found.choice.spec.wheel_diameter_mm, found.choice.spec.wheel_spacing_mm) == expected
+
+
+def test_constants_change_no_robot_that_has_everything_on_its_ports() -> None:
+    assert built("MoveTank(OUTPUT_B, OUTPUT_C)\nWHEEL_MM = 30") is None
+
+
+def test_motors_of_an_arm_are_no_wheels() -> None:
+    arm = (
+        "class Joint:\n    def __init__(self, motor):\n        self.motor = motor\n"
+        "elbow, base = Joint(LargeMotor(OUTPUT_B)), Joint(LargeMotor(OUTPUT_C))\ngrip = MediumMotor(OUTPUT_A)\n"
+        "limit = TouchSensor(INPUT_1)\nm = elbow.motor\nm.on_for_degrees(5, 40)\n"
+        "m = base.motor\nm.on(-5)\nlimit.wait_for_pressed()"
+    )
+    found = built(arm)
+    assert found is not None
+    robot = found.choice.spec
+    assert not robot.has_wheels
+    assert [(touch.pressed_by, touch.pressed_at) for touch in robot.touch_sensors] == [("outC", "low")]
+
+
+def test_bumpers_reach_to_the_corners_of_the_robot() -> None:
+    found = built("MoveDifferential(OUTPUT_B, OUTPUT_C, EV3Tire, 130)\nl, r = TouchSensor('in1'), TouchSensor('in4')")
+    assert found is not None
+    robot = found.choice.spec
+    reach = [(touch.x_mm - touch.width_mm / 2, touch.x_mm + touch.width_mm / 2) for touch in robot.touch_sensors]
+    half_mm = (130 + robot.wheel_width_mm) / 2
+    assert reach == [(-half_mm, 0), (0, half_mm)]
 
 
 @pytest.mark.parametrize("case", STOPS)
@@ -234,6 +320,54 @@ def test_another_reading_is_told(text: str, doubt: str) -> None:
 )
 def test_a_program_that_cannot_be_read_has_no_robot(text: str) -> None:
     assert built(text) is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "with open(os.path.join(HERE, 'ports.json')) as file:\n    ports = json.load(file)",
+        "ports = json.loads(Path('ports.json').read_text())",
+        "ports = json.load((Path(__file__).parent / 'ports.json').open())",
+    ],
+    ids=["open", "text", "path"],
+)
+def test_a_file_of_values_beside_the_program_is_read(tmp_path: Path, text: str) -> None:
+    (tmp_path / "ports.json").write_text('{"arm": ["outD"]}')
+    head = f"{HEAD}import json, os\nfrom pathlib import Path\nHERE = os.path.dirname(__file__)\n"
+    source = f"{head}{text}\nMediumMotor(ports['arm'][0])"
+    robot = facts_of(Program("p.py", source, path=str(tmp_path / "p.py"))).robot
+    assert robot is not None
+    assert [motor.port for motor in robot.choice.spec.extra_motors] == ["outD"]
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "../ports.json",
+        "link.json",
+        "/absolute",
+        "none.json",
+        "folder",
+        "pipe",
+        "large.json",
+        "deep.json",
+        "rubbish.json",
+    ],
+)
+def test_no_other_file_is_read(tmp_path: Path, name: str) -> None:
+    folder = tmp_path / "own"
+    (folder / "folder").mkdir(parents=True)
+    ports = '{"arm": "outD"}'
+    (tmp_path / "ports.json").write_text(ports)
+    (folder / "link.json").symlink_to(tmp_path / "ports.json")
+    os.mkfifo(folder / "pipe")
+    (folder / "large.json").write_text(ports + " " * 70_000)
+    (folder / "deep.json").write_text("[" * 60_000)
+    (folder / "rubbish.json").write_bytes(b"\xff{")
+    given = str(tmp_path / "ports.json") if name == "/absolute" else name
+    source = f"{HEAD}import json\nports = json.load(open({given!r}))\nMediumMotor(ports['arm'])"
+    robot = facts_of(Program("p.py", source, path=str(folder / "p.py"))).robot
+    assert robot is None or all(motor.port != "outD" for motor in robot.choice.spec.extra_motors)
 
 
 def test_modules_of_its_own_are_read_wherever_they_lie(tmp_path: Path) -> None:

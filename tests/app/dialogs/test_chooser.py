@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from textual.app import App
 from textual.widgets import Input
+from textual.widgets._toast import Toast
 
 from tuisim.app.dialogs.chooser import Chooser, Group, files_here
 
@@ -39,3 +40,13 @@ def test_the_second_file_of_an_export_is_not_listed(tmp_path: Path, monkeypatch:
     for name in ("robot.json", "log.csv", "log.csv.json", "my.robot.json"):
         Path(name).touch()
     assert [name for _, name, _ in files_here([".json"]).entries] == ["my.robot.json", "robot.json"]
+
+
+async def test_what_was_said_before_covers_no_row_of_it() -> None:
+    app: App[None] = App()
+    async with app.run_test(notifications=True) as pilot:
+        app.notify("said before")
+        await pilot.pause()
+        app.push_screen(Chooser("Open", [Group("", [("a.py", "a.py", "first")])]))
+        await pilot.pause()
+        assert not app.screen.query(Toast)

@@ -10,12 +10,12 @@ import pytest
 
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.fields import find
-from tuisim.app.setup.next_run import NextRun, plan_of, plan_of_spec
+from tuisim.app.setup.next_run import NextRun, plan_of, plan_of_spec, with_robot_edited
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.robots import ROBOTS, load_robot, save_robot
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec
+from tuisim.core.spec import NO_PORT, NoiseSpec, Obstacle, RobotSpec
 from tuisim.errors import ConfigError
 
 BOX = (Obstacle(1, 2, 3, 4),)
@@ -175,6 +175,12 @@ def test_a_wrong_value_is_refused(field: str, typed: str, said: str) -> None:
     with pytest.raises(ConfigError) as caught:
         edited(plan_of(Settings()), field, typed)
     assert reason(caught.value).startswith(said)
+
+
+def test_a_robot_without_wheels_gets_none_in_the_form() -> None:
+    standing = replace(ROBOTS["Default_Robot"], left_port=NO_PORT, right_port=NO_PORT)
+    with pytest.raises(ConfigError, match="has no wheels"):
+        edited(with_robot_edited(plan_of(Settings()), standing), "left_port", "outA")
 
 
 # Field, what is entered, and what the specification says then.

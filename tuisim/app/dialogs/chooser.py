@@ -78,6 +78,8 @@ class ListDialog(Dialog[str]):
     """A list, usually with a field for a path. Its result is what was chosen or typed."""
 
     def on_mount(self) -> None:
+        # What was said before would cover the lowest rows of a small window.
+        self.app.clear_notifications()
         self.query_one(OptionList).focus()
 
     def on_key(self, event: events.Key) -> None:

@@ -94,7 +94,7 @@ class Evaluation:
                 yield from self.values(value, scope)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 yield from (-value for value in self.values(operand, scope) if isinstance(value, int | float))
-            case ast.BinOp(left=left, op=ast.Div()) if any(isinstance(one, File) for one in self.values(left, scope)):
+            case ast.BinOp(op=ast.Div(), right=right) if any(isinstance(one, str) for one in self.values(right, scope)):
                 yield from (File(name) for name in self._file_names(node, scope))
             case ast.BinOp(left=left, op=sign, right=right):
                 yield from self._computed(left, sign, right, scope)

@@ -168,7 +168,9 @@ class _Reader:
                 continue
             if node.func.attr not in (*_ENDLESS, *_ENDING) or node.func.attr in _TO_PLACE:
                 continue
-            if any(length < 0 for one in _lengths(node, node.func.attr) for length in self._numbers(one, scope)):
+            if any(
+                length < 0 for one in self._lengths(node, node.func.attr, scope) for length in self._numbers(one, scope)
+            ):
                 return
             for port in self._known_motors(node.func.value, scope):
                 speeds.setdefault(port, []).extend(self._speeds(node, scope))
@@ -187,6 +189,15 @@ class _Reader:
         given = [keyword.value for keyword in call.keywords if keyword.arg in (*_SPEEDS, "left_speed", "right_speed")]
         for node in (*given, *call.args[first:last]):
             yield from self._numbers(node.args[0] if isinstance(node, ast.Call) and node.args else node, scope)
+
+    def _lengths(self, call: ast.Call, name: str, scope: Scope) -> list[ast.expr]:
+        """Return what a call of a movement gives for its length or its end."""
+        given = [keyword.value for keyword in call.keywords if keyword.arg in (*_LENGTHS, "rotations")]
+        if not name.startswith("on_") or name == "on_for_seconds":
+            return given
+        assert isinstance(call.func, ast.Attribute)
+        at = 2 if self._pairs(call.func.value, scope) else 1
+        return given + call.args[at : at + 1]
 
     def _numbers(self, node: ast.expr, scope: Scope) -> list[float]:
         return [value for value in self.evaluation.values(node, scope) if isinstance(value, int | float)]
@@ -242,7 +253,7 @@ class _Reader:
 
     def _note_reach(self, call: ast.Call, name: str, ports: Sequence[str], scope: Scope) -> None:
         turns = 360.0 if name == "on_for_rotations" else 1.0
-        for node in _lengths(call, name):
+        for node in self._lengths(call, name, scope):
             if name in _TO_PLACE:
                 self._note_targets(node, ports, scope)
                 continue
@@ -357,12 +368,6 @@ class _Reader:
             return True
         from_init = call is not None and isinstance(call.func, ast.Attribute) and call.func.attr == "__init__"
         return from_init and isinstance(value.of, OwnClass) and value.of.scope is owner
-
-
-def _lengths(call: ast.Call, name: str) -> list[ast.expr]:
-    """Return what a call of a movement gives for its length or its end."""
-    given = [keyword.value for keyword in call.keywords if keyword.arg in (*_LENGTHS, "rotations")]
-    return given + call.args[1:2] if name.startswith("on_") and name != "on_for_seconds" else given
 
 
 def _where(node: ast.AST, scope: Scope) -> Where:
