@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import re
 from pathlib import Path
 from typing import Any
 from weakref import ref
@@ -25,7 +26,7 @@ from tuisim.app.panels.world import WorldView
 from tuisim.app.terminal.answers import TerminalAnswered
 from tuisim.app.terminal.cell_view import PixelView
 from tuisim.app.terminal.plot_view import PlotView
-from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, facts_in
+from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, KITTY_QUESTIONS, facts_in
 from tuisim.app.terminal.screenshot import screen_cells
 from tuisim.app.terminal.sharpness import Sharpness
 from tuisim.charts.traces import TRACE_COLORS
@@ -224,6 +225,29 @@ async def test_a_resized_terminal_is_asked_for_the_size_of_its_cells() -> None:
         wire_of(pilot).sent.clear()
         await pilot.resize_terminal(110, 36)
         await until(pilot, lambda: CELL_SIZE_QUERY + ATTRIBUTES_QUERY in wire_of(pilot).sent)
+
+
+async def test_kitty_is_asked_for_what_is_used_and_is_told_to_report_errors() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await _answered(pilot, ANSWERS[Protocol.KITTY].partition("\x1b_G")[0])
+        assert KITTY_QUESTIONS in wire_of(pilot).sent
+        assert pilot.app.query_one(WorldView)._tiles is None
+        await _answered(pilot, ANSWERS[Protocol.KITTY])
+        codes = "".join(wire_of(pilot).sent)
+        commands = re.findall(r"\x1b_G([^;\x1b]*)", codes)
+        assert all("U=1" in one.split(",") for one in commands if "a=q" in one.split(","))
+        assert all("q=1" in one.split(",") for one in commands if "a=T" in one.split(","))
+
+
+async def test_an_error_of_kitty_brings_the_cells_back_at_once() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await _answered(pilot, ANSWERS[Protocol.KITTY])
+        await _sharp(pilot, pilot.app.query_one(WorldView))
+        await _answered(pilot, ANSWERS[Protocol.KITTY] + "\x1b_Gi=1;ENOSPC:No space left\x1b\\")
+        assert pilot.app.query_one(WorldView)._tiles is None
+        seen = _seen(pilot)
+        assert not seen.pixels.any(), "a picture is still in sight"
+        assert any("ENOSPC:No space left" in notice.message for notice in lab(pilot)._notifications)
 
 
 async def test_a_terminal_without_pixels_gets_cells() -> None:

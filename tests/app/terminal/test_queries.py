@@ -21,6 +21,10 @@ from tuisim.config.options import AUTO, NO_PIXELS, Protocol
 XTERM = "\x1bP>|XTerm(379)\x1b\\\x1b[6;14;7t\x1b[?63;1;2;4;6;9;15;22c"
 KITTY = "\x1bP>|kitty(0.36.4)\x1b\\\x1b[6;20;10t\x1b[?62;52;c"
 KITTY_YES = "\x1b_Gi=31;OK\x1b\\"
+OLD_KITTY = "\x1bP>|kitty(0.26.5)\x1b\\\x1b[6;20;10t\x1b[?62;c"
+OLD_KITTY_AGAIN = "\x1b[?62;c"
+"""It ignores a question with a key that it does not know, and answers only the one that follows."""
+KITTY_ERROR = "\x1b_Gi=65537;ENOSPC:No space left\x1b\\"
 GHOSTTY_NO = "\x1bP>|ghostty 1.0.0\x1b\\\x1b[6;40;20t\x1b[?62;22c\x1b_Gi=31;ENOTSUPPORTED\x1b\\"
 ITERM = "\x1bP>|iTerm2 3.5.4\x1b\\\x1b[6;17;8t\x1b[?64;1;2;4;6;17;18;21;22c"
 WEZTERM = "\x1bP>|WezTerm 20240203-110809-5046fc22\x1b\\\x1b[6;16;8t\x1b[?65;4;6;18;22c"
@@ -62,6 +66,10 @@ CHOICES = {
     "xterm with sixel": (XTERM, Graphics(Protocol.SIXEL, (7, 14))),
     "kitty": (KITTY + KITTY_YES, Graphics(Protocol.KITTY, (10, 20))),
     "kitty before the second answer": (KITTY, None),
+    "kitty without placeholders": (OLD_KITTY + OLD_KITTY_AGAIN, None),
+    "kitty that cannot show a picture": (KITTY + KITTY_YES + KITTY_ERROR, None),
+    "kitty that could show the next picture": (KITTY + KITTY_YES + KITTY_ERROR + KITTY_YES, None),
+    "kitty after it was resized": (KITTY + KITTY_YES + KITTY, Graphics(Protocol.KITTY, (10, 20))),
     "no graphics": (GHOSTTY_NO, None),
     "iTerm2": (ITERM, Graphics(Protocol.ITERM, (8, 17))),
     "WezTerm": (WEZTERM, Graphics(Protocol.ITERM, (8, 16))),
@@ -83,6 +91,18 @@ def test_the_user_may_know_better() -> None:
     assert graphics_of(TerminalFacts(), Protocol.SIXEL, None) == Graphics(Protocol.SIXEL, (8, 16))
     assert graphics_of(_facts(TMUX), Protocol.SIXEL, (9, 18)) == Graphics(Protocol.SIXEL, (9, 18), in_tmux=True)
     assert graphics_of(_facts(XTERM), NO_PIXELS, None) is None
+    assert graphics_of(_facts(KITTY), Protocol.KITTY, None) == Graphics(Protocol.KITTY, (10, 20))
+
+
+@pytest.mark.parametrize("answers", [OLD_KITTY + OLD_KITTY_AGAIN, KITTY + KITTY_YES + KITTY_ERROR], ids=["no", "error"])
+def test_the_user_does_not_know_better_than_an_answer(answers: str) -> None:
+    assert graphics_of(_facts(answers), Protocol.KITTY, None) is None
+
+
+def test_kitty_is_asked_once() -> None:
+    assert _facts(OLD_KITTY).asks_for_kitty
+    assert not _facts(OLD_KITTY + OLD_KITTY_AGAIN).asks_for_kitty
+    assert not _facts(KITTY + KITTY_YES).asks_for_kitty
 
 
 @pytest.mark.parametrize(
@@ -104,7 +124,9 @@ def test_sixel_needs_the_size_of_a_cell() -> None:
     assert graphics_of(_facts("\x1b[?63;4c"), AUTO, None) is None
 
 
-@pytest.mark.parametrize("answers", [XTERM, KITTY + KITTY_YES, TMUX], ids=["xterm", "kitty", "tmux"])
+@pytest.mark.parametrize(
+    "answers", [XTERM, KITTY + KITTY_YES, KITTY + KITTY_ERROR, TMUX], ids=["xterm", "kitty", "kitty's error", "tmux"]
+)
 @pytest.mark.parametrize("size", [1, 2, 7, 1000])
 def test_answers_are_no_keys_however_they_arrive(answers: str, size: int) -> None:
     text = f"a{answers}b"

@@ -33,6 +33,9 @@ def graphics_of(facts: TerminalFacts, wanted: str, cell_px: tuple[int, int] | No
     if wanted == NO_PIXELS:
         return None
     protocol = _protocol_of(facts) if wanted == AUTO else Protocol(wanted)
+    if protocol is Protocol.KITTY and facts.has_kitty_graphics is False:
+        # Its answer counts for more than a wish: the world would be black.
+        return None
     # A terminal that scales its window, as on many laptops, draws in its own pixels, not the kernel's.
     known_px = facts.cell_px or cell_px
     if protocol is None or (protocol is Protocol.SIXEL and wanted == AUTO and known_px is None):

@@ -27,14 +27,17 @@ DIACRITICS = "\u0305\u030d\u030e\u0310\u0312\u033d\u033e\u033f"
 MOST_CELLS = len(DIACRITICS)
 """Most rows and columns of an image."""
 QUERY_IMAGE = 31
-QUERY = f"\x1b_Gi={QUERY_IMAGE},s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\"
-"""Asks whether a terminal knows the protocol; the answer ends in `OK` then."""
+QUERY = f"\x1b_Gi={QUERY_IMAGE},s=1,v=1,a=q,U=1,t=d,f=24;AAAA\x1b\\"
+"""Asks whether a terminal knows the protocol with placeholders; the answer ends in `OK` then.
+
+A terminal without placeholders ignores the whole command, as kitty 0.26 does, and gives no answer.
+"""
 _CHUNK = 4096
 """Most characters of data in one command."""
 _COMPRESSION = 1
 
 
-def encode(picture: Pixels, image: int, cols: int, rows: int) -> str:
+def encode(picture: Pixels, image: int, cols: int, rows: int, *, answers_errors: bool = True) -> str:
     """Return the codes that make a picture known; it is seen at its placeholders.
 
     Args:
@@ -42,10 +45,11 @@ def encode(picture: Pixels, image: int, cols: int, rows: int) -> str:
         image: Its number, from 1 to 0xFFFFFF; an image that had this number is gone.
         cols: Number of cells across, at most `MOST_CELLS`.
         rows: Number of cells from top to bottom, at most `MOST_CELLS`.
+        answers_errors: Whether the terminal answers if it cannot show the picture.
     """
     data = b64encode(zlib.compress(picture.tobytes(), _COMPRESSION)).decode()
     chunks = [data[at : at + _CHUNK] for at in range(0, len(data), _CHUNK)]
-    keys = f"a=T,U=1,q=2,f=24,o=z,i={image},s={picture.shape[1]},v={picture.shape[0]},c={cols},r={rows},"
+    keys = f"a=T,U=1,q={1 if answers_errors else 2},f=24,o=z,i={image},s={picture.shape[1]},v={picture.shape[0]},c={cols},r={rows},"
     parts = []
     for at, chunk in enumerate(chunks, 1):
         parts.append(f"\x1b_G{keys}m={int(at < len(chunks))};{chunk}\x1b\\")

@@ -258,7 +258,9 @@ class TilePicture:
         number = self._first_image + 2 * (top // _TILE_ROWS * _MOST_TILES + left // _TILE_COLS)
         image = number + 1 if had is not None and had[1] == number else number
         self._tiles[tile] = version, image
-        codes = kitty.encode(self._part(some), image, some.right - some.left, some.bottom - some.top)
+        cols, rows = some.right - some.left, some.bottom - some.top
+        # What comes back through tmux would be taken for keys.
+        codes = kitty.encode(self._part(some), image, cols, rows, answers_errors=not self.graphics.in_tmux)
         return self._passed_on(codes), [had[1]] if had is not None else []
 
     def _drop_tiles(self) -> str:

@@ -19,8 +19,15 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from tuisim.app.graphics import kitty
-from tuisim.app.terminal.queries import ANSWER, ATTRIBUTES_QUERY, NAME_QUERY, QUESTIONS, TerminalFacts, facts_in
+from tuisim.app.terminal.queries import (
+    ANSWER,
+    ATTRIBUTES_QUERY,
+    KITTY_QUESTIONS,
+    NAME_QUERY,
+    QUESTIONS,
+    TerminalFacts,
+    facts_in,
+)
 from tuisim.config.options import AUTO, CellSet
 
 ANSWER_S = 0.4
@@ -177,7 +184,7 @@ def ask_everything(fd: int) -> Answers:
         text = _ask(fd, QUESTIONS, _has_attributes, fd)
         facts = facts_in(text.decode("latin-1"))
         if facts.asks_for_kitty:
-            text += _ask(fd, kitty.QUERY, lambda answer: facts_in(answer.decode("latin-1")).has_kitty_graphics, fd)
+            text += _ask(fd, KITTY_QUESTIONS, _has_attributes, fd)
         return Answers(facts_in(text.decode("latin-1")), int(position[1]) - 1 if position else None, latency_s)
     finally:
         # Answers that come late are not typed into the shell.

@@ -19,10 +19,12 @@ CELL_SIZE_QUERY = "\x1b[16t"
 ATTRIBUTES_QUERY = "\x1b[c"
 """Every terminal answers it, so it comes last: what has not been answered by then will not be."""
 QUESTIONS = f"{NAME_QUERY}{CELL_SIZE_QUERY}{ATTRIBUTES_QUERY}"
+KITTY_QUESTIONS = f"{kitty.QUERY}{ATTRIBUTES_QUERY}"
+"""For a terminal that has answered the others, and `asks_for_kitty`."""
 
 ANSWER = re.compile(
     r"\x1bP>\|(?P<name>[^\x1b\x07]*)(?:\x1b\\|\x07)"
-    rf"|\x1b_Gi={kitty.QUERY_IMAGE};(?P<kitty>[^\x1b]*)\x1b\\"
+    r"|\x1b_G[^;\x1b]*;(?P<kitty>[^\x1b]*)\x1b\\"
     r"|\x1b\[6;(?P<height>\d+);(?P<width>\d+)t"
     r"|\x1b\[\?(?P<attributes>[\d;]*)c"
 )
@@ -42,7 +44,9 @@ class TerminalFacts:
     attributes: frozenset[str] = frozenset()
     """The numbers of its features; empty if it has not answered at all."""
     has_kitty_graphics: bool | None = None
-    """None if it has not been asked, or has not answered."""
+    """Whether it draws pictures at placeholders; None if it has not been asked, False once it has reported an error."""
+    kitty_error: str = ""
+    """What it has last reported, such as `ENOSPC:No space left`."""
     cell_px: tuple[int, int] | None = None
     """Width and height of a cell in pixels."""
 
@@ -68,9 +72,14 @@ class TerminalFacts:
         if found["name"] is not None:
             return replace(self, name=found["name"])
         if found["kitty"] is not None:
-            return replace(self, has_kitty_graphics=found["kitty"] == "OK")
+            error = "" if found["kitty"] == "OK" else found["kitty"]
+            has_it = not error and self.has_kitty_graphics is not False
+            return replace(self, has_kitty_graphics=has_it, kitty_error=error or self.kitty_error)
         if found["attributes"] is not None:
-            return replace(self, attributes=frozenset(found["attributes"].split(";")))
+            # The second time they come after the question for kitty's protocol.
+            has_it = False if self.attributes and self.asks_for_kitty else self.has_kitty_graphics
+            attributes = frozenset(found["attributes"].split(";"))
+            return replace(self, attributes=attributes, has_kitty_graphics=has_it)
         width, height = int(found["width"]), int(found["height"])
         return replace(self, cell_px=(width, height)) if _is_possible((width, height)) else self
 

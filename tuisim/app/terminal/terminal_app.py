@@ -57,7 +57,14 @@ from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
 from tuisim.app.terminal.input_order import InputOrder
 from tuisim.app.terminal.picture_mode import PictureMode, color_depth, picture_mode_of
 from tuisim.app.terminal.probe import SILENT, take_typed
-from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, QUESTIONS, TerminalFacts, cell_size_px
+from tuisim.app.terminal.queries import (
+    ATTRIBUTES_QUERY,
+    CELL_SIZE_QUERY,
+    KITTY_QUESTIONS,
+    QUESTIONS,
+    TerminalFacts,
+    cell_size_px,
+)
 from tuisim.app.terminal.screenshot import save_screenshot, screen_cells
 from tuisim.app.terminal.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors
 from tuisim.charts.traces import TRACE_COLORS
@@ -310,9 +317,16 @@ class TerminalApp(App[None]):
     def on_terminal_answered(self, event: TerminalAnswered) -> None:
         """Draw with pixels if the terminal can; ask a terminal that may know kitty's protocol for it."""
         if event.facts.asks_for_kitty and self._driver is not None:
-            self._driver.write(kitty.QUERY)
+            AnswerParser.is_asked = True
+            self._driver.write(KITTY_QUESTIONS)
+        drew = self.picture_mode.graphics
         self.terminal_facts = event.facts
         self._choose_graphics()
+        if event.facts.kitty_error and drew is not None and self.picture_mode.graphics is None:
+            self.notify(
+                f"The terminal cannot show a picture ({event.facts.kitty_error}): drawn with characters instead",
+                severity="warning", markup=False,
+            )  # fmt: skip
 
     def _choose_graphics(self) -> None:
         size_px = cell_size_px(self._driver.fileno) if isinstance(self._driver, TerminalDriver) else None
