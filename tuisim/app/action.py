@@ -83,6 +83,7 @@ _LABELS = {
     "colon": ":",
     "slash": "/",
     "asterisk": "*",
+    "number_sign": "#",
     "plus": "+",
     "equals_sign": "=",
     "less_than_sign": "<",

@@ -481,8 +481,9 @@ class LabApp(PanelMessages):
     def situation(self) -> Situation:
         """Return the state that decides which keys are available."""
         runs, code = self.run_controller, self.panel_area.code
+        has_program, has_run = runs.program is not None, bool(runs.run_id)
         away, reads = self.debugger.is_away, code is not None and code.is_read
-        return Situation(runs.state, runs.program is not None, bool(runs.run_id), runs.in_past, away, reads)
+        return Situation(runs.state, has_program, has_run, runs.in_past, away, reads, self.has_pixels)
 
     def action_target(self) -> Workspace:
         return self.workspace

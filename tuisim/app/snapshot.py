@@ -135,6 +135,8 @@ class Situation:
     """As `in_past`, and also for an earlier line of the newest tick or while such an instant is being computed."""
     reads_code: bool = False
     """Whether the code has the focus."""
+    has_pixels: bool = False
+    """Whether pictures are drawn with pixels, or were until the user switched to characters."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -250,6 +250,16 @@ async def test_an_error_of_kitty_brings_the_cells_back_at_once() -> None:
         assert any("ENOSPC:No space left" in notice.message for notice in lab(pilot)._notifications)
 
 
+async def test_one_key_switches_to_characters_and_back() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await _answered(pilot, ANSWERS[Protocol.SIXEL])
+        assert any(action.id == "pixels" for action in lab(pilot).key_footer._actions)
+        await pilot.press("number_sign")
+        assert pilot.app.query_one(WorldView)._tiles is None
+        await pilot.press("number_sign")
+        assert pilot.app.query_one(WorldView)._tiles is not None
+
+
 async def test_a_terminal_without_pixels_gets_cells() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
         await _answered(pilot, "\x1b[?1;2c")

@@ -155,6 +155,11 @@ def choose_theme(workspace: Workspace) -> None:
     workspace.app.push_screen(theme_list())
 
 
+def switch_pixels(workspace: Workspace) -> None:
+    """Draw pictures with characters in place of pixels, or again with pixels."""
+    workspace.app.action_switch_pixels()
+
+
 def redraw(workspace: Workspace) -> None:
     """Redraw the whole screen."""
     workspace.app.action_redraw()

@@ -72,6 +72,10 @@ def _can_export(now: Situation) -> str:
     return "" if now.has_run else "No log yet: {run} runs the program"
 
 
+def _can_draw_pixels(now: Situation) -> str:
+    return "" if now.has_pixels else "This terminal draws no pixels, as far as it tells"
+
+
 def _nudge(key: str, words: str, forward: tuple[float, float]) -> LabAction:
     do = partial(robot.nudge, right_mm=forward[0], up_mm=forward[1], turn_deg=0.0)
     return Action(f"nudge-{key.replace('+', '-')}", key, f"Move the robot {words}", ROBOT, do)
@@ -205,6 +209,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("save-obstacles", "ctrl+o", "Save the obstacles to a file", FILES, files.save_obstacles),
         Action("zoom", "v", "Zoom the world", ROBOT, robot.zoom, footer="zoom"),
         Action("rays", "U", "Show or hide the ultrasonic rays", ROBOT, robot.rays, footer="rays"),
+        Action("pixels", "number_sign", "Characters or pixels", APP, app.switch_pixels, _can_draw_pixels, "cells"),
         Action("clear", "C", "Clear the pen trace", ROBOT, robot.clear_trace, footer="clear"),
         Action("clear-log", "x", "Clear output and chart; the run keeps its log", FILES, files.clear_log),
         *_toggles(),

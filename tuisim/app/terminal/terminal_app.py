@@ -42,7 +42,7 @@ from textual.widgets import OptionList
 from textual.worker import WorkerFailed
 
 from tuisim.app import background
-from tuisim.app.action import ActionProvider, Palette
+from tuisim.app.action import ActionProvider, Palette, with_keys_of
 from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.graphics import kitty
@@ -152,6 +152,8 @@ class TerminalApp(App[None]):
         """How pictures are drawn."""
         self.pixels = AUTO
         """One of `PIXELS`."""
+        self._left_pixels: str | None = None
+        """`pixels` before the user switched to characters with a key; None if the user has not."""
         self.terminal_facts = TerminalFacts()
         self.too_small: Size | None = None
         """Size of a terminal that is too small, else None."""
@@ -268,8 +270,26 @@ class TerminalApp(App[None]):
 
     def choose_pixels(self, pixels: str) -> None:
         """Draw every picture with real pixels or with glyphs; one of `PIXELS`."""
-        self.pixels = pixels
+        self.pixels, self._left_pixels = pixels, None
         self._choose_graphics()
+
+    @property
+    def has_pixels(self) -> bool:
+        """Whether pictures are drawn with pixels, or were until the user switched to characters."""
+        return self.picture_mode.graphics is not None or self._left_pixels is not None
+
+    def action_switch_pixels(self) -> None:
+        """Draw pictures with characters in place of pixels, or again with pixels; for this session."""
+        if self._left_pixels is not None:
+            self.choose_pixels(self._left_pixels)
+        elif self.picture_mode.graphics is not None:
+            before = self.pixels
+            self.choose_pixels(NO_PIXELS)
+            self._left_pixels = before
+            words = with_keys_of(self, "Drawn with characters: {pixels} brings the pixels back")
+            self.notify(words, markup=False)
+        else:
+            self.notify("This terminal draws no pixels, as far as it tells", markup=False)
 
     def painted(self, size: int) -> None:
         """Called with the number of characters after an update was sent to the terminal."""
@@ -337,6 +357,10 @@ class TerminalApp(App[None]):
         if found != self.picture_mode.graphics:
             self.picture_mode.graphics = found
             self.redraw_pictures()
+            self.call_after_refresh(self.situation_changed)
+
+    def situation_changed(self) -> None:
+        """Called when other keys are available."""
 
     def redraw_pictures(self) -> None:
         """Draw all pictures again: with pixels or glyphs, as `picture_mode` says now."""

@@ -47,6 +47,10 @@ def _choose_theme(screen: LogScreen) -> None:
     screen.app.push_screen(theme_list())
 
 
+def _switch_pixels(screen: LogScreen) -> None:
+    screen.call_next(screen.run_action, "app.switch_pixels")
+
+
 def _redraw(screen: LogScreen) -> None:
     screen.call_next(screen.run_action, "app.redraw")
 
@@ -127,6 +131,7 @@ ACTIONS: Mapping[str, LogAction] = {
         Action("world", "w", "Show or hide the world", PANE, panes.world, _log),
         Action("help", "question_mark", "Guide: all keys, and every page", APP, _help, footer="help"),
         Action("theme", "f10", "Theme: light, high contrast and others", APP, _choose_theme),
+        Action("pixels", "number_sign", "Characters or pixels", APP, _switch_pixels),
         Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, _redraw),
         Action("screenshot", "I,f12", "Save a screenshot: SVG and PNG (also F12)", APP, _screenshot, shown_key="I"),
         Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, _suspend),
