@@ -51,7 +51,7 @@ def test_each_sign_keeps_its_width(text: str, plain: str) -> None:
     [("dumb", "none"), ("", "none"), ("vt100", "none"), ("vt220", "none"), ("linux", "8"), ("xterm-256color", "auto")],
 )
 def test_colours_of_a_kind_of_terminal(terminal: str, colors: str) -> None:
-    assert colors_without_asking(terminal) == colors
+    assert colors_without_asking({"TERM": terminal, "COLORTERM": "truecolor"}) == colors
 
 
 @pytest.mark.parametrize("terminal", ["vt52", "xterm-256color"])

@@ -49,7 +49,8 @@ def encode(picture: Pixels, image: int, cols: int, rows: int, *, answers_errors:
     """
     data = b64encode(zlib.compress(picture.tobytes(), _COMPRESSION)).decode()
     chunks = [data[at : at + _CHUNK] for at in range(0, len(data), _CHUNK)]
-    keys = f"a=T,U=1,q={1 if answers_errors else 2},f=24,o=z,i={image},s={picture.shape[1]},v={picture.shape[0]},c={cols},r={rows},"
+    quiet = 1 if answers_errors else 2
+    keys = f"a=T,U=1,q={quiet},f=24,o=z,i={image},s={picture.shape[1]},v={picture.shape[0]},c={cols},r={rows},"
     parts = []
     for at, chunk in enumerate(chunks, 1):
         parts.append(f"\x1b_G{keys}m={int(at < len(chunks))};{chunk}\x1b\\")

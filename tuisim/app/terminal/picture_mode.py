@@ -50,7 +50,7 @@ class PictureMode:
 def choose_colors(colors: str) -> int:
     """Set the colour depth of the terminal; `auto` leaves the choice to Textual. Return the most colours to use."""
     if colors == "auto":
-        colors = colors_without_asking(os.environ.get("TERM", ""))
+        colors = colors_without_asking(os.environ)
     system = {"truecolor": "truecolor", "256": "256", "16": "standard", "8": "standard"}.get(colors)
     if system:
         # Textual reads the environment when it is imported, before the settings are known.

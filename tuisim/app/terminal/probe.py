@@ -19,6 +19,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from tuisim.app.terminal.multiplexer import has_all_colors, is_multiplexer
 from tuisim.app.terminal.queries import (
     ANSWER,
     ATTRIBUTES_QUERY,
@@ -98,8 +99,17 @@ def cells_without_asking(environment: Mapping[str, str], *, has_colors: bool = T
     return None if has_colors else CellSet.BRAILLE
 
 
-def colors_without_asking(terminal: str) -> str:
-    """Return the colours that a kind of terminal, as in TERM, is known to have; `auto` if Textual knows better."""
+def colors_without_asking(environment: Mapping[str, str]) -> str:
+    """Return the colours that the terminal is known to have by its environment; `auto` if Textual knows better."""
+    terminal = environment.get("TERM", "")
+    if is_multiplexer(terminal):
+        around = colors_of_kind(terminal.partition(".")[2] or terminal)
+        return around if around != AUTO else "truecolor" if has_all_colors(environment) else "256"
+    return colors_of_kind(terminal)
+
+
+def colors_of_kind(terminal: str) -> str:
+    """Return the colours that a kind of terminal, as in TERM, is known to have; `auto` if that does not tell."""
     if terminal in _PLAIN or terminal.startswith(("vt1", "vt2", "vt3")):
         return "none"
     if terminal in ("linux", "ansi"):

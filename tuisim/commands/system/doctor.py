@@ -185,7 +185,7 @@ def _colors_without_asking(environment: Mapping[str, str]) -> str:
     from tuisim.app.terminal.probe import colors_without_asking
 
     # Textual takes an empty variable as well.
-    return "none" if "NO_COLOR" in environment else colors_without_asking(environment.get("TERM", ""))
+    return "none" if "NO_COLOR" in environment else colors_without_asking(environment)
 
 
 def _colors_finding(environment: Mapping[str, str], is_remote: bool) -> Finding:
