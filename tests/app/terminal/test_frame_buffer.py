@@ -42,6 +42,13 @@ def sent(frame_buffer: FrameBuffer, update: CompositorUpdate, mode: TextMode = F
     return codes
 
 
+def test_no_italics_where_they_would_be_reverse_video() -> None:
+    update = rows([Strip([Segment("a", Style(bold=True, italic=True))], 1)])
+
+    assert "\x1b[1;3m" in sent(FrameBuffer(), update)
+    assert "\x1b[1m" in sent(FrameBuffer(), update, TextMode(has_italics=False))
+
+
 def rows(*lines: Sequence[Strip]) -> LayoutUpdate:
     """All of a screen."""
     width = sum(strip.cell_length for strip in lines[0])

@@ -45,6 +45,8 @@ class TextMode(NamedTuple):
     """How many colours."""
     is_ascii: bool = False
     """Whether it shows ASCII only."""
+    has_italics: bool = True
+    """Whether the code for italics means italics."""
 
 
 class CellLook(NamedTuple):
@@ -197,6 +199,8 @@ def _rgb_codes(rgb: int, depth: int) -> tuple[str, str]:
 @lru_cache(maxsize=4096)
 def _written(text: str, style: Style | None, mode: TextMode) -> tuple[Cell, ...]:
     look = _look(style, mode.depth)
+    if not mode.has_italics and _ITALIC in look.attributes:
+        look = look._replace(attributes=tuple(code for code in look.attributes if code != _ITALIC))
     if mode.is_ascii:
         text = as_ascii(text)
     if text.isascii():
@@ -232,7 +236,7 @@ def _look(style: Style | None, depth: int) -> CellLook:
 
 _LIT = 50.0
 """A background brighter than this, of 255, is a highlight, and not that of a panel or dialog."""
-_REVERSE = "7"
+_REVERSE, _ITALIC = "7", "3"
 
 
 def _without_colors(attributes: tuple[str, ...], style: Style) -> tuple[str, ...]:

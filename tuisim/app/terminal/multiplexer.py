@@ -13,7 +13,10 @@ _ALL_COLORS = "RGB"
 
 
 def is_multiplexer(terminal: str) -> bool:
-    """Return whether a kind of terminal, as in TERM, is GNU screen, or tmux under that name."""
+    """Return whether a kind of terminal, as in TERM, is GNU screen, or tmux under that name.
+
+    It takes the code for italics for that of reverse video.
+    """
     return terminal == KIND or terminal.startswith((f"{KIND}-", f"{KIND}."))
 
 

@@ -55,6 +55,7 @@ from tuisim.app.terminal.cell_view import RowsView
 from tuisim.app.terminal.compositor import ThoroughCompositor
 from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
 from tuisim.app.terminal.input_order import InputOrder
+from tuisim.app.terminal.multiplexer import is_multiplexer
 from tuisim.app.terminal.picture_mode import PictureMode, color_depth, picture_mode_of
 from tuisim.app.terminal.probe import SILENT, take_typed
 from tuisim.app.terminal.queries import (
@@ -297,7 +298,8 @@ class TerminalApp(App[None]):
     @property
     def text_mode(self) -> TextMode:
         """What the terminal supports."""
-        return TextMode(color_depth(self), self.picture_mode.cells is CellSet.ASCII)
+        is_ascii = self.picture_mode.cells is CellSet.ASCII
+        return TextMode(color_depth(self), is_ascii, has_italics=not is_multiplexer(os.environ.get("TERM", "")))
 
     @property
     def _writes(self) -> bool:
