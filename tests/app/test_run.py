@@ -12,8 +12,11 @@ from textual.widgets import Input
 from tests.app.app_help import ENDLESS, LOGS, lab, notices, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.panels.output import Answer
+from tuisim.app.panels.world import WorldView
 from tuisim.app.snapshot import RunPhase
+from tuisim.app.terminal.picture_mode import PictureMode
 from tuisim.config import mat_cache
+from tuisim.config.options import CellSet
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.errors import BackgroundError
@@ -186,3 +189,30 @@ async def test_a_mat_that_failed_is_prepared_again_for_a_run(monkeypatch: pytest
         await until(pilot, lambda: any("cannot be opened" in notice for notice in notices(app)))
         await pilot.press("R")
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+
+
+async def test_no_words_say_that_the_robot_stands_before_it_does() -> None:
+    async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING and app.run_controller.pose.x_mm > 160)
+        # The terminal still shows the last frame: no further one is due.
+        app.pacer.ready = lambda: False  # type: ignore[method-assign]
+        for key, word in (("space", "paused"), ("S", "stopped")):
+            await pilot.press(key)
+            await until(pilot, lambda word=word: app.key_footer._status.startswith(word))  # type: ignore[misc]
+            scene = app.query_one(WorldView)._scene
+            assert scene is not None and scene.pose == app.run_controller.pose
+
+
+async def test_what_stands_still_is_drawn_finely_at_once_on_a_slow_link() -> None:
+    setup = settings(ENDLESS, autorun=True)
+    mode = PictureMode(CellSet.QUADRANT, CellSet.QUADRANT, is_slow=lambda: True)
+    async with LabApp(setup, picture_mode=mode).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        world = app.query_one(WorldView)
+        mode.is_slow = lambda: True
+        await until(pilot, lambda: world.is_coarse and app.run_controller.pose.x_mm > 160)
+        for key, word in (("space", "paused"), ("S", "stopped")):
+            await pilot.press(key)
+            await until(pilot, lambda word=word: app.key_footer._status.startswith(word))  # type: ignore[misc]
+            assert not world.is_coarse

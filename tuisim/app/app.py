@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual import events
 from textual.app import ComposeResult
@@ -36,7 +36,7 @@ from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
 from tuisim.app.setup import next_run as plans
-from tuisim.app.snapshot import GOOD_ENDS, AppState, RunPhase, Situation, end_words
+from tuisim.app.snapshot import AT_REST, GOOD_ENDS, AppState, RunPhase, Situation, end_words
 from tuisim.app.speech import Voice
 from tuisim.app.terminal.pacer import Pacer
 from tuisim.app.terminal.picture_mode import PictureMode, choose_colors, picture_mode_for
@@ -149,7 +149,7 @@ class LabApp(PanelMessages):
         self.voice = Voice(settings.quiet)
         self.past_view = PastView(self.panel_area, self.run_controller.timeline)
         self.feed: Feed | None = None
-        self._drawn: object = None
+        self._drawn: tuple[Any, ...] = ((None,),)
         self.goals = AppGoals(self, self.run_controller, self.panel_area, settings.goals)
         self.loader = Loader(
             self,
@@ -474,16 +474,18 @@ class LabApp(PanelMessages):
         self.pacer.answered()
 
     def situation_changed(self) -> None:
-        """Update the footer."""
+        """Update the footer; together with the world once it stands still, or it would be said to before it does."""
         self._wake()
-        self._show_footer(self.state())
+        state = self.state()
+        has_stopped = state.view.state in AT_REST and self._drawn[0][0] not in (None, state.view.state)
+        if not has_stopped or not self.draw():
+            self._show_footer(state)
 
     def situation(self) -> Situation:
         """Return the state that decides which keys are available."""
         runs, code = self.run_controller, self.panel_area.code
-        has_program, has_run = runs.program is not None, bool(runs.run_id)
-        away, reads = self.debugger.is_away, code is not None and code.is_read
-        return Situation(runs.state, has_program, has_run, runs.in_past, away, reads, self.has_pixels)
+        facts = runs.program is not None, bool(runs.run_id), runs.in_past, self.debugger.is_away
+        return Situation(runs.state, *facts, code is not None and code.is_read, self.has_pixels)
 
     def action_target(self) -> Workspace:
         return self.workspace

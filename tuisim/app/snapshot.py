@@ -37,6 +37,9 @@ class RunPhase(StrEnum):
 IN_RUN = frozenset({RunPhase.STARTING, RunPhase.RUNNING, RunPhase.PAUSED, RunPhase.WAITING})
 """The phases in which a child process runs."""
 
+AT_REST = frozenset({RunPhase.PAUSED, RunPhase.ENDED})
+"""The phases in which a run stands still."""
+
 GOOD_ENDS: frozenset[RunState | None] = frozenset({End.FINISHED, End.STOPPED})
 """Ways to end a run that are no failure."""
 
@@ -87,6 +90,10 @@ class Snapshot:
     """The newest tick of the run."""
     now_pose: Pose | None = None
     """The current pose of the robot, while another instant is viewed."""
+
+    def has_stopped_since(self, before: Snapshot | None) -> bool:
+        """Whether the run stands still now, and did not at an earlier moment."""
+        return before is not None and self.state in AT_REST and before.state is not self.state
 
     @property
     def failed(self) -> bool:

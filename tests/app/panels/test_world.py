@@ -75,7 +75,7 @@ async def test_a_moment_like_the_last_one_costs_nothing(monkeypatch: pytest.Monk
         app.panel.set_mat(white_mat())
         app.panel.show(moment())
         painted: list[object] = []
-        monkeypatch.setattr(view(app.panel), "set_fine_picture", lambda picture, _: painted.append(picture))
+        monkeypatch.setattr(view(app.panel), "set_fine_picture", lambda picture, _, **__: painted.append(picture))
 
         app.panel.show(moment(time_s=9.0))
         assert not painted

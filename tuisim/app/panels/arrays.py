@@ -55,9 +55,10 @@ class Arrays(Widget):
         self.call_after_refresh(self._draw)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment; at most a few updates per second."""
+        """Show a moment; at most a few updates per second, and the last one with the world."""
+        has_stopped = snapshot.has_stopped_since(self._snapshot)
         self._snapshot = snapshot
-        self._throttle.ask()
+        self._throttle.ask(at_once=has_stopped)
 
     def _draw(self) -> None:
         now = self._snapshot

@@ -35,9 +35,10 @@ class Instrumentation(LinesPanel):
         self._throttle = Throttle(self, _PERIOD_S, self._redraw)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment; at most a few updates per second."""
+        """Show a moment; at most a few updates per second, and the last one with the world."""
+        has_stopped = snapshot.has_stopped_since(self._snapshot)
         self._snapshot = snapshot
-        self._throttle.ask()
+        self._throttle.ask(at_once=has_stopped)
 
     def _redraw(self) -> None:
         if self._snapshot is not None and self._text.size:

@@ -19,7 +19,7 @@ from tuisim.app.render.cells import MONO
 from tuisim.app.render.mat import ZOOMS, Pixels, following
 from tuisim.app.render.mono import pointer
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
-from tuisim.app.snapshot import RunPhase, Snapshot
+from tuisim.app.snapshot import AT_REST, RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesView, PixelView
 from tuisim.charts.axes import time_limits
 from tuisim.charts.text_runs import Run
@@ -234,11 +234,14 @@ class WorldView(PixelView):
             coarse = graphics is None and self.cell_set in few
             self._painter = ScenePainter(self._mat, outside_rgb, self.trace, mode.grey, mono, coarse)
         trace = self.trace if self.past_trace is None else self.past_trace
-        if scene == self._scene and port == self._port and self._trace_drawn == trace.count:
+        # What stands still is drawn finely at once, and not a moment later by itself.
+        stands = self._snapshot.state in AT_REST and not self._snapshot.past and self._held is None
+        is_drawn = scene == self._scene and port == self._port and self._trace_drawn == trace.count
+        if is_drawn and not (stands and self.is_coarse):
             return
         self._scene, self._port, self._trace_drawn = scene, port, trace.count
         self._painter.trace = trace
-        self.set_fine_picture(self._painter.paint(port, scene), graphics)
+        self.set_fine_picture(self._painter.paint(port, scene), graphics, stands=stands)
         has_signs = self.cell_set is CellSet.ASCII and self.color_mode.depth == MONO
         self.set_signs(_pointers(port, scene) if has_signs else {})
 

@@ -118,12 +118,23 @@ class PixelView(RowsView):
         fine = glyph_set(self.cell_set)
         self._show(picture.repeat(fine.rows // 2, axis=0).repeat(fine.cols, axis=1), self.cell_set)
 
-    def set_fine_picture(self, picture: Pixels, graphics: Graphics | None = None) -> None:
-        """Show an image with the points of `cell_for(graphics)`; only cells that differ are repainted."""
+    def set_fine_picture(self, picture: Pixels, graphics: Graphics | None = None, *, stands: bool = False) -> None:
+        """Show an image with the points of `cell_for(graphics)`; only cells that differ are repainted.
+
+        Args:
+            picture: The image.
+            graphics: How its pixels are drawn; None for the app's glyphs.
+            stands: Whether the image will stand still, so that its glyphs are drawn finely also on a slow link.
+        """
         if graphics is not None:
             self._show_pixels(picture, graphics)
         else:
-            self._show(picture, self.cell_set)
+            self._show(picture, self.cell_set, stands)
+
+    @property
+    def is_coarse(self) -> bool:
+        """Whether glyphs are drawn as half blocks, to be refined."""
+        return bool(self._coarse.any())
 
     def _show_pixels(self, picture: Pixels, graphics: Graphics) -> None:
         if self._tiles is None or self._tiles.graphics != graphics:
@@ -151,7 +162,7 @@ class PixelView(RowsView):
         self._cells, self._strips = np.empty((0, 0), np.int64), []
         self._coarse = np.empty((0, 0), bool)
 
-    def _show(self, picture: Pixels, cell_set: CellSet) -> None:
+    def _show(self, picture: Pixels, cell_set: CellSet, stands: bool = False) -> None:
         if self._tiles is not None:
             self._tiles = None
             self._forget_cells()
@@ -161,8 +172,14 @@ class PixelView(RowsView):
         shape = len(picture) // fine.rows, picture.shape[1] // fine.cols
         as_before = was.shape == shape and old.shape == picture.shape and fine is self._glyphs
         at = changed_cells(old, self._shown, fine) if as_before else all_cells(*shape)
+        if as_before and stands and self.is_coarse:
+            changed = self._coarse.copy()
+            changed[at] = True
+            rows, cols = np.nonzero(changed)
+            at = rows, cols
         self._glyphs = fine
-        is_coarse = cell_set in BLOCKS and cell_set != CellSet.HALF and picture_mode_of(self.app).is_slow()
+        has_finer = cell_set in BLOCKS and cell_set != CellSet.HALF
+        is_coarse = has_finer and not stands and picture_mode_of(self.app).is_slow()
         if not as_before:
             self._coarse = np.zeros(shape, bool)
         self._coarse[at] = is_coarse
@@ -170,7 +187,7 @@ class PixelView(RowsView):
         glyphs = half_block_of(cell_set) if is_coarse else fine
         cells[at] = self._fitted(glyphs, at, was[at] if as_before else None)
         self._put(cells)
-        self._sharpness.changed(is_coarse=bool(self._coarse.any()))
+        self._sharpness.changed(is_coarse=self.is_coarse)
 
     def _fitted(self, glyphs: GlyphSet, at: CellIndex, before: Cells | None) -> Cells:
         mode = self.color_mode
@@ -194,7 +211,7 @@ class PixelView(RowsView):
             self._refresh_runs(self._tiles.refine(count))
             return self._tiles.is_coarse
         self._refine_glyphs(count)
-        return bool(self._coarse.any())
+        return self.is_coarse
 
     def _refine_glyphs(self, count: int) -> None:
         rows, cols = np.nonzero(self._coarse)

@@ -27,8 +27,11 @@ class Throttle:
         self._last_s = 0.0
         self._timer: Timer | None = None
 
-    def ask(self) -> None:
-        """Call the function now if the last call is at least a period ago, else as soon as it is."""
+    def ask(self, at_once: bool = False) -> None:
+        """Call the function now if the last call is at least a period ago, or `at_once`; else as soon as it is."""
+        if at_once:
+            self.now()
+            return
         if self._timer is not None or not self._widget.is_attached:
             return
         left_s = self._last_s + self._period_s - time.monotonic()

@@ -77,9 +77,9 @@ class TerminalFacts:
             return replace(self, has_kitty_graphics=has_it, kitty_error=error or self.kitty_error)
         if found["attributes"] is not None:
             # The second time they come after the question for kitty's protocol.
-            has_it = False if self.attributes and self.asks_for_kitty else self.has_kitty_graphics
+            answered = False if self.attributes and self.asks_for_kitty else self.has_kitty_graphics
             attributes = frozenset(found["attributes"].split(";"))
-            return replace(self, attributes=attributes, has_kitty_graphics=has_it)
+            return replace(self, attributes=attributes, has_kitty_graphics=answered)
         width, height = int(found["width"]), int(found["height"])
         return replace(self, cell_px=(width, height)) if _is_possible((width, height)) else self
 
