@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from tuisim.core.css_colors import Rgb, css_rgb
+from tuisim.core.field import disc_mask
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import RobotOutline, outline_of
 from tuisim.core.sensors.ultrasonic import rays_mm
@@ -112,6 +113,7 @@ class RobotColors:
     """Width of the edge, as a share of a cell's width."""
     edge_mm: float = 12.0
     """Largest width of the edge."""
+    has_marker: bool = True
 
 
 COLORED = RobotColors()
@@ -121,12 +123,12 @@ GREY = RobotColors(
 )  # fmt: skip
 """For a terminal without colours: dark body, white edge and marker, to stand out on any grey."""
 MONO = RobotColors(
-    edge=(0, 0, 0), body=(255, 255, 255), wheel=(0, 0, 0), sensor=(255, 255, 255), marker=(0, 0, 0), edge_cells=0.35,
+    edge=(0, 0, 0), body=(255, 255, 255), wheel=(0, 0, 0), sensor=(0, 0, 0), marker=(0, 0, 0), edge_cells=0.6,
     edge_mm=100.0,
 )  # fmt: skip
 """For a terminal of two colours: a black arrow on white within a black edge."""
-BOX = replace(MONO, marker=MONO.body)
-"""For a terminal of two colours and of signs only: a black edge, in which a pointer of signs is seen."""
+CLEARED = RobotColors((255,) * 3, (255,) * 3, (255,) * 3, (255,) * 3, has_marker=False)
+"""For a terminal of two colours and of signs only: a white place for the signs of the robot."""
 GHOST = RobotColors(edge=(255, 255, 255), body=(175, 0, 175), wheel=(95, 0, 95), marker=(255, 215, 255))
 """For a robot at an earlier pose."""
 GREY_GHOST = RobotColors(body=(158, 158, 158), wheel=(88, 88, 88), sensor=(88, 88, 88), marker=(0, 0, 0))
@@ -181,7 +183,7 @@ def draw_robot(
     detail_mm = step_mm * view.cell.cols / detail_cols
     # Fine pixels are too small for a part of one to be seen.
     edge_mm = min(colors.edge_cells * detail_cols * detail_mm, colors.edge_mm)
-    parts = _parts(outline, side, ahead, detail_mm, detail_cols, edge_mm)
+    parts = _parts(outline, side, ahead, detail_mm, detail_cols, edge_mm, has_marker=colors.has_marker)
     _mount(parts, outline, side, ahead, detail_mm, pressed)
     _blend(picture[top:bottom, left:right], parts.reshape(bottom - top, down, right - left, across), colors, opacity)
 
@@ -196,7 +198,14 @@ def _sampled(first_px: int, end_px: int, samples: int) -> FloatArray:
 
 
 def _parts(
-    outline: RobotOutline, side: FloatArray, ahead: FloatArray, px_mm: float, cell_cols: int, edge_mm: float
+    outline: RobotOutline,
+    side: FloatArray,
+    ahead: FloatArray,
+    px_mm: float,
+    cell_cols: int,
+    edge_mm: float,
+    *,
+    has_marker: bool,
 ) -> npt.NDArray[np.intp]:
     """Return which part covers each sample, given by its distance to the right and ahead in mm."""
     across = np.abs(side)
@@ -218,7 +227,8 @@ def _parts(
     widest_mm = min(0.62 * (outline.half_width_mm - outline.wheel_width_mm), 0.28 * (tip - base))
     thinnest_mm = (_THIN_PX[cell_cols] if is_small else 0.4) * px_mm
     flank = np.maximum(widest_mm * (tip - ahead) / (tip - base), thinnest_mm)
-    parts[(ahead >= base) & (ahead <= tip) & (across <= flank)] = _MARKER
+    if has_marker:
+        parts[(ahead >= base) & (ahead <= tip) & (across <= flank)] = _MARKER
     for x_mm, y_mm, radius in outline.color_sensors_mm:
         # In pixels of a whole cell a small sensor would only blur the marker.
         if 2 * radius >= 1.5 * px_mm or cell_cols > 1:
@@ -264,6 +274,10 @@ MM_PER_PX = 3
 
 ARRAY_PX = 6
 """Side of one sensor pixel in the arrays' picture."""
+
+CORNER_RGB = (58, 70, 88)
+"""Outside the disc of a sensor: neither black, white nor a colour of a mat, so that its outline is seen on any of them.
+"""
 
 _OBSTACLE, _OBSTACLE_EDGE, _RAY = (150, 150, 160), (20, 20, 20), (230, 120, 0)
 _RIM, _FRAME = (232, 234, 238), (70, 74, 82)
@@ -452,12 +466,20 @@ def world_at_end(run: StoredRun) -> Image:
     return world_picture(run.spec, mat_pixels(mat_files(run)), sound_pose(last), (trace,))
 
 
+def disc_in_box(box: bytes, corner_rgb: Rgb) -> Pixels:
+    """Return the pixels of a square around a disc, d × d, three bytes a pixel, with the corners in one colour."""
+    diameter = round((len(box) / 3) ** 0.5)
+    pixels = np.frombuffer(box, np.uint8).reshape(diameter, diameter, 3).copy()
+    pixels[~np.array(disc_mask(diameter))] = corner_rgb
+    return pixels
+
+
 def arrays_picture(arrays: Sequence[tuple[ColorSensorSpec, bytes]]) -> Image:
-    """Return side by side the pixel arrays of sensors, each given as RGB bytes, d × d pixels, row by row."""
+    """Return side by side the discs that sensors see, each given as RGB bytes, d × d pixels, row by row."""
     from PIL import Image
 
     tiles = [
-        Image.frombytes("RGB", (sensor.diameter_mm,) * 2, pixels).resize(
+        Image.fromarray(disc_in_box(pixels, CORNER_RGB)).resize(
             (sensor.diameter_mm * ARRAY_PX,) * 2, Image.Resampling.NEAREST
         )
         for sensor, pixels in arrays

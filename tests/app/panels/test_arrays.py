@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+import numpy as np
 import pytest
 
 from tests.app.panel_help import PanelApp, moment, screen_text, small_field
 from tuisim.app.panels.arrays import Arrays, name_line
+from tuisim.app.render.cells import PALETTE_8, PALETTE_16, ColorMode
 from tuisim.app.render.mat import lay_out
 from tuisim.app.terminal.cell_view import PixelView
+from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 
 FIELD = small_field()
@@ -38,6 +41,22 @@ async def test_discs_and_names(size: tuple[int, int], names: list[str]) -> None:
     assert len({tuple(pixel) for pixel in shown.reshape(-1, 3).tolist()}) >= 3
     assert all(name in text for name in names)
     assert bool(app.panel.border_subtitle) == (not names)
+
+
+@pytest.mark.parametrize("depth", [PALETTE_8, PALETTE_16])
+async def test_with_few_colours_what_is_around_a_disc_is_plain_and_darker(
+    depth: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(PixelView, "color_mode", ColorMode(depth))
+    app = PanelApp(Arrays())
+    grey = Field(400, 300, memoryview(bytes([128]) * (3 * 300 * 400)), {})
+    async with app.run_test(size=(40, 11)) as pilot:
+        app.panel.show(moment(Pose(200.0, 1000.0, 90.0), field=grey))
+        await pilot.pause()
+        shown = app.panel.query_one(PixelView)._shown @ np.array([0.299, 0.587, 0.114])
+    disc, corner = shown[8:12, 8:12], shown[:2, :2]
+    assert np.ptp(corner) == 0
+    assert corner.max() < disc.mean()
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tuisim.app.render.mat import MatPictures, Pixels, shrink, whole_field
-from tuisim.charts.world_image import Viewport
+from tuisim.charts.world_image import CellPoints, Viewport
 
 OUTSIDE = (1, 2, 3)
 
@@ -25,6 +25,17 @@ def test_a_plain_mat_stays_plain_and_what_is_off_it_is_outside() -> None:
 
     assert set(map(tuple, picture.reshape(-1, 3).tolist())) == {(211, 211, 211), OUTSIDE}
     assert tuple(picture[0, 0]) == OUTSIDE
+
+
+@pytest.mark.parametrize("size", [(51, 12), (75, 20), (76, 27), (120, 33)], ids=str)
+def test_a_mat_of_dots_or_signs_ends_where_a_cell_ends(size: tuple[int, int]) -> None:
+    cols, rows = size
+    picture = shrink(mat(), whole_field(2 * cols, 4 * rows, CellPoints(2, 4)), OUTSIDE, whole_cells=True)
+
+    cells = picture.reshape(rows, 4, cols, 2, 3)
+    assert (cells == cells[:, :1, :, :1]).all(), "a cell of two colours"
+    inside = np.argwhere((cells[:, 0, :, 0] == 255).all(axis=2))
+    assert np.ptp(inside[:, 1]) + 1 in (cols - 1, cols) or np.ptp(inside[:, 0]) + 1 in (rows - 1, rows)
 
 
 @pytest.mark.parametrize("width_mm", [4, 10, 20])

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from tuisim.app.render.mat import Pixels, whole_field
-from tuisim.app.render.mono import mono_cells, pointer
+from tuisim.app.render.mono import body, mono_cells, pointer
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState, visible_on
 from tuisim.charts.fitted_cells import all_cells
-from tuisim.charts.glyphs import GLYPHS, glyph_set
+from tuisim.charts.glyphs import GLYPHS, SIGNS, glyph_set
 from tuisim.charts.world_image import CellPoints
 from tuisim.config.options import CellSet
 from tuisim.core.geometry import Pose
+from tuisim.core.outline import outline_of
 from tuisim.core.spec import RobotSpec
 
 ROWS, COLS = 20, 50
@@ -58,6 +60,55 @@ def test_the_robot_and_its_heading_are_seen(cells: CellSet, ground: int) -> None
         differs = [sum(a != b for a, b in zip("".join(picture), "".join(other), strict=True))
                    for other in [*pictures[:at], *pictures[at + 1 :], empty]]  # fmt: skip
         assert min(differs) >= 5
+
+
+def _reached(white: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """The white points that can be reached from the edge of a picture over white points, up, down and sideways."""
+    reached = np.zeros_like(white)
+    reached[[0, -1], :] = reached[:, [0, -1]] = True
+    while True:
+        wider = reached.copy()
+        wider[1:] |= reached[:-1]
+        wider[:-1] |= reached[1:]
+        wider[:, 1:] |= reached[:, :-1]
+        wider[:, :-1] |= reached[:, 1:]
+        wider &= white
+        if (wider == reached).all():
+            return reached
+        reached = wider
+
+
+@pytest.mark.parametrize("ground", [255, 211, 128, 0])
+def test_the_robot_in_dots_is_a_shape_and_no_pattern(ground: int) -> None:
+    """Within a white rim it has a closed black edge, so that it is no accident of the dots around it."""
+    view = whole_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
+    painter = ScenePainter(np.full((1143, 2362, 3), ground, np.uint8), (255,) * 3, PenTrace(), mono=True)
+    robot = RobotSpec()
+    for heading in range(0, 360, 15):
+        pose = Pose(1181, 571, heading)
+        picture = painter.paint(view, SceneState(robot, pose))[..., 0]
+        empty = painter.paint(view, SceneState(robot, Pose(9000, 9000, 0)))[..., 0]
+        changed = picture != empty
+        assert set(np.unique(picture[changed]).tolist()) <= {0, 255}
+        rows, cols = np.nonzero(changed)
+        part = np.pad(picture, 1, constant_values=255)[rows.min() : rows.max() + 3, cols.min() : cols.max() + 3]
+        white = part == 255
+        if ground not in (0, 255):
+            white |= part == ground
+        inside = white & ~_reached(white)
+        assert inside.sum() >= 10, f"the edge is open at {heading} degrees"
+
+
+@pytest.mark.parametrize("heading", range(0, 360, 45))
+def test_the_robot_in_signs_has_a_sign_of_its_own(heading: int) -> None:
+    view = whole_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
+    signs = body(view, Pose(1181, 571, heading), outline_of(RobotSpec()))
+
+    assert {GLYPHS[cell >> 48] for cell in signs.values()} == {"&"}
+    assert 8 <= len(signs) <= 18
+    rows, cols = ({at[axis] for at in signs} for axis in (0, 1))
+    assert rows <= {8, 9, 10, 11} and cols <= set(range(21, 29))
+    assert "&" not in SIGNS
 
 
 @pytest.mark.parametrize("grey", [False, True], ids=["colours", "greys"])

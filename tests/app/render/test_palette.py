@@ -34,6 +34,10 @@ def test_bands_of_grey_stand_out_on_white(mode: ColorMode, band: int) -> None:
     assert grey.mean() < white.mean() - 5
 
 
+def test_the_ground_of_a_panel_is_plain_in_8_colours() -> None:
+    assert len(np.unique(area((16, 20, 27), ColorMode(PALETTE_8)))) == 1
+
+
 @pytest.mark.parametrize("mode", MODES)
 def test_the_two_pale_bands_differ(mode: ColorMode) -> None:
     assert (area((220,) * 3, mode) != area((211,) * 3, mode)).any()

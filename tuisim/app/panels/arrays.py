@@ -9,12 +9,12 @@ from rich.style import Style
 from textual.app import ComposeResult
 from textual.widget import Widget
 
-from tuisim.app.render.cells import PALETTE_16
-from tuisim.app.render.mat import CORNER_16_RGB, CORNER_RGB, FULL_PX, DiscLayout, draw_discs, lay_out
+from tuisim.app.render.mat import CORNER_16_RGB, FULL_PX, DiscLayout, draw_discs, lay_out
 from tuisim.app.snapshot import Snapshot
 from tuisim.app.terminal.cell_view import LinesView, PixelView
 from tuisim.app.terminal.pacer import Throttle
 from tuisim.charts.text_runs import cut
+from tuisim.charts.world_image import CORNER_RGB
 from tuisim.core.sensors.color import pixel_array
 
 _PERIOD_S = 0.25
@@ -77,7 +77,7 @@ class Arrays(Widget):
         layout = lay_out(len(sensors), size.width, 2 * (size.height - self._has_names))
         boxes = [pixel_array(sensor, now.instant, now.field) for sensor in sensors]
         mode = self._discs.color_mode
-        corner_rgb = CORNER_16_RGB if mode.depth == PALETTE_16 and not mode.grey else CORNER_RGB
+        corner_rgb = CORNER_16_RGB if mode.dithers and not mode.grey else CORNER_RGB
         self._discs.set_picture(draw_discs(layout, boxes, self._discs.ground_rgb, corner_rgb))
         self._label_discs(layout, [sensor.name for sensor in sensors])
 

@@ -17,10 +17,11 @@ from tuisim.app.panels import PANELS
 from tuisim.app.panels.obstacles import BoxGrip, box_at
 from tuisim.app.render.cells import MONO
 from tuisim.app.render.mat import ZOOMS, Pixels, following
-from tuisim.app.render.mono import pointer
+from tuisim.app.render.mono import body, pointer
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
 from tuisim.app.snapshot import AT_REST, RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesView, PixelView
+from tuisim.app.terminal.picture_mode import BLOCKS
 from tuisim.charts.axes import time_limits
 from tuisim.charts.text_runs import Run
 from tuisim.charts.world_image import Viewport, drawn_scale
@@ -156,7 +157,7 @@ def _pointers(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:
     outline = outline_of(scene.robot)
     reach_mm = outline.front_mm * drawn_scale(outline, port)
     ghost = pointer(port, scene.ghost, reach_mm, _GHOST_PIVOT) if scene.ghost else {}
-    return ghost | pointer(port, scene.pose, reach_mm, _PIVOT)
+    return ghost | body(port, scene.pose, outline) | pointer(port, scene.pose, reach_mm, _PIVOT)
 
 
 class WorldView(PixelView):
@@ -232,7 +233,8 @@ class WorldView(PixelView):
             outside_rgb = _PAPER if mono else self.ground_rgb
             few = {CellSet.ASCII} if mono else {CellSet.ASCII, CellSet.BRAILLE}
             coarse = graphics is None and self.cell_set in few
-            self._painter = ScenePainter(self._mat, outside_rgb, self.trace, mode.grey, mono, coarse)
+            whole = graphics is None and self.cell_set not in BLOCKS
+            self._painter = ScenePainter(self._mat, outside_rgb, self.trace, mode.grey, mono, coarse, whole)
         trace = self.trace if self.past_trace is None else self.past_trace
         # What stands still is drawn finely at once, and not a moment later by itself.
         stands = self._snapshot.state in AT_REST and not self._snapshot.past and self._held is None

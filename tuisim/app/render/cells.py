@@ -147,8 +147,9 @@ def reduce_pixels(pixels: Pixels, rows: npt.NDArray[np.intp], cols: npt.NDArray[
     return _nearest(np.clip(pixels + offset[:, None], 0, 255).astype(np.uint8), mode.depth)
 
 
-_SHARES_8 = ((0, 128, 211, 220, 255), (0.0, 0.5, 0.75, 0.875, 1.0))
-"""The share of white in a grey among 8 colours, which have no other grey."""
+_SHARES_8 = ((40, 128, 211, 220, 255), (0.0, 0.5, 0.75, 0.875, 1.0))
+"""The share of white in a grey among 8 colours, which have no other grey; what is nearly black, as the ground of a
+panel, gets no dots."""
 
 
 def _dithered_8(pixels: Pixels, thresholds: npt.NDArray[np.float64], paleness: npt.NDArray[np.float32]) -> Pixels:

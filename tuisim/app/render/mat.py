@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.charts.world_image import SQUARE, CellPoints, Viewport
+from tuisim.charts.world_image import SQUARE, CellPoints, Viewport, disc_in_box
 from tuisim.charts.world_image import Pixels as Pixels
-from tuisim.core.field import disc_mask
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 
@@ -104,7 +103,7 @@ _RARE = 0.25
 """What covers less of a pixel than this is drawn stronger."""
 
 
-def shrink(mat: Pixels, view: Viewport, outside_rgb: tuple[int, int, int]) -> Pixels:
+def shrink(mat: Pixels, view: Viewport, outside_rgb: tuple[int, int, int], whole_cells: bool = False) -> Pixels:
     """Return what a viewport shows of a mat.
 
     Each picture pixel is the mean of the mat pixels under it. Where a pixel is as wide as a cell, it is moved toward
@@ -114,6 +113,8 @@ def shrink(mat: Pixels, view: Viewport, outside_rgb: tuple[int, int, int]) -> Pi
         mat: The mat, one pixel a mm, row 0 at the top of the field.
         view: The part to show.
         outside_rgb: Colour of what lies off the mat.
+        whole_cells: End the mat where a cell ends, for glyphs that do not fill their cells: half of a cell in another
+            colour would be a column of dots or brackets beside it.
 
     Returns:
         Shape (view.height_px, view.width_px, 3).
@@ -126,7 +127,19 @@ def shrink(mat: Pixels, view: Viewport, outside_rgb: tuple[int, int, int]) -> Pi
     if len(col_edges) < 2 or len(row_edges) < 2:
         return picture
     picture[rows, cols] = _reduced(mat, row_edges, col_edges, keep_detail=view.cell.cols == 1)
+    if whole_cells:
+        _end_with_a_cell(picture, rows, view.cell.rows, outside_rgb)
+        _end_with_a_cell(picture.swapaxes(0, 1), cols, view.cell.cols, outside_rgb)
     return picture
+
+
+def _end_with_a_cell(lines: Pixels, inside: slice, step: int, outside_rgb: tuple[int, int, int]) -> None:
+    """Move both ends of the lines inside the mat to the nearest ends of cells of `step` lines; modified in place."""
+    first, end = (step * math.floor(at / step + 0.5) for at in (inside.start, inside.stop))
+    lines[first : inside.start] = lines[inside.start]
+    lines[inside.start : first] = outside_rgb
+    lines[inside.stop : end] = lines[inside.stop - 1]
+    lines[end : inside.stop] = outside_rgb
 
 
 def _edges(start_mm: float, mm_per_px: float, count: int, size_mm: int) -> tuple[slice, npt.NDArray[np.intp]]:
@@ -194,12 +207,13 @@ class MatPictures:
     Args:
         mat: The mat, shape (height in mm, width in mm, 3).
         outside_rgb: Colour of what lies off the mat.
+        whole_cells: As for `shrink`.
     """
 
-    def __init__(self, mat: Pixels, outside_rgb: tuple[int, int, int]) -> None:
+    def __init__(self, mat: Pixels, outside_rgb: tuple[int, int, int], whole_cells: bool = False) -> None:
         @lru_cache(maxsize=_REMEMBERED)
         def picture(view: Viewport) -> Pixels:
-            made = shrink(mat, view, outside_rgb)
+            made = shrink(mat, view, outside_rgb, whole_cells)
             made.flags.writeable = False
             return made
 
@@ -210,11 +224,8 @@ class MatPictures:
 FULL_PX = 20
 """Largest size of a disc, besides its own diameter."""
 
-CORNER_RGB = (58, 70, 88)
-"""Outside the disc: neither black, white nor a colour of a mat, so that its outline is visible on any of them."""
-
 CORNER_16_RGB = (0, 0, 135)
-"""The same for 16 colours, which have no grey to spare."""
+"""In place of `CORNER_RGB` for 8 or 16 colours: they have no grey to spare, and a pattern would outshine the disc."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -280,10 +291,8 @@ def draw_discs(
 
 def _scaled(box: bytes, side_px: int, corner_rgb: tuple[int, int, int]) -> Pixels:
     """Return a disc of at most `side_px`, area-averaged if it has to be shrunk."""
-    diameter = round((len(box) / 3) ** 0.5)
-    pixels = np.frombuffer(box, np.uint8).reshape(diameter, diameter, 3).copy()
-    pixels[~np.array(disc_mask(diameter))] = corner_rgb
-    if diameter <= side_px:
+    pixels = disc_in_box(box, corner_rgb)
+    if len(pixels) <= side_px:
         return pixels
     return np.dstack([shrunk(channel, side_px, side_px) for channel in np.moveaxis(pixels, 2, 0)]).astype(np.uint8)
 

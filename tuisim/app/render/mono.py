@@ -9,12 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from tuisim.charts.glyphs import BRAILLE_FROM, Covered, GlyphSet, nearest_signs, sign_number
+from tuisim.charts.world_image import CLEARED, draw_robot
 from tuisim.config.options import CellSet
 
 if TYPE_CHECKING:
     from tuisim.charts.fitted_cells import CellIndex, Cells
     from tuisim.charts.world_image import Pixels, Viewport
     from tuisim.core.geometry import Pose
+    from tuisim.core.outline import RobotOutline
 
 _LUMA = np.array([0.299, 0.587, 0.114], np.float32)
 _GREYS, _DARKNESS = (0, 128, 211, 220, 255), (1.0, 0.5, 0.25, 0.125, 0.0)
@@ -50,6 +52,20 @@ def mono_cells(picture: Pixels, glyphs: GlyphSet, at: CellIndex, cell_set: CellS
         numbers = np.where(even, ramp[steps], nearest_signs(ink))
     cells: Cells = numbers.astype(np.int64) << 48 | _INK_ON_PAPER
     return cells
+
+
+_BODY = "&"
+"""The sign of a robot's cells: neither a mat has it, see `charts.glyphs.SIGNS`, nor a frame."""
+
+
+def body(view: Viewport, pose: Pose, outline: RobotOutline) -> dict[tuple[int, int], int]:
+    """Return signs for the cells that a robot covers, at least half of each, as cells by row and column."""
+    empty = np.zeros((view.height_px, view.width_px, 3), np.uint8)
+    draw_robot(empty, view, pose, outline, CLEARED)
+    rows, cols = view.height_px // view.cell.rows, view.width_px // view.cell.cols
+    covered = empty[..., 0].reshape(rows, view.cell.rows, cols, view.cell.cols).mean(axis=(1, 3)) >= 128
+    found = np.argwhere(covered).tolist()
+    return {(row, col): sign_number(_BODY) << 48 | _INK_ON_PAPER for row, col in found}
 
 
 _LINES, _TIPS = "-/|\\", {0: ">", 2: "^", 4: "<", 6: "v"}

@@ -10,10 +10,20 @@ from itertools import groupby
 import numpy as np
 
 from tuisim.app.render.mat import MatPictures, Pixels
-from tuisim.charts.world_image import BOX, COLORED, GHOST, GREY, GREY_GHOST, MONO, Viewport, draw_robot
+from tuisim.charts.world_image import (
+    CLEARED,
+    COLORED,
+    GHOST,
+    GREY,
+    GREY_GHOST,
+    MONO,
+    RobotColors,
+    Viewport,
+    draw_robot,
+)
 from tuisim.core.css_colors import Rgb, css_rgb
 from tuisim.core.geometry import Pose, world_point
-from tuisim.core.outline import outline_of
+from tuisim.core.outline import RobotOutline, outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, BeaconSpec, Obstacle, PenSpec, RobotSpec
 from tuisim.runs.arrays import FloatArray
 
@@ -51,6 +61,7 @@ class ScenePainter:
         grey: Draw for a terminal with greys only.
         mono: Draw for a terminal without any colours.
         coarse: Draw the robot with few details, for glyphs that show less than the points of their cells.
+        whole_cells: End the mat where a cell ends, for glyphs that do not fill their cells.
     """
 
     def __init__(
@@ -61,12 +72,14 @@ class ScenePainter:
         grey: bool = False,
         mono: bool = False,
         coarse: bool = False,
+        whole_cells: bool = False,
     ) -> None:
         self.trace = trace
-        self._mat = MatPictures(mat, outside_rgb)
-        without_colors = BOX if coarse else MONO
+        self._mat = MatPictures(mat, outside_rgb, whole_cells)
+        without_colors = CLEARED if coarse else MONO
         self._robot_colors = without_colors if mono else GREY if grey else COLORED
         self._grey = grey or mono
+        self._mono = mono
         self._detail_cols = 1 if coarse else None
         self._ghost_colors = GREY_GHOST if grey else GHOST
         self._ground: Pixels | None = None
@@ -85,7 +98,8 @@ class ScenePainter:
             draw_robot(
                 picture, view, scene.ghost, outline, self._ghost_colors, _GHOST_OPACITY, detail_cols=self._detail_cols
             )
-        draw_robot(
+        draw = draw_mono_robot if self._mono else draw_robot
+        draw(
             picture, view, scene.pose, outline, self._robot_colors, pressed=scene.pressed, detail_cols=self._detail_cols
         )
         return picture
@@ -110,6 +124,35 @@ class ScenePainter:
         """Return what the pen draws on: not what it has drawn, which may be drawn again."""
         return self._mat.picture(view)
 
+
+def draw_mono_robot(
+    picture: Pixels,
+    view: Viewport,
+    pose: Pose,
+    outline: RobotOutline,
+    colors: RobotColors,
+    *,
+    pressed: tuple[bool, ...] = (),
+    detail_cols: int | None = None,
+) -> None:
+    """Paint a robot as `draw_robot` does, for a terminal of two colours.
+
+    Each point is black or white: a share of both would be a pattern, like the greys of the mat. A white rim keeps the
+    robot apart from what is around it.
+    """
+    on_white, on_black = np.full_like(picture, 255), np.zeros_like(picture)
+    for canvas in (on_white, on_black):
+        draw_robot(canvas, view, pose, outline, colors, pressed=pressed, detail_cols=detail_cols)
+    white, black = on_white[..., 0].astype(np.intp), on_black[..., 0].astype(np.intp)
+    # Where nothing covers the canvas, one is as white and the other as black as before.
+    covered = white - black <= 128
+    around = np.pad(covered, 1)
+    rim = np.logical_or.reduce([np.roll(around, at, (0, 1)) for at in _BESIDE])[1:-1, 1:-1]
+    picture[rim | covered] = 255
+    picture[covered & (white <= 128)] = 0
+
+
+_BESIDE = ((-1, 0), (1, 0), (0, -1), (0, 1))
 
 _LUMA = np.array([0.299, 0.587, 0.114])
 _APART, _GREY_APART = 130.0, 90.0
