@@ -363,6 +363,13 @@ READINGS = {
         text=LOOKS,
     ),
     "log a count": Case("log = { name = 'n', levels = [2], counts = 'a' }", COUNTED, "met", line=4),
+    "log once": Case("log = { name = 'n', levels = [2], once = true }", (*COUNTED, wait(1)), "met"),
+    "log more than once": Case(
+        "log = { name = 'a', levels = [100], once = true }",
+        PRINTED,
+        "missed",
+        reason="samples a were printed, 1 is asked for.",
+    ),
     "log a wrong count": Case(
         "log = { name = 'n', levels = [2], counts = 'a' }",
         COUNTED[1:],

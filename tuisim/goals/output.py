@@ -64,9 +64,12 @@ def _not_once(condition: Print, rows: list[tuple[int, OutputRow]], span: Span) -
     """Return what is missing of a condition whose lines come only once; None if nothing is."""
     fitting = [row for _, row in rows if any(re.search(pattern, row.text) for pattern in condition.lines)]
     if len(fitting) > len(condition.lines):
-        wanted = f"{len(condition.lines)} {'is' if len(condition.lines) == 1 else 'are'} asked for"
-        return Found(None, f"{len(fitting):,} such lines were printed, {wanted}.", fitting[-1].line)
+        return Found(None, _too_many("such lines", len(fitting), len(condition.lines)), fitting[-1].line)
     return None if span.over else Found()
+
+
+def _too_many(what: str, count: int, wanted: int) -> str:
+    return f"{count:,} {what} were printed, {wanted} {'is' if wanted == 1 else 'are'} asked for."
 
 
 def _fault(condition: Print, count: int, row: OutputRow, since: int, evidence: Evidence) -> str:
@@ -148,7 +151,12 @@ def find_levels(condition: Log, evidence: Evidence, span: Span) -> Found:
         at = place + 1
         last = max(last, place)
     number, sample = samples[last]
-    return Found(Moment(sample.tick, number), line=sample.line)
+    if condition.once and len(samples) > len(condition.levels):
+        reason = _too_many(f"samples {condition.name}", len(samples), len(condition.levels))
+        return Found(None, reason, samples[-1][1].line)
+    if condition.once and not span.over:
+        return Found()
+    return Found(evidence.last if condition.once else Moment(sample.tick, number), line=sample.line)
 
 
 def _not_measured(condition: Log, count: int, sample: Sample, evidence: Evidence) -> str:

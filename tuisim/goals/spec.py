@@ -280,6 +280,8 @@ class Log:
     """Whether the value must be one that a colour sensor gave where the program read it."""
     counts: str = ""
     """The name of other samples: the value must be how many of them were printed before; empty: any value."""
+    once: bool = False
+    """Whether the run must end without a further sample of the variable."""
 
     def __post_init__(self) -> None:
         if self.as_read and self.reading is not Reading.COLOR:
