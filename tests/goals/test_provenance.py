@@ -15,6 +15,8 @@ LINES = {
     "literal beside a reading": ("colorLeft.rgb; print('Grey: 50.2')", 1, FREE),
     "variable": ("x = colorLeft.rgb[0]\ny = x / 2\nprint('G', y)", 3, VALUE),
     "another variable": ("x = colorLeft.rgb[0]\ny = 50.2\nprint('G', y)", 3, FREE),
+    "reading times nothing": ("x = colorLeft.rgb[0]\nprint('G', 50.2 + 0 * x)", 2, FREE),
+    "nothing times a reading": ("print('G', 50.2 + colorLeft.rgb[0] * 0.0)", 1, FREE),
     "in several lines": ("print(\n    'Grey:',\n    colorLeft.rgb,\n)", 1, VALUE),
     "two names at once": ("a, b = colorLeft.rgb[:2]\nprint(b)", 2, VALUE),
     "attribute": ("robot.light = colorLeft.rgb\nprint(robot.light)", 2, VALUE),

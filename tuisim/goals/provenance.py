@@ -1,13 +1,14 @@
 """Where what a program prints and does comes from: the lines that read sensors, and the lines that depend on them.
 
 The text is not executed. Whatever may depend on a reading counts as depending on it: a value that is computed from one,
-a variable that is set where a reading decides, and what follows a loop that a reading ends.
+a variable that is set where a reading decides, and what follows a loop that a reading ends. Only a product with a
+literal 0 depends on nothing.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
 from functools import lru_cache
 
@@ -148,7 +149,7 @@ class Provenance:
 
     def _take(self, node: ast.AST, by: _By) -> bool:
         """Note a piece of the program, and what its calls pass on. Return whether its value depends on a reading."""
-        value = any(self._is_derived(part) for part in ast.walk(node))
+        value = any(map(self._is_derived, _parts_that_count(node)))
         self._found.append((node, value, by is not _By.NOTHING))
         for part in ast.walk(node):
             if isinstance(part, ast.NamedExpr) and any(map(self._is_derived, ast.walk(part.value))):
@@ -186,6 +187,24 @@ class Provenance:
                     self._assign(part)
             case ast.Starred(value=value) | ast.Subscript(value=value):
                 self._assign(value)
+
+
+def _parts_that_count(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield what the value of a node may depend on: not the factors of a product with a literal 0."""
+    # Not recursive: expressions may be deep.
+    open_parts = [node]
+    while open_parts:
+        part = open_parts.pop()
+        yield part
+        if not _is_zero(part):
+            open_parts.extend(ast.iter_child_nodes(part))
+
+
+def _is_zero(node: ast.AST) -> bool:
+    match node:
+        case ast.BinOp(op=ast.Mult(), left=left, right=right):
+            return any(isinstance(one, ast.Constant) and one.value == 0 for one in (left, right))
+    return False
 
 
 def _names(node: ast.AST) -> set[str]:
