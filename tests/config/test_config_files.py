@@ -167,6 +167,7 @@ EXPLORER = {field.name: getattr(ROBOTS["Explorer"], field.name) for field in fie
         "weight by name",
         "weight",
         "motor ports",
+        "no wheels",
         "no sensors",
         "as it is",
         "pen",

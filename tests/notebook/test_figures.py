@@ -33,7 +33,7 @@ from tuisim.config.options import Settings
 from tuisim.config.robots import ROBOTS
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import outline_of
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, PenSpec, RobotSpec, RunSpec
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, NO_PORT, PenSpec, RobotSpec, RunSpec
 from tuisim.notebook.display import CHART_SIZE
 from tuisim.runs.samples import Sample
 
@@ -127,6 +127,15 @@ def test_a_robot_is_filled_and_has_all_its_parts(robot: str) -> None:
         for place in places:
             found = pixel(picture, spec.robot, world_point(MIDDLE, *place))
             assert np.abs(np.subtract(found, color)).max() < 60, (color, place)
+
+
+def test_a_robot_without_wheels_is_drawn_without_them() -> None:
+    spec = at()
+    standing = replace(spec, robot=replace(spec.robot, left_port=NO_PORT, right_port=NO_PORT))
+    outline = outline_of(spec.robot)
+    place = world_point(MIDDLE, outline.half_width_mm - outline.wheel_width_mm / 2, 0.0)
+    drawn = [pixel(world_picture(one, WHITE, MIDDLE), one.robot, place) for one in (spec, standing)]
+    assert [bool(np.abs(np.subtract(color, COLORED.wheel)).max() < 60) for color in drawn] == [True, False]
 
 
 @pytest.mark.quick_cases("0-Small_Robot")
