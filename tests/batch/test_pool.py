@@ -134,7 +134,7 @@ def test_a_program_that_damages_its_recording_gets_a_result(tmp_path: Path, harm
     assert (result.end, [one.state for one in result.judgements]) == (end, [GoalState.MISSED] * judged)
 
 
-@pytest.mark.parametrize("interrupted", ["shutil.copytree", "write_run_file"])
+@pytest.mark.parametrize("interrupted", ["shutil.copyfileobj", "write_run_file"])
 def test_a_run_whose_storing_is_interrupted_is_not_listed(
     tmp_path: Path, home: Path, monkeypatch: pytest.MonkeyPatch, interrupted: str
 ) -> None:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from tests.marking.the_class import CLASS, write_class
 from tuisim.errors import ConfigError
+from tuisim.marks import students
 from tuisim.marks.journal import Journal
 from tuisim.marks.outcome import GoalOutcome, Outcome
 from tuisim.marks.students import Student, file_outside, find_students
@@ -183,6 +185,40 @@ def test_a_link_out_of_the_folder_is_refused_by_name(
     eve = found["eve"]
     assert (eve.source, eve.text, eve.problem) == (None, "", problem)
     assert found["ada"].source is not None
+
+
+def _nested(folder: Path) -> None:
+    (folder / "/".join("d" * 100)).mkdir(parents=True)
+
+
+def _large(folder: Path) -> None:
+    with open(folder / "data", "wb") as file:
+        file.truncate(64 << 30)
+
+
+def _many(folder: Path) -> None:
+    for number in range(21):
+        (folder / str(number)).touch()
+
+
+@pytest.mark.parametrize(
+    ("hands_in", "problem"),
+    [
+        (_nested, "its folders are nested more than 50 deep"),
+        (_large, "it has more than 20 files or 1 GiB"),
+        (_many, "it has more than 20 files or 1 GiB"),
+    ],
+    ids=["nested", "large", "many"],
+)
+def test_a_folder_that_cannot_be_copied_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, hands_in: Callable[[Path], None], problem: str
+) -> None:
+    monkeypatch.setattr(students, "MOST_FILES", 20)
+    (tmp_path / "eve").mkdir()
+    (tmp_path / "eve" / "main.py").write_text("x = 1")
+    hands_in(tmp_path / "eve")
+    (student,) = find_students([str(tmp_path)]).students
+    assert (student.problem, student.source) == (problem, None)
 
 
 def test_a_link_inside_the_folder_is_the_students_own(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ from tests.proof.arguments import ARGUMENTS
 from tests.proof.clients import CLIENTS
 from tests.proof.crashes import CRASHES
 from tests.proof.damage import DAMAGE
+from tests.proof.enemies import ENEMIES
 from tests.proof.failures import FAILURES
 from tests.proof.kernel import KERNEL
 from tests.proof.kind import Kind
@@ -20,6 +21,7 @@ KINDS: dict[str, Kind] = {
     "arguments": ARGUMENTS,
     "clients": CLIENTS,
     "crashes": CRASHES,
+    "enemies": ENEMIES,
     "failures": FAILURES,
     "monkey": MONKEY,
     "zoo": ZOO,

@@ -51,11 +51,30 @@ FALSIFIES = {
     "an event of a paused run": TO_PIPES.format(PAUSED) + "while True: pass",
     "an event of a program that asks": TO_PIPES.format(WANTED) + "sum(range(10**12))",
     "an end of its own": TO_PIPES.format(FINISHED) + "os._exit(0)",
+    **{
+        f"an end with {name}": TO_PIPES.format(b'{"kind":"ended","end":"finished","tick":0,' + more + b"}\n")
+        + "import ctypes; ctypes.CDLL(None)._exit(0)"
+        for name, more in {
+            "another time": b'"time_ns":20000000',
+            "a time before the start": b'"time_ns":-1',
+            "a time that no file can hold": b'"time_ns":1000000000000000000000000000',
+            "a line that no file can hold": b'"time_ns":0,"error_line":99999999999999999999',
+            "an exit code that no file can hold": b'"time_ns":0,"exit_code":-99999999999999999999',
+        }.items()
+    },
     "a message without end": TO_PIPES.format(b"x" * 65536) * 200 + "sum(range(10**12))",
     "random telemetry": FILES + "open(telemetry, 'r+b').write(bytes(range(200)))",
     "another position": FILES
     + "with open(telemetry, 'r+b') as f: f.seek(72); f.write(struct.pack('<d', float('nan')))",
     "a record too many": FILES + "with open(telemetry, 'r+b') as f: f.seek(16); f.write(struct.pack('<Q', 5))",
+    "endless": FILES
+    + """
+block = b''.join(struct.pack('<I', tick) + data[4:] for data in [open(telemetry, 'rb').read()[64:128]]
+                 for tick in range(100000))
+with open(telemetry, 'r+b') as f:
+    f.seek(64); f.write(block); f.flush(); f.seek(16); f.write(struct.pack('<Q', 100000))
+sum(range(10**12))
+""",
     "a row too long": "print('A: 1')\n" + FILES + "with open(output, 'r+b') as f: f.seek(64); f.write(b'xxxx')",
     "pipes in place of recordings": FILES + REPLACED.format(ALL, "os.mkfifo(name)"),
     "pipes in place of small files": FILES + REPLACED.format(ALL[3:], "os.mkfifo(name)"),

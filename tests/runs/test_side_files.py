@@ -11,11 +11,13 @@ import pytest
 
 from tuisim.errors import LogError
 from tuisim.runs.side_files import (
+    LOCK_FILE,
     MOST_READS,
     MOST_SUMMED_BYTES,
     READS_FILE,
     FileRead,
     FilesRead,
+    is_held,
     note_read,
     note_reads_left_out,
     read_reads,
@@ -31,6 +33,14 @@ def test_state_of_a_file(tmp_path: Path) -> None:
     os.utime(path, ns=(5, 5))
     # The check value of CRC-32.
     assert state_of(str(path)) == FileRead(str(path), there=True, bytes=9, mtime_ns=5, crc32=0xCBF43926)
+
+
+def test_pipes_in_place_of_lists_and_locks_do_not_block(tmp_path: Path) -> None:
+    for name in (READS_FILE, LOCK_FILE):
+        os.mkfifo(tmp_path / name)
+    with pytest.raises(LogError, match="not a regular file"):
+        read_reads(tmp_path)
+    assert is_held(tmp_path) is False
 
 
 def test_a_large_file_is_not_read(tmp_path: Path) -> None:

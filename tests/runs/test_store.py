@@ -304,11 +304,23 @@ def test_what_a_killed_removal_has_left_goes_with_the_next_one(
     for run in runs:
         store.finish(run, FINISHED)
     with monkeypatch.context() as killed:
-        killed.setattr("shutil.rmtree", lambda *_, **__: None)
+        killed.setattr("tuisim.runs.store.remove_tree", lambda *_, **__: None)
         store.remove(runs[0].id)
     assert len(list((store.home / "runs").iterdir())) == 3
     store.remove(runs[1].id)
     assert [path.name for path in (store.home / "runs").iterdir()] == [runs[2].id]
+
+
+def test_what_a_program_has_put_into_its_folder_is_not_copied_into_the_store(logged: StoredRun, tmp_path: Path) -> None:
+    mine = tmp_path / "mine"
+    mine.write_text("mine")
+    os.mkfifo(logged.folder / "pipe")
+    os.mkfifo(logged.folder / "stack.txt")
+    (logged.folder / "link").symlink_to(mine)
+    (logged.folder / "reads.jsonl").symlink_to(mine)
+    (logged.folder / "nowhere").symlink_to(tmp_path / "nothing")
+    adopted = RunStore(tmp_path / "other").adopt(logged.folder)
+    assert {path.name for path in adopted.folder.iterdir()} == {"run.json", "telemetry.bin", "output.bin", "lock"}
 
 
 def test_a_run_cannot_be_removed_while_it_is_copied_into_the_store(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import signal
 import sys
 import threading
@@ -21,6 +20,7 @@ from tuisim.batch.execute import execute, nothing_known_of
 from tuisim.batch.task import Result, Task
 from tuisim.protocol import End
 from tuisim.runs.child.process import warm_up
+from tuisim.runs.removal import remove_tree
 from tuisim.runs.temporary import batch_folder
 
 CHUNK = 4
@@ -65,7 +65,7 @@ def run_many(tasks: Iterable[Task], jobs: int = 0) -> Iterator[Result]:
         finally:
             pool.stop()
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        remove_tree(folder)
 
 
 class _Pool:

@@ -11,12 +11,14 @@ from pathlib import Path
 
 from tuisim.config.program_file import FILE_FIELDS, ProgramSource, names_file, read_program
 from tuisim.errors import ConfigError, listed, printable, see_page
+from tuisim.runs.child.isolation import MOST_BYTES, MOST_FILES
 
 MAIN = "main.py"
 SUFFIX = ".py"
 LEFT_OUT = shutil.ignore_patterns("__pycache__", ".git", ".venv", "venv", "node_modules")
 """Folders that are no part of what a student has handed in."""
 _LINK = "it is a link; hand in the files themselves"
+_MOST_LEVELS = 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,8 +126,8 @@ def _student(path: Path, program: str) -> Student:
         # Its copy has the name of the file.
         return _read(Student(name, path, own), path)
     try:
-        if link := _link_out_of(path):
-            return Student(name, path, problem=f"{_shown(link)} is a link that leads out of the folder")
+        if refused := _what_is_refused(path):
+            return Student(name, path, problem=refused)
         main = _main_of(path, program)
     except (ConfigError, OSError) as error:
         return Student(name, path, problem=str(error).replace(f"{path}{os.sep}", ""))
@@ -137,16 +139,27 @@ def _own_name(path: Path) -> str:
     return _shown(path.name if path.name not in ("", "..") else _real(path).name)
 
 
-def _link_out_of(folder: Path) -> str:
-    """Return the path of a link in a student's folder that leads out of it, relative to it; empty if there is none."""
+def _what_is_refused(folder: Path) -> str:
+    """Return why what is in a student's folder is not copied, as a sentence; empty if it is."""
     own = _real(folder)
-    for inside, folders, names in os.walk(folder):
-        left_out = LEFT_OUT(inside, folders)
-        folders[:] = sorted(name for name in folders if name not in left_out)
-        for name in sorted((*folders, *names)):
-            path = Path(inside, name)
-            if path.is_symlink() and not _real(path).is_relative_to(own):
-                return os.path.relpath(path, folder)
+    files = size = 0
+    inside = [folder]
+    while inside:
+        place = inside.pop()
+        names = sorted(os.listdir(place))
+        left_out = LEFT_OUT(str(place), names)
+        for path in (place / name for name in names if name not in left_out):
+            if path.is_symlink():
+                if not _real(path).is_relative_to(own):
+                    return f"{_shown(os.path.relpath(path, folder))} is a link that leads out of the folder"
+            elif path.is_dir():
+                if len(path.relative_to(folder).parts) > _MOST_LEVELS:
+                    return f"its folders are nested more than {_MOST_LEVELS} deep"
+                inside.append(path)
+            else:
+                files, size = files + 1, size + path.lstat().st_size
+                if files > MOST_FILES or size > MOST_BYTES:
+                    return f"it has more than {MOST_FILES:,} files or {MOST_BYTES >> 30} GiB"
     return ""
 
 

@@ -14,6 +14,7 @@ from typing import Any
 
 from tuisim.errors import LogError
 from tuisim.marks.students import LEFT_OUT, Student
+from tuisim.runs.removal import remove_tree
 from tuisim.runs.temporary import temporary_home
 from tuisim.source import Program
 
@@ -49,7 +50,7 @@ class Workspace:
 
     def remove(self, index: int) -> None:
         """Delete the folder of a run."""
-        shutil.rmtree(self.path / str(index), ignore_errors=True)
+        remove_tree(self.path / str(index))
 
 
 @contextmanager

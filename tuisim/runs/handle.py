@@ -68,6 +68,7 @@ ENDED_CHILD_S = 0.2
 """Time for a child to exit after its last event."""
 DEFAULT_TIME_LIMIT_S = 600.0
 """Simulated time that a run may take if nothing else is asked for."""
+_BEYOND_LIMIT_S = 1.0
 STALL_FACTOR = 2.0
 """A headless child without progress for this many stall limits of real time is stuck in C code."""
 
@@ -220,7 +221,8 @@ class RunHandle:
         self._mark = mark(self._process.pid)
         self._clock = FairClock(self._process.pid)
         self._events = EventStream(self._event_fd, options.events)
-        self._quota = Quota([run.folder, program.working_directory]) if isolated else None
+        writable: list[str | Path] = [run.folder, program.working_directory]
+        self._quota = Quota(self._process.pid, writable) if isolated else None
         self._exceeded = self._falsified = ""
         """Which limit an isolated program has exceeded; why what the child does is not what the simulation does."""
 
@@ -280,7 +282,11 @@ class RunHandle:
         # In a folder that was deleted there is nothing to look at: such a run is stopped.
         if not self._falsified and self.folder.is_dir():
             self._falsified = (
-                self._events.falsified or self.telemetry.damage or self.output.damage or self._flooded_log()
+                self._events.falsified
+                or self.telemetry.damage
+                or self.output.damage
+                or self._flooded_log()
+                or self._endless()
             )
             if self._falsified:
                 end_group(self._process.pid)
@@ -290,6 +296,13 @@ class RunHandle:
             self._exceeded = self._quota.exceeded(time.monotonic())
             if self._exceeded:
                 end_group(self._process.pid)
+
+    def _endless(self) -> str:
+        limit_s, hz = self._options.time_limit_s, self.spec.profile.tick_hz
+        # The host reads what is recorded: it must not grow beyond what the run can record.
+        if limit_s and self.telemetry.count > (limit_s + _BEYOND_LIMIT_S) * hz:
+            return f"it has recorded more than {limit_s:g} s"
+        return ""
 
     def _flooded_log(self) -> str:
         with suppress(OSError):
@@ -334,6 +347,9 @@ class RunHandle:
         ticks = self.telemetry.count
         if is_whole and end is not None and end.tick != ticks - 1:
             return f"it ends at tick {end.tick}, and {counted(ticks, 'tick is', 'ticks are')} recorded"
+        hz = self.spec.profile.tick_hz
+        if is_whole and end is not None and not due_ns(end.tick, hz) <= end.time_ns <= due_ns(end.tick + 1, hz):
+            return f"its end at tick {end.tick} has another time"
         if any(path.exists() for path in self._packed_files()):
             return "it was packed while the program ran"
         try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 from tuisim import protocol
 from tuisim.errors import TuisimError
 from tuisim.protocol import BEFORE_NEXT_TICK, Ended, Inspected, LineHistory, Paused
+from tuisim.runs.removal import remove_tree
 from tuisim.runs.temporary import owned_folder
 
 if TYPE_CHECKING:
@@ -195,7 +195,7 @@ class ReplayDebugger:
             self._run.kill()
             self._run.close()
         if self._folder is not None:
-            shutil.rmtree(self._folder, ignore_errors=True)
+            remove_tree(self._folder)
         self._run = self._folder = self._paused = self._of = None
         self.busy = False
 

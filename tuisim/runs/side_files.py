@@ -54,6 +54,9 @@ LOG_FILE = "child.log"
 STACK_FILE = "stack.txt"
 """The stack of a child that was stuck."""
 
+SIDE_FILES = (ACTIONS_FILE, STOP_FILE, MODULES_FILE, READS_FILE, LOG_FILE, STACK_FILE)
+"""All of them but the lock."""
+
 MOST_BYTES = 64 << 20
 """More than any of these files has."""
 
@@ -311,7 +314,7 @@ def read_reads(run_folder: Path) -> FilesRead:
     found: dict[str, FileRead] = {}
     left_out = 0
     try:
-        for line in path.read_bytes().split(b"\n")[:-1]:
+        for line in read_regular(path, MOST_BYTES).split(b"\n")[:-1]:
             row: dict[str, Any] = json.loads(line)
             if "left_out" in row:
                 left_out = int(row["left_out"])

@@ -28,8 +28,11 @@ from tuisim.core.profile import NS_PER_S, due_ns
 from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError
 from tuisim.protocol import RUN_STATES, End, Ended, Unended
+from tuisim.regular_file import of_the_machine, open_regular
 from tuisim.runs.catalogue import HOME_HINT, Catalogue, RunInfo, locked
-from tuisim.runs.packed_files import compact
+from tuisim.runs.packed_files import PACKED_SUFFIX, compact
+from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE
+from tuisim.runs.removal import remove_tree
 from tuisim.runs.run_folder import (
     MOST_INTEGER,
     RUN_FILE,
@@ -41,7 +44,7 @@ from tuisim.runs.run_folder import (
     write_run_file,
 )
 from tuisim.runs.samples import counts_of
-from tuisim.runs.side_files import LOCK_FILE, hold, is_held
+from tuisim.runs.side_files import MOST_BYTES, SIDE_FILES, hold, is_held
 from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
 
@@ -147,7 +150,7 @@ class RunStore:
         run_id, place, lock_fd = self._new_folder(datetime.now(UTC))
         try:
             info = _info_from(run_id, data)
-            shutil.copytree(folder, place, dirs_exist_ok=True, ignore=shutil.ignore_patterns(RUN_FILE, LOCK_FILE))
+            _copy_files(folder, place)
             number = self._catalogue.add(info)
             write_run_file(place, {**data, "id": run_id, "number": number})
         except OSError as error:
@@ -159,7 +162,7 @@ class RunStore:
             raise
         finally:
             os.close(lock_fd)
-        shutil.rmtree(folder, ignore_errors=True)
+        remove_tree(folder)
         return NewRun(run_id, number, place)
 
     def finish(self, run: NewRun, end: Ended) -> None:
@@ -504,6 +507,26 @@ def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
     return replace(info, end=RUN_STATES[end["end"]], ticks=ticks, time_s=time_s, summary=str(end["summary"]))
 
 
+def _copy_files(folder: Path, place: Path) -> None:
+    """Copy the files of a run, but for `run.json` and the lock; not what its program has put there.
+
+    A link would be followed with the rights of this process, which the program may not have had.
+    """
+    recordings = (TELEMETRY_FILE, OUTPUT_FILE)
+    for name in (*recordings, *(name + PACKED_SUFFIX for name in recordings), *SIDE_FILES):
+        try:
+            source = open_regular(folder / name)
+        except OSError as error:
+            if of_the_machine(error):
+                raise
+            continue
+        with source, open(place / name, "xb", opener=private) as target:
+            found = os.fstat(source.fileno())
+            # A file may claim any size; its holes would be filled.
+            if found.st_size <= 512 * found.st_blocks + MOST_BYTES:
+                shutil.copyfileobj(source, target)
+
+
 def _delete(folder: Path) -> None:
     """Delete a run folder; of a symbolic link only the link."""
     # Renamed first: a partly deleted run must not look like a run.
@@ -515,7 +538,7 @@ def _delete(folder: Path) -> None:
     # Also those that another process could not delete to the end; one that is at it deletes the rest.
     for left in folder.parent.glob(f".*{REMOVED}"):
         with suppress(FileNotFoundError):
-            shutil.rmtree(left, ignore_errors=left != removed)
+            remove_tree(left, ignore_errors=left != removed)
 
 
 def _tags_in(folder: Path) -> list[str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import tempfile
 import time
 from collections.abc import Iterator, Mapping
@@ -18,6 +17,7 @@ from typing import Any
 from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError
 from tuisim.protocol import Ended
+from tuisim.runs.removal import remove_tree
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, new_run_data, read_run, run_document, write_run_file
 from tuisim.runs.side_files import hold, is_held
 from tuisim.runs.store import NewRun
@@ -43,7 +43,7 @@ def batch_folder() -> Path:
     for folder in parent.glob(f"{_BATCH_PREFIX}*"):
         with suppress(OSError):
             if time.time() - folder.stat().st_mtime > _LEFT_OVER_S and not is_held(folder):
-                shutil.rmtree(folder, ignore_errors=True)
+                remove_tree(folder)
     return owned_folder(_BATCH_PREFIX, parent)
 
 
@@ -82,7 +82,7 @@ def temporary_home(prefix: str = PREFIX) -> Iterator[Path]:
     try:
         yield folder
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
+        remove_tree(folder)
 
 
 def _new_folder(parent: Path, prefix: str = "") -> Path:
@@ -124,7 +124,7 @@ class TemporaryRun:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        shutil.rmtree(self.folder, ignore_errors=True)
+        remove_tree(self.folder)
 
     def new_run(
         self,

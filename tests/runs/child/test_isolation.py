@@ -11,8 +11,12 @@ import pytest
 
 from tests.conftest import Command
 from tests.marking.right import HOPS
+from tuisim.batch.execute import execute
+from tuisim.batch.task import Task
+from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError
 from tuisim.runs.child.isolation import check_isolation
+from tuisim.source import Program
 
 GOALS = """\
 title = "Isolation"
@@ -84,6 +88,13 @@ def test_an_isolated_program_sees_its_own_folder_and_no_network(marked: dict[str
         }
         # It is stopped like any other program, with its line.
         assert " ".join(marked["stuck"]).endswith("line 2: stuck: no simulated time passed")
+
+
+def test_what_an_isolated_program_writes_below_python_is_its_output(tmp_path: Path, spec: RunSpec) -> None:
+    if refusal := _refusal():
+        pytest.skip(f"programs cannot be isolated here: {refusal}")
+    program = Program("below.py", "import os\nos.write(1, b'below\\n')", working_directory=str(tmp_path))
+    assert execute(Task(0, program, spec, isolate=True), tmp_path).output == "below"
 
 
 def test_isolation_without_bubblewrap_is_refused(

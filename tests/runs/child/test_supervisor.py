@@ -12,7 +12,11 @@ from collections.abc import Callable
 from tests.running import PATIENCE_S
 from tuisim.runs.child import supervisor
 
-STOPPED_CHILD = "import os, subprocess, sys; subprocess.run([sys.executable, '-c', 'import time; time.sleep(600)'])"
+STOPPED_CHILD = """
+import subprocess, sys
+with subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"]):
+    print("started", flush=True)
+"""
 
 
 def _until(is_true: Callable[[], bool]) -> None:
@@ -23,10 +27,13 @@ def _until(is_true: Callable[[], bool]) -> None:
 
 
 def test_stopped_processes_go_on_at_the_second_look() -> None:
-    with subprocess.Popen([sys.executable, "-c", STOPPED_CHILD], start_new_session=True) as parent:
+    command = [sys.executable, "-c", STOPPED_CHILD]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, start_new_session=True) as parent:
         try:
-            _until(lambda: len([*supervisor.tree(parent.pid, supervisor.processes())]) == 2)
+            # Before that its parent waits for the child's new program, and cannot be stopped.
+            assert parent.stdout is not None and parent.stdout.readline() == b"started\n"
             every = set(supervisor.tree(parent.pid, supervisor.processes()))
+            assert len(every) == 2
             for pid in every:
                 os.kill(pid, signal.SIGSTOP)
             _until(lambda: {supervisor.processes()[pid][1] for pid in every} == {supervisor.STOPPED})

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import fcntl
 import os
-import shutil
 import stat
 import time
 from collections.abc import Iterator
@@ -16,6 +15,7 @@ from pathlib import Path
 from tuisim.atomic import LEFT_OVER_S, PART_SUFFIX
 from tuisim.config.folders import cache_folder
 from tuisim.runs.catalogue import CATALOGUE_FILE
+from tuisim.runs.removal import remove_tree
 from tuisim.runs.run_folder import RUN_FILE
 from tuisim.runs.side_files import LOCK_FILE, is_held
 from tuisim.runs.store import REMOVED, RUNS_FOLDER
@@ -51,7 +51,7 @@ def remove(found: LeftOver) -> None:
     """
     try:
         if found.path.is_dir() and not found.path.is_symlink():
-            shutil.rmtree(found.path)
+            remove_tree(found.path, ignore_errors=False)
         else:
             found.path.unlink()
     except FileNotFoundError:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import asdict
 
 import msgspec
 
@@ -29,6 +30,8 @@ MOST_AT_ONCE_BYTES = 1 << 20
 """As much as a pipe of Linux can hold; of a flood of events the rest follows with the next read."""
 _CHUNK_BYTES = 1 << 16
 _MOST_SHOWN = 60
+_MOST_NUMBER = 1 << 53
+"""Larger than any integer in an event, in either direction; that of nanoseconds is 104 days."""
 
 _Kinds = tuple[type[Message], ...]
 DEBUGGED: _Kinds = (Paused, Resumed, Inspected, LineHistory)
@@ -47,9 +50,25 @@ def decode_event(line: bytes) -> Message:
     """
     try:
         kind = EVENTS[msgspec.json.decode(line, type=_Envelope).kind]
-        return msgspec.json.decode(line, type=kind)
-    except (msgspec.MsgspecError, UnicodeDecodeError, KeyError, RecursionError) as error:
+        event = msgspec.json.decode(line, type=kind)
+        if not _is_sound(asdict(event)):
+            raise ValueError(line)
+    except (msgspec.MsgspecError, ValueError, KeyError, RecursionError) as error:
         raise HostError(f"the program's process sent an invalid message: {line[:_MOST_SHOWN]!r}") from error
+    return event
+
+
+def _is_sound(value: object) -> bool:
+    """Return whether all integers in a part of an event are ones that catalogue, files and screen can hold."""
+    match value:
+        case int():
+            return abs(value) < _MOST_NUMBER
+        case dict():
+            return all(map(_is_sound, value.values()))
+        case tuple() | list():
+            return all(map(_is_sound, value))
+        case _:
+            return True
 
 
 class EventStream:

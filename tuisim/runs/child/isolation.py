@@ -6,10 +6,12 @@ no process, and use only so much memory and space.
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import select
 import shutil
+import stat
 import subprocess
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -31,7 +33,7 @@ _KEY = "--isolate"
 _TMP_BYTES = 64 << 20
 """Size of the program's own `/tmp`, which is in memory."""
 MOST_FILES, MOST_BYTES = 20_000, 1 << 30
-"""Files, and bytes in them, that it may have in its folders; see `overused`."""
+"""Files, and bytes in them, that it may have in its folders; see `Quota`."""
 _MEMORY_BYTES = 2 << 30
 """Address space of its process; it is told at half of that."""
 _OPEN_FILES = 256
@@ -49,26 +51,12 @@ for kind, most in (
 del resource, kind, most, hard
 """
 """Code for the start of the process: it sets limits that cannot be raised again."""
+_MOST_THREADS = 2_000
+"""Threads that it may have: more than the simulation allows."""
 _LOOK_EVERY_S = 0.25
-_SYSTEM = ("/usr", "/lib", "/lib32", "/lib64", "/libx32", "/bin", "/etc/ld.so.cache", "/etc/alternatives")
-_SIGNALLED = 128
-"""bubblewrap reports a signal N that ended the child as exit status 128 + N."""
-_PACKAGES = ("site-packages", "dist-packages")
-_KEY = "--isolate"
-_TMP_BYTES = 64 << 20
-"""Size of the program's own `/tmp`, which is in memory."""
-MOST_FILES, MOST_BYTES = 20_000, 1 << 30
-"""Files, and bytes in them, that it may have in its folders; see `overused`."""
-_MEMORY_BYTES = 2 << 30
-"""Address space of its process; it is told at half of that."""
-_OPEN_FILES = 256
-_LIMITS = (
-    "import resource as r; limit = lambda kind, most: r.setrlimit(kind, (min(most, r.getrlimit(kind)[1] "
-    f"if r.getrlimit(kind)[1] >= 0 else most),) * 2); limit(r.RLIMIT_AS, {_MEMORY_BYTES}); "
-    f"limit(r.RLIMIT_FSIZE, {MOST_BYTES}); limit(r.RLIMIT_NOFILE, {_OPEN_FILES}); limit(r.RLIMIT_CORE, 0); "
-    "del r, limit; "
-)
-"""Code that sets limits which the process cannot raise again."""
+_BLOCK_BYTES = 512
+_HIDDEN = (errno.ENAMETOOLONG, errno.EACCES)
+"""Errors of folders that are nested too deep to be looked at, or that the program has closed."""
 
 
 def check_isolation() -> None:
@@ -135,13 +123,15 @@ class IsolatedChild:
 
 
 class Quota:
-    """How much an isolated program may add to its folders.
+    """How many threads an isolated program may have, and how much it may add to its folders.
 
     Args:
+        pid: Its process.
         folders: The folders, before it has begun; empty names are left out.
     """
 
-    def __init__(self, folders: Iterable[str | Path]) -> None:
+    def __init__(self, pid: int, folders: Iterable[str | Path]) -> None:
+        self._process = f"/proc/{pid}"
         self._folders = tuple(filter(None, map(str, folders)))
         self._next_look_s = 0.0
         self._files = self._bytes = 0
@@ -156,7 +146,12 @@ class Quota:
         if now_s < self._next_look_s:
             return ""
         self._next_look_s = now_s + _LOOK_EVERY_S
+        with suppress(OSError):
+            # A folder has a link more for each folder in it, and two of its own.
+            if os.stat(f"{self._process}/task").st_nlink - 2 > _MOST_THREADS:
+                return f"the program has started more than {_MOST_THREADS:,} threads"
         files, size = self._more(MOST_FILES, MOST_BYTES)
+        size += sum(self._without_a_name())
         if files > MOST_FILES or size > MOST_BYTES:
             return f"the program has written more than {MOST_FILES:,} files or {MOST_BYTES >> 30} GiB"
         return ""
@@ -164,22 +159,37 @@ class Quota:
     def _more(self, most_files: int, most_bytes: int) -> tuple[int, int]:
         """Return how many files and bytes there are more than at the beginning; it stops counting at these numbers."""
         files, size = -self._files, -self._bytes
-        for entry in self._entries():
-            # Another process writes there: what is gone takes no space.
-            with suppress(OSError):
-                files, size = files + 1, size + 512 * entry.stat(follow_symlinks=False).st_blocks
+        for one in self._blocks():
+            files, size = files + 1, size + one
             if files > most_files or size > most_bytes:
                 break
         return files, size
 
-    def _entries(self) -> Iterator[os.DirEntry[str]]:
+    def _blocks(self) -> Iterator[int]:
+        """Yield the bytes that each file and folder takes."""
         folders = list(self._folders)
         while folders:
-            with suppress(OSError), os.scandir(folders.pop()) as entries:
-                for entry in entries:
-                    yield entry
-                    if entry.is_dir(follow_symlinks=False):
-                        folders.append(entry.path)
+            # Another process writes there: what is gone takes no space.
+            try:
+                with os.scandir(folders.pop()) as entries:
+                    for entry in entries:
+                        with suppress(FileNotFoundError):
+                            yield _BLOCK_BYTES * entry.stat(follow_symlinks=False).st_blocks
+                        if entry.is_dir(follow_symlinks=False):
+                            folders.append(entry.path)
+            except OSError as error:
+                if error.errno in _HIDDEN:
+                    # Whatever it holds: too much.
+                    yield MOST_BYTES + 1
+
+    def _without_a_name(self) -> Iterator[int]:
+        """Yield the bytes of open files that have no name, or none any more: also those in memory."""
+        with suppress(OSError):
+            for entry in os.scandir(f"{self._process}/fd"):
+                with suppress(OSError):
+                    found = entry.stat()
+                    if stat.S_ISREG(found.st_mode) and not found.st_nlink:
+                        yield _BLOCK_BYTES * found.st_blocks
 
 
 def spawn_isolated(

@@ -1,4 +1,8 @@
-"""A filter of system calls for Linux: a process may start threads, but no further process."""
+"""A filter of system calls for Linux: a process may start threads, but no further process.
+
+Nor may it do what would lead around the other limits: have a namespace of its own, where it could mount memory; memory
+that belongs to no address space and no open file; calls that a ring makes for it; and keys of the user.
+"""
 
 from __future__ import annotations
 
@@ -25,13 +29,16 @@ class _Machine:
     architecture: int
     """`AUDIT_ARCH_…`"""
     clone: int
-    forks: tuple[int, ...] = ()
+    refused: tuple[int, ...]
+    """fork, vfork; unshare, setns; shmget; add_key, request_key, keyctl."""
     clone3: int = 435
+    refused_everywhere: tuple[int, ...] = (425, 447)
+    """io_uring_setup, memfd_secret."""
 
 
 _MACHINES = {
-    "x86_64": _Machine(0xC000003E, 56, (57, 58)),
-    "aarch64": _Machine(0xC00000B7, 220),
+    "x86_64": _Machine(0xC000003E, 56, (57, 58, 272, 308, 29, 248, 249, 250)),
+    "aarch64": _Machine(0xC00000B7, 220, (97, 268, 194, 217, 218, 219)),
 }
 
 
@@ -53,7 +60,7 @@ def no_processes_filter() -> bytes | None:
         _instruction(_EQUAL, machine.clone3, 0, 1),
         _instruction(_RETURN, unknown),
     ]
-    for number in machine.forks:
+    for number in (*machine.refused, *machine.refused_everywhere):
         program += [_instruction(_EQUAL, number, 0, 1), _instruction(_RETURN, fails)]
     program += [
         _instruction(_EQUAL, machine.clone, 1, 0),

@@ -1,0 +1,172 @@
+"""An enemy between two honest programs, in each of the five hosts: it harms its own run only."""
+
+from __future__ import annotations
+
+import json
+import signal
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from random import Random
+from tempfile import TemporaryDirectory
+from types import FrameType
+from typing import Any
+
+from tests.hosts import HOSTS, Hosted, Stored, hosted
+from tests.marking.attackers import OWN_RUN
+from tests.proof.commands import check_said
+from tests.proof.kind import FaultError, Kind, TooLongError, home
+from tests.running import PATIENCE_S
+from tuisim.cli import EXIT_OUR_MISTAKE
+from tuisim.protocol import EVENTS, End
+from tuisim.runs.side_files import SIDE_FILES
+from tuisim.runs.store import RunStore
+
+HONEST = """\
+tank_drive.on_for_rotations(50, 50, 1)
+print('A:', colorLeft.reflected_light_intensity_pc)
+"""
+"""Both print another line at their ends."""
+_BEFORE = OWN_RUN + "import json, mmap, random, signal, struct\nprint('B: 1')\n"
+_ENDS = ("", "libc._exit(0)", "os.kill(os.getpid(), signal.SIGKILL)", "tank_drive.on_for_rotations(50, 50, 1)", "1 / 0")
+_PIPES = """
+for link in links:
+    if os.path.exists(link) and stat.S_ISFIFO(os.stat(link).st_mode):
+        try: os.write(int(os.path.basename(link)), SENT)
+        except OSError: pass
+"""
+_FILES = ("telemetry.bin", "output.bin", "run.json", "lock", "telemetry.bin.packed", "output.bin.packed", *SIDE_FILES)
+_PLACED = (
+    "os.mkfifo(name)", "os.mkdir(name)", "os.symlink('/dev/zero', name)", "os.symlink('/dev/null', name)",
+    "os.symlink(name, name)", "os.symlink('/nowhere', name)", "os.symlink('/', name)", "os.symlink('run.json', name)",
+    "open(name, 'wb').truncate(1 << 36)", "open(name, 'wb').write(os.urandom(999))", "open(name, 'w').write('null')",
+    "__import__('socket').socket(1).bind(name)", "os.link(run + '/output.bin', name)", "pass",
+)  # fmt: skip
+"""What comes in place of a file."""
+_NUMBERS: tuple[Any, ...] = (0, -1, 1, 10**9, -(10**9), 1 << 52, 1 << 63, 10**40, 0.5, 1e300, None, "x", True, [], {})
+
+
+def _event(random: Random) -> str:
+    """Return an event as the child could send it, with odd values."""
+    kind = random.choice(list(EVENTS.values()))
+    fields: dict[str, Any] = {name: random.choice(_NUMBERS) for name in kind.__dataclass_fields__}
+    if "end" in fields:
+        fields |= {"end": random.choice(list(End)).value, "tick": random.choice((0, 0, *_NUMBERS))}
+        fields |= {"time_ns": random.choice((0, 0, *_NUMBERS)), "summary": "x" * random.choice((0, 9, 10**5))}
+        fields = {name: value for name, value in fields.items() if name in ("end", "tick", "time_ns") or
+                  random.random() < 0.4}  # fmt: skip
+    return json.dumps({"kind": kind.kind, **fields})
+
+
+def _bytes(random: Random) -> str:
+    sent = random.choice((b"hello\n", b"\n" * 9, b"{}\n", b"\xff\0", b"x" * 70_000, random.randbytes(300)))
+    return _PIPES.replace("SENT", repr(sent))
+
+
+def _events(random: Random) -> str:
+    sent = "".join(f"{_event(random)}\n" for _ in range(random.choice((1, 1, 2, 9))))
+    return _PIPES.replace("SENT", repr(sent.encode()))
+
+
+def _recording(random: Random) -> str:
+    """Write somewhere into the recordings, or truncate them."""
+    lines = [f"data = {random.choice((random.randbytes(64), bytes(64), b'%c' % 255 * 16))!r}"]
+    for _ in range(random.randint(1, 4)):
+        name, at = random.choice(_FILES[:2]), random.choice((0, 8, 16, 24, 64, 72, 128, random.randrange(4000)))
+        do = random.choice(
+            ("f.seek(AT); f.write(data)", "f.seek(16); f.write(struct.pack('<Q', AT))", "f.truncate(AT)")
+        )
+        lines.append(f"with open(run + '/{name}', 'r+b') as f: {do.replace('AT', str(at))}")
+    return "\n".join(lines)
+
+
+def _places(random: Random) -> str:
+    lines = []
+    for name in random.sample(_FILES, random.randint(1, 4)):
+        lines += [f"name = run + '/{name}'", "if os.path.lexists(name): os.unlink(name)", random.choice(_PLACED)]
+    return "\n".join(lines)
+
+
+def _folder(random: Random) -> str:
+    whole = "import shutil\nshutil.rmtree(run)"
+    deep = "os.chdir(run)\nfor _ in range(1100):\n    os.mkdir('d' * 20)\n    os.chdir('d' * 20)"
+    beside = f"name = run + '/x'\n{random.choice(_PLACED)}"
+    return random.choice(
+        (whole, deep, beside, f"os.rename(run, run + '.moved'){random.choice(('', chr(10) + 'os.mkdir(run)'))}")
+    )
+
+
+def _caches(random: Random) -> str:
+    """Overwrite the prepared mat, which is mapped, with something of its size; or replace it."""
+    lines = ["mats = {line.split()[-1] for line in open('/proc/self/maps') if '.raw' in line}", "assert mats"]
+    do = random.choice(("f.write(bytes(size))", "f.seek(size // 2); f.write(bytes(64))", "f.truncate(size // 2)"))
+    return "\n".join((*lines, "for name in mats:", "    size = os.path.getsize(name)",
+                      "    os.chmod(name, 0o600)", f"    with open(name, 'r+b') as f: {do}"))  # fmt: skip
+
+
+SORTS: Mapping[str, Callable[[Random], str]] = {
+    "bytes": _bytes,
+    "events": _events,
+    "recording": _recording,
+    "places": _places,
+    "folder": _folder,
+    "caches": _caches,
+}
+
+
+def _names(random: Random) -> Iterator[str]:
+    while True:
+        cases = [f"{host}:{sort}" for host in HOSTS for sort in SORTS]
+        yield from (f"{case}:{random.getrandbits(32)}" for case in random.sample(cases, len(cases)))
+
+
+def _class(eve: str) -> dict[str, str]:
+    honest = {name: f"{HONEST}# {name}" for name in ("ada", "zoe")}
+    return {"ada": honest["ada"], "eve": eve, "zoe": honest["zoe"]} if eve else honest
+
+
+@cache
+def _wanted(host: str) -> Mapping[str, Stored]:
+    """Return what comes of the honest ones alone."""
+    with TemporaryDirectory(prefix="tuisim-proof-") as folder:
+        return hosted(host, _class(""), Path(folder, "place")).runs
+
+
+def _too_long(_number: int, _frame: FrameType | None) -> None:
+    raise TooLongError(f"has not ended after {PATIENCE_S:g} s")
+
+
+def _check(case: str, folder: Path) -> None:
+    host, sort, seed = case.split(":")
+    random = Random(seed)
+    text = "\n".join((_BEFORE, SORTS[sort](random), random.choice(_ENDS), "print('B: 2')"))
+    wanted = _wanted(host)
+    # What blocks uses no processor.
+    before = signal.signal(signal.SIGALRM, _too_long)
+    signal.setitimer(signal.ITIMER_REAL, PATIENCE_S, PATIENCE_S)
+    try:
+        found = hosted(host, _class(text), folder / "place")
+        _check_others(found, wanted, text)
+        with home(folder / "place" / "home"):
+            _look_at_runs()
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def _check_others(found: Hosted, wanted: Mapping[str, Stored], text: str) -> None:
+    others = {name: run for name, run in found.runs.items() if name != "eve"}
+    if others != wanted:
+        raise FaultError(f"the others end with {others}, not {wanted}; {found.said[-500:]}\n{text}")
+    if found.code == EXIT_OUR_MISTAKE or "internal error" in found.said or "/tuisim/" in found.said:
+        raise FaultError(f"exit code {found.code}: {found.said[-2000:]}\n{text}")
+
+
+def _look_at_runs() -> None:
+    check_said(["runs"])
+    for info in RunStore().runs():
+        for words in (["runs", "show"], ["log", "summary"], ["runs", "rm"]):
+            check_said([*words, info.id])
+
+
+ENEMIES = Kind("an enemy between honest programs, in each of the five hosts", _names, _check)
