@@ -17,10 +17,9 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import ROOT, Command
+from tests.isolated import needs_isolation
 from tests.marking.attackers import ALWAYS, DEEDS, LINKS, RUN_FOLDER, SECRET, TABLES, write_attackers
 from tests.marking.right import HOPS, MAGIC
-from tuisim.errors import ConfigError
-from tuisim.runs.child.isolation import check_isolation
 
 MOST_S = 600.0
 HONEST = ("ada", "ben", "zoe")
@@ -29,27 +28,17 @@ FINISH = 'title = "Done"\nbackground = "Grey_bands"\n[[goal]]\nname = "finish"\n
 Rows = Mapping[str, Mapping[str, str]]
 
 
-@cache
-def _refusal() -> str:
-    """Return why this machine cannot isolate programs; empty if it can."""
-    try:
-        check_isolation()
-    except ConfigError as error:
-        return str(error)
-    return ""
-
-
-@pytest.fixture(params=["--isolate", "--no-isolate"])
+@pytest.fixture(params=[pytest.param("--isolate", marks=needs_isolation), "--no-isolate"])
 def isolation(request: pytest.FixtureRequest) -> str:
-    """Marking with and without isolation; skipped where that is not possible."""
-    if request.param == "--isolate":
-        _needs_isolation()
+    """Marking with and without isolation."""
     return str(request.param)
 
 
-def _needs_isolation() -> None:
-    if _refusal():
-        pytest.skip(f"programs cannot be isolated here: {_refusal()}")
+ATTACKS = [
+    *(pytest.param(table, "--isolate", marks=needs_isolation) for table in TABLES),
+    # Without isolation the other tables are not protected against: see the guide.
+    *((table, "--no-isolate") for table in ALWAYS),
+]
 
 
 def _field(folder: Path, goals: str = "") -> Path:
@@ -122,14 +111,12 @@ def _check_others(field: Path, isolation: str, honest: Callable[[str], Rows]) ->
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("table", TABLES)
+@pytest.mark.parametrize(("table", "how"), ATTACKS)
 def test_an_attack_changes_no_other_mark_and_reads_nothing_else(
-    field: Path, honest: Callable[[str], Rows], isolation: str, table: str
+    field: Path, honest: Callable[[str], Rows], table: str, how: str
 ) -> None:
-    if isolation == "--no-isolate" and table not in ALWAYS:
-        pytest.skip("not protected without isolation: see the guide")
     write_attackers(field / "class", TABLES[table])
-    rows, told = _check_others(field, isolation, honest)
+    rows, told = _check_others(field, how, honest)
     assert len(rows) == len(TABLES[table])
     assert not any("GiB'" in row["reason"] or float(row["points"]) for row in rows.values())
     if table == "memory":

@@ -10,12 +10,11 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Command
+from tests.isolated import needs_isolation, refusal
 from tests.marking.right import HOPS
 from tuisim.batch.execute import execute
 from tuisim.batch.task import Task
 from tuisim.core.spec import RunSpec
-from tuisim.errors import ConfigError
-from tuisim.runs.child.isolation import check_isolation
 from tuisim.source import Program
 
 GOALS = """\
@@ -26,15 +25,6 @@ background = "Grey_bands"
 name = "finish"
 finish = true
 """
-
-
-def _refusal() -> str:
-    """Return why this machine cannot isolate programs; empty if it can."""
-    try:
-        check_isolation()
-    except ConfigError as error:
-        return str(error)
-    return ""
 
 
 @pytest.fixture
@@ -65,8 +55,8 @@ def marked(tmp_path: Path, here: Command, port: int) -> dict[str, list[str]]:
         (tmp_path / "class" / f"{name}.py").write_text(text)
     words = ("mark", "goals.toml", "class", "--seeds", "0", "--jobs", "1", "--keep", "none")
     done = here(*words, "--isolate")
-    if refusal := _refusal():
-        assert (done.returncode, done.stdout, done.stderr) == (2, "", f"tuisim: {refusal}\n")
+    if refusal():
+        assert (done.returncode, done.stdout, done.stderr) == (2, "", f"tuisim: {refusal()}\n")
         return {}
     assert done.returncode == 0, done.stderr
     return {line.partition(".py ")[0]: line.split() for line in done.stdout.splitlines() if ".py " in line}
@@ -90,9 +80,8 @@ def test_an_isolated_program_sees_its_own_folder_and_no_network(marked: dict[str
         assert " ".join(marked["stuck"]).endswith("line 2: stuck: no simulated time passed")
 
 
+@needs_isolation
 def test_what_an_isolated_program_writes_below_python_is_its_output(tmp_path: Path, spec: RunSpec) -> None:
-    if refusal := _refusal():
-        pytest.skip(f"programs cannot be isolated here: {refusal}")
     program = Program("below.py", "import os\nos.write(1, b'below\\n')", working_directory=str(tmp_path))
     assert execute(Task(0, program, spec, isolate=True), tmp_path).output == "below"
 

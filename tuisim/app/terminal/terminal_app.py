@@ -54,7 +54,6 @@ from tuisim.app.terminal.browser import in_browser, offer
 from tuisim.app.terminal.cell_view import RowsView
 from tuisim.app.terminal.compositor import ThoroughCompositor
 from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
-from tuisim.app.terminal.input_order import InputOrder
 from tuisim.app.terminal.multiplexer import is_multiplexer
 from tuisim.app.terminal.picture_mode import PictureMode, color_depth, picture_mode_of
 from tuisim.app.terminal.probe import SILENT, take_typed
@@ -158,7 +157,7 @@ class TerminalApp(App[None]):
         self.terminal_facts = TerminalFacts()
         self.too_small: Size | None = None
         """Size of a terminal that is too small, else None."""
-        self._input = InputOrder(self, self._give, self._waits)
+        self._input = input_order.InputOrder(self, self._give, self._waits)
         for theme in (HIGH_CONTRAST, LIGHT):
             self.register_theme(theme)
         for name in UNUSED_THEMES:
