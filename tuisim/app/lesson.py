@@ -156,6 +156,9 @@ class AppLesson:
         self._goals.judges_always = True
         self._keep(replace(self.progress, opened_at=stored.now()))
         self._panel_area.request(self._panels_for(lesson))
+        if self._panel_area.world:
+            # After typing in the program before, the arrow keys would still move in it, and not the robot.
+            self._panel_area.world.focus()
         self._done = None
         self._begin_step()
 

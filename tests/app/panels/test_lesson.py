@@ -436,3 +436,27 @@ async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) 
         listed = app.screen.query_one(OptionList)
         assert listed.region.bottom <= app.screen.query_one(".dialog").content_region.bottom
         assert listed.show_vertical_scrollbar
+
+
+@pytest.mark.usefixtures("home")
+async def test_arrow_keys_move_the_robot_when_another_lesson_begins(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await pilot.press("d")
+        code = app.panel_area.code
+        await until(pilot, lambda: code is not None and code.typing)
+        await pilot.press("escape")
+        assert code is not None and code.has_focus_within
+        app.lesson.open("sensor-eyes")
+        await until(pilot, lambda: app.focused is app.panel_area.world)
+
+
+@pytest.mark.parametrize(
+    ("at", "text"), [(0, "Q types"), (0, "Y shows hint"), (1, "R runs the program"), (1, "M shows the steps")]
+)
+def test_keys_that_need_escape_first_are_called_so(at: int, text: str, tmp_path: Path) -> None:
+    lesson = opened(tmp_path).lesson
+    assert lesson is not None
+    view = LessonView(lesson, tuple(StepState.OPEN for _ in lesson.steps), at, done=lesson.steps[0])
+    lines = draw_lesson(view, at, 0, 80, 60, is_away=True).lines
+    assert f"escape, then {text}" in "\n".join("".join(part for part, _ in line) for line in lines)

@@ -34,6 +34,7 @@ class LessonPanel(LinesPanel, can_focus=True):
 
     def __init__(self, is_brief: bool = False) -> None:
         super().__init__()
+        self._is_brief = is_brief
         self._top = -1 if is_brief else 0
         self.can_focus = not is_brief
         self._content = LessonView()
@@ -75,7 +76,9 @@ class LessonPanel(LinesPanel, can_focus=True):
                 self.call_after_refresh(self._redraw)
             return
         page = self._content.page if self._page is None else self._page
-        self._picture = draw_lesson(self._content, page, self._first, size.width, size.height)
+        self._picture = draw_lesson(
+            self._content, page, self._first, size.width, size.height, is_away=self._is_brief or self._is_typing
+        )
         if self._first >= 0:
             self._first = self._picture.first
         self._text.set_lines(self._picture.lines)
@@ -107,8 +110,7 @@ class LessonPanel(LinesPanel, can_focus=True):
         self._is_typing, self._top = is_typing, -1 if is_typing and is_low else 0
         if self._top:
             self._page, self._first = None, self._top
-            self._redraw()
-        self._show_subtitle()
+        self._redraw()
 
     def action_scroll_text(self, by: int) -> None:
         self._first = max(0, self._picture.first + by)

@@ -78,7 +78,9 @@ class LessonPicture:
     """Number of rows of the text that do not fit."""
 
 
-def draw_lesson(view: LessonView, page: int, first: int, width: int, height: int) -> LessonPicture:
+def draw_lesson(
+    view: LessonView, page: int, first: int, width: int, height: int, is_away: bool = False
+) -> LessonPicture:
     """Return the text for a panel of that inner size.
 
     Args:
@@ -87,10 +89,11 @@ def draw_lesson(view: LessonView, page: int, first: int, width: int, height: int
         first: The first row of the text to show, if it has so many; -1: the title of the step.
         width: Columns.
         height: Rows.
+        is_away: Whether the app's keys work only after escape: the user types in the program, or is in a log.
     """
     if view.lesson is None:
         return LessonPicture(list(_wrapped(NO_LESSON, width, _PALE)))
-    text = list(_end(view, width) if page >= view.last_page else _page(view, page, width))
+    text = list(_end(view, width, is_away) if page >= view.last_page else _page(view, page, width, is_away))
     head = [_head(view, page, width)]
     room = max(0, height - len(head))
     if first < 0:
@@ -111,20 +114,22 @@ def _head(view: LessonView, page: int, width: int) -> Line:
     return [(title, _NAME), (" " * (width - len(title) - len(marks)), _PLAIN), *marks]
 
 
-def _page(view: LessonView, page: int, width: int) -> Iterator[Line]:
+def _page(view: LessonView, page: int, width: int, is_away: bool) -> Iterator[Line]:
     """Yield a step: first what the last run has shown, then the text, the question, and the hints."""
     assert view.lesson is not None
     lesson, step = view.lesson, view.lesson.steps[page]
     is_current = page == view.at
     if is_current and view.done and not view.judgements:
-        yield from _done(view.done, view.story, width)
+        yield from _done(view.done, view.story, width, is_away)
     if page == 0 and not (is_current and view.judgements):
         yield from markdown_lines(lesson.intro, width)
         yield []
     yield from _wrapped(f"{page + 1}. {step.title}", width, _NAME)
     if is_current:
         yield from _result(view, step, width)
-        yield from _wrapped(view.remark, width, _BAD)
+        if view.remark:
+            yield from _wrapped(view.remark, width, _BAD)
+            yield []
     yield from markdown_lines(step.text, width)
     if isinstance(step.check, Question):
         yield []
@@ -139,21 +144,25 @@ def _page(view: LessonView, page: int, width: int) -> Iterator[Line]:
     yield []
     for number, hint in enumerate(step.hints[: view.hints], start=1):
         yield from _wrapped(f"Hint {number}: {hint}", width, _HINT)
-    yield from _wrapped(_to_do(view, step), width, _PALE)
+    yield from _wrapped(_to_do(view, step, is_away), width, _PALE)
     if view.hints < len(step.hints):
-        yield from _wrapped(f"Y shows hint {view.hints + 1} of {len(step.hints)}.", width, _PALE)
+        yield from _wrapped(f"{_escape(is_away)}Y shows hint {view.hints + 1} of {len(step.hints)}.", width, _PALE)
     if page == 0 and not view.judgements and not view.hints:
         # Last: in a low terminal, the task stays in view.
         yield []
         yield from _wrapped(f"On a real robot: {lesson.why}", width, _PALE)
 
 
-def _done(step: Step, story: str, width: int) -> Iterator[Line]:
+def _escape(is_away: bool) -> str:
+    return "escape, then " if is_away else ""
+
+
+def _done(step: Step, story: str, width: int, is_away: bool) -> Iterator[Line]:
     """Yield that a step has just been done, by what, why that was right, and how to read it again."""
     yield from _wrapped(f"✓ {step.title}", width, _GOOD)
     yield from _wrapped(story, width, _PALE)
     yield from _wrapped(step.why, width, _PLAIN)
-    yield from _wrapped("M shows the steps before again.", width, _PALE)
+    yield from _wrapped(f"{_escape(is_away)}M shows the steps before again.", width, _PALE)
     yield []
 
 
@@ -183,14 +192,16 @@ def _result(view: LessonView, step: Step, width: int) -> Iterator[Line]:
     yield []
 
 
-def _to_do(view: LessonView, step: Step) -> str:
+def _to_do(view: LessonView, step: Step, is_away: bool) -> str:
     """Return what the step waits for, or the keys that do it."""
     match step.check:
         case Run(times=times, seeds=seeds):
             count = f" {view.good_runs} of {times} runs{' with other seeds' if seeds else ''}." if times > 1 else ""
-            words = f"d edits the program, R runs it.{count}"
+            words = (
+                f"{_escape(True)}R runs the program.{count}" if is_away else f"d edits the program, R runs it.{count}"
+            )
         case Question(choices=choices):
-            words = "Q types the number of your choice." if choices else "Q types your answer."
+            words = f"{_escape(is_away)}Q types {'the number of your choice' if choices else 'your answer'}."
         case Watch(expression=expression):
             words = f"Next: watch {expression}."
         case Break():
@@ -206,7 +217,7 @@ def _to_do(view: LessonView, step: Step) -> str:
     return words
 
 
-def _end(view: LessonView, width: int) -> Iterator[Line]:
+def _end(view: LessonView, width: int, is_away: bool) -> Iterator[Line]:
     """Yield the end of a lesson: what it is good for, and the model answer if every step was done."""
     assert view.lesson is not None
     skipped = sum(state is StepState.SKIPPED for state in view.states)
@@ -217,11 +228,13 @@ def _end(view: LessonView, width: int) -> Iterator[Line]:
     yield from _wrapped("✓ The lesson is done." if not skipped else "The end of the lesson.", width, _GOOD)
     yield []
     if view.done:
-        yield from _done(view.done, view.story, width)
+        yield from _done(view.done, view.story, width, is_away)
     yield from _wrapped(f"On a real robot: {view.lesson.why}", width, _PLAIN)
     yield []
     following = (
-        f"M, then enter: the next lesson, {view.next_title}." if view.next_title else "This was the last lesson."
+        f"{_escape(is_away)}M, then enter: the next lesson, {view.next_title}."
+        if view.next_title
+        else "This was the last lesson."
     )
     yield from _wrapped(following, width, _HINT)
     yield []
