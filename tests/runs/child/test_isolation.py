@@ -9,12 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.conftest import Command
+from tests.conftest import ROOT, Command
 from tests.isolated import needs_isolation, refusal
 from tests.marking.right import HOPS
 from tuisim.batch.execute import execute
 from tuisim.batch.task import Task
 from tuisim.core.spec import RunSpec
+from tuisim.runs.child import isolation
 from tuisim.source import Program
 
 GOALS = """\
@@ -109,3 +110,17 @@ def test_isolation_is_refused_with_the_reason_of_bubblewrap(
     done = here("mark", "goals.toml", "ada.py", "--isolate")
     assert (done.returncode, done.stdout) == (2, "")
     assert "cannot start here: bwrap: No permissions to create a new namespace" in done.stderr
+
+
+def test_the_guide_names_the_limits_that_are_set() -> None:
+    # The attacks on a marking try them.
+    page = (ROOT / "tuisim" / "guide" / "pages" / "security.md").read_text(encoding="utf-8")
+    limits = {
+        "memory": f"{isolation._MEMORY_BYTES >> 30} GiB",
+        "processes, threads": f"1, {isolation._MOST_THREADS:,}",
+        "its `/tmp`": f"{isolation._TMP_BYTES >> 20} MiB",
+        "its files and its recording together": f"{isolation.MOST_BYTES >> 30} GiB, {isolation.MOST_FILES:,} files",
+        "one file": f"{isolation.MOST_BYTES >> 30} GiB",
+        "open files": f"{isolation._OPEN_FILES}",
+    }
+    assert [f"| {what} | {most} |" for what, most in limits.items() if f"| {what} | {most} |" not in page] == []
