@@ -11,13 +11,14 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from tests.proof.kind import home
 from tuisim.cli import run_command
+from tuisim.runs.handle import RunHandle
 from tuisim.runs.records import Stream
 from tuisim.runs.store import RunStore
-from tuisim.source import Program
 
 MAGIC = "%%sim_magic_preloaded -b Empty_Map"
 GOALS = """\
@@ -104,10 +105,10 @@ def _batch(programs: Mapping[str, str], folder: Path) -> Hosted:
     return _command(["batch", *files, "--seeds", "0", "--jobs", "1", "--keep", "all"], programs)
 
 
-def _mark(programs: Mapping[str, str], folder: Path) -> Hosted:
+def _mark(programs: Mapping[str, str], folder: Path, isolation: str = "--no-isolate") -> Hosted:
     _write(folder / "own", programs)
     (folder / "goals.toml").write_text(GOALS)
-    words = ("--seeds", "0", "--jobs", "1", "--keep", "all", "--no-isolate")
+    words = ("--seeds", "0", "--jobs", "1", "--keep", "all", isolation)
     return _command(["mark", "goals.toml", "own", *words], programs)
 
 
@@ -123,16 +124,20 @@ def _app(programs: Mapping[str, str], folder: Path) -> Hosted:
         async with LabApp(settings(background="Empty_Map", speed=0.0)).run_test(size=(80, 24)) as pilot:
             app = await ready(pilot)
             runs = app.run_controller
-            for number, file in enumerate(files, start=1):
-                app.loader.open_file(file)
-                await until(pilot, lambda at=Path(file): is_open(runs.program, at))  # type: ignore[misc]
-                await until(pilot, lambda: runs.mat is not None)
-                await pilot.press("R")
-                await until(pilot, lambda so_many=number: len(RunStore().runs()) == so_many, file)  # type: ignore[misc]
-                await until(pilot, lambda: runs.run is not None and runs.run.ended is not None, file)
 
-    def is_open(program: Program | None, path: Path) -> bool:
-        return program is not None and Path(program.path) == path
+            def is_open(file: str) -> bool:
+                program = runs.program
+                return runs.mat is not None and program is not None and Path(program.path) == Path(file)
+
+            def is_over(before: RunHandle | None) -> bool:
+                return runs.run is not before and runs.run is not None and runs.run.ended is not None
+
+            for file in files:
+                before = runs.run
+                app.loader.open_file(file)
+                await until(pilot, partial(is_open, file), file)
+                await pilot.press("R")
+                await until(pilot, partial(is_over, before), file)
 
     keep("welcomed", True)
     asyncio.run(all_runs())
@@ -160,6 +165,13 @@ def hosted(host: str, programs: Mapping[str, str], folder: Path) -> Hosted:
     folder.mkdir(parents=True)
     with _in(folder):
         return HOSTS[host](programs, folder)
+
+
+def isolated(programs: Mapping[str, str], folder: Path) -> Hosted:
+    """Mark programs with isolation; return what came of them."""
+    folder.mkdir(parents=True)
+    with _in(folder):
+        return _mark(programs, folder, "--isolate")
 
 
 HOSTS: Mapping[str, Callable[[Mapping[str, str], Path], Hosted]] = {

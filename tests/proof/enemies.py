@@ -12,13 +12,19 @@ from tempfile import TemporaryDirectory
 from types import FrameType
 from typing import Any
 
-from tests.hosts import HOSTS, Hosted, Stored, hosted
-from tests.marking.attackers import OWN_RUN
+import numpy as np
+
+from tests.hosts import HOSTS, Hosted, Stored, hosted, isolated
+from tests.marking.attackers import DISK, FILES, MEMORY, OWN_RUN, PROC, PROCESSES, SECRET
 from tests.proof.commands import check_said
 from tests.proof.kind import FaultError, Kind, TooLongError, home
 from tests.running import PATIENCE_S
 from tuisim.cli import EXIT_OUR_MISTAKE
+from tuisim.errors import ConfigError
 from tuisim.protocol import EVENTS, End
+from tuisim.runs.child.isolation import check_isolation
+from tuisim.runs.removal import remove_tree
+from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.side_files import SIDE_FILES
 from tuisim.runs.store import RunStore
 
@@ -39,10 +45,12 @@ _FILES = ("telemetry.bin", "output.bin", "run.json", "lock", "telemetry.bin.pack
 _PLACED = (
     "os.mkfifo(name)", "os.mkdir(name)", "os.symlink('/dev/zero', name)", "os.symlink('/dev/null', name)",
     "os.symlink(name, name)", "os.symlink('/nowhere', name)", "os.symlink('/', name)", "os.symlink('run.json', name)",
+    "os.symlink('FIELD/secret.txt', name)",
     "open(name, 'wb').truncate(1 << 36)", "open(name, 'wb').write(os.urandom(999))", "open(name, 'w').write('null')",
     "__import__('socket').socket(1).bind(name)", "os.link(run + '/output.bin', name)", "pass",
 )  # fmt: skip
 """What comes in place of a file."""
+_LARGE, _FAR = 1 << 24, 1e9
 _NUMBERS: tuple[Any, ...] = (0, -1, 1, 10**9, -(10**9), 1 << 52, 1 << 63, 10**40, 0.5, 1e300, None, "x", True, [], {})
 
 
@@ -98,7 +106,8 @@ def _folder(random: Random) -> str:
 
 def _caches(random: Random) -> str:
     """Overwrite the prepared mat, which is mapped, with something of its size; or replace it."""
-    lines = ["mats = {line.split()[-1] for line in open('/proc/self/maps') if '.raw' in line}", "assert mats"]
+    lines = ["mapped = {line.split()[-1] for line in open('/proc/self/maps')}"]
+    lines += ["mats = [name for name in mapped if name.endswith(('.sums', '.rgb'))]", "assert mats"]
     do = random.choice(("f.write(bytes(size))", "f.seek(size // 2); f.write(bytes(64))", "f.truncate(size // 2)"))
     return "\n".join((*lines, "for name in mats:", "    size = os.path.getsize(name)",
                       "    os.chmod(name, 0o600)", f"    with open(name, 'r+b') as f: {do}"))  # fmt: skip
@@ -114,9 +123,24 @@ SORTS: Mapping[str, Callable[[Random], str]] = {
 }
 
 
+LIMITED: Mapping[str, str] = {**DISK, **MEMORY, **PROCESSES, **PROC, **FILES}
+"""Attacks for isolated programs, which a limit ends."""
+_ISOLATED = "isolated"
+
+
+def _can_isolate() -> bool:
+    try:
+        check_isolation()
+    except ConfigError:
+        return False
+    return True
+
+
 def _names(random: Random) -> Iterator[str]:
+    cases = [f"{host}:{sort}" for host in HOSTS for sort in SORTS]
+    if _can_isolate():
+        cases += [f"{_ISOLATED}:{name}" for name in LIMITED]
     while True:
-        cases = [f"{host}:{sort}" for host in HOSTS for sort in SORTS]
         yield from (f"{case}:{random.getrandbits(32)}" for case in random.sample(cases, len(cases)))
 
 
@@ -129,7 +153,11 @@ def _class(eve: str) -> dict[str, str]:
 def _wanted(host: str) -> Mapping[str, Stored]:
     """Return what comes of the honest ones alone."""
     with TemporaryDirectory(prefix="tuisim-proof-") as folder:
-        return hosted(host, _class(""), Path(folder, "place")).runs
+        return _hosted(host, _class(""), Path(folder, "place")).runs
+
+
+def _hosted(host: str, programs: Mapping[str, str], place: Path) -> Hosted:
+    return isolated(programs, place) if host == _ISOLATED else hosted(host, programs, place)
 
 
 def _too_long(_number: int, _frame: FrameType | None) -> None:
@@ -138,20 +166,32 @@ def _too_long(_number: int, _frame: FrameType | None) -> None:
 
 def _check(case: str, folder: Path) -> None:
     host, sort, seed = case.split(":")
-    random = Random(seed)
-    text = "\n".join((_BEFORE, SORTS[sort](random), random.choice(_ENDS), "print('B: 2')"))
+    text = LIMITED[sort] if host == _ISOLATED else _drawn(sort, Random(seed))
+    (folder / "secret.txt").write_text(SECRET)
+    text = text.replace("FIELD", str(folder))
     wanted = _wanted(host)
     # What blocks uses no processor.
     before = signal.signal(signal.SIGALRM, _too_long)
     signal.setitimer(signal.ITIMER_REAL, PATIENCE_S, PATIENCE_S)
     try:
-        found = hosted(host, _class(text), folder / "place")
+        found = _hosted(host, _class(text), folder / "place")
         _check_others(found, wanted, text)
+        _check_secret(folder)
+        if host == _ISOLATED and found.runs["eve"].end not in ("raised", "output_limit", "finished", "crashed"):
+            raise FaultError(f"no limit has ended it: {found.runs['eve']}\n{text}")
+        if host == _ISOLATED and "GiB" in found.said.replace("or 1 GiB", ""):
+            raise FaultError(f"it got too much: {found.said}\n{text}")
         with home(folder / "place" / "home"):
-            _look_at_runs()
+            _look_at_runs(text, may_be_gone=sort == "folder")
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
+        # What is nested too deep for whoever removes the folder of the case.
+        remove_tree(folder / "place")
+
+
+def _drawn(sort: str, random: Random) -> str:
+    return "\n".join((_BEFORE, SORTS[sort](random), random.choice(_ENDS), "print('B: 2')"))
 
 
 def _check_others(found: Hosted, wanted: Mapping[str, Stored], text: str) -> None:
@@ -162,11 +202,42 @@ def _check_others(found: Hosted, wanted: Mapping[str, Stored], text: str) -> Non
         raise FaultError(f"exit code {found.code}: {found.said[-2000:]}\n{text}")
 
 
-def _look_at_runs() -> None:
+def _check_secret(folder: Path) -> None:
+    """Check that what a link leads to was neither changed nor copied."""
+    if (folder / "secret.txt").read_text() != SECRET:
+        raise FaultError("a file behind a link was changed")
+    for path in (folder / "place" / "home").rglob("*"):
+        if (
+            not path.is_symlink()
+            and path.is_file()
+            and path.stat().st_size < _LARGE
+            and SECRET.encode() in path.read_bytes()
+        ):
+            raise FaultError(f"what a link leads to was copied into {path}")
+
+
+def _look_at_runs(text: str, may_be_gone: bool) -> None:
     check_said(["runs"])
+    texts = []
     for info in RunStore().runs():
+        run = RunStore().load_run(info.id)
+        texts.append(run.program.text)
+        if run.state != End.FALSIFIED:
+            _check_recording(run)
         for words in (["runs", "show"], ["log", "summary"], ["runs", "rm"]):
             check_said([*words, info.id])
+    if not may_be_gone and not any(one.endswith(f"{text}\n") for one in texts):
+        raise FaultError(f"what is stored is not what was started\n{text}")
+
+
+def _check_recording(run: StoredRun) -> None:
+    """Check that a run that is not falsified has what only the simulation writes."""
+    records = run.telemetry.array()
+    sizes = [np.abs(records[name]).max(initial=0.0) for name in ("x_mm", "y_mm", "heading_deg", "left_position_deg")]
+    if records["tick"].tolist() != list(range(len(records))) or not max(sizes) < _FAR:
+        raise FaultError(f"a run that is {run.state} holds other records: {records[:3]}")
+    if run.state == End.FINISHED and run.end is not None and run.end.tick != len(records) - 1:
+        raise FaultError(f"a run of {len(records)} ticks ends at {run.end}")
 
 
 ENEMIES = Kind("an enemy between honest programs, in each of the five hosts", _names, _check)

@@ -1,0 +1,36 @@
+"""An enemy among other programs falsifies its own run, in every host; the others run as without it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import Command
+from tests.hosts import HOSTS, hosted
+from tests.marking.attackers import TO_ALL
+
+OTHER = "tank_drive.on_for_rotations(50, 50, 1)\nprint('A: 1')"
+PROGRAMS = {"ada": f"{OTHER}  # ada", "eve": f"{TO_ALL}print('B: 1')", "zoe": f"{OTHER}  # zoe"}
+SLOW = ("app", "notebook")
+CODES = {"run": 1, "batch": 1}
+"""Exit codes of the commands that tell how programs end."""
+
+
+@pytest.mark.parametrize("host", [pytest.param(host, marks=[pytest.mark.slow] * (host in SLOW)) for host in HOSTS])
+def test_an_enemy_affects_its_own_run_only(host: str, tmp_path: Path) -> None:
+    found = hosted(host, PROGRAMS, tmp_path / "place")
+    assert [found.runs[name].end for name in PROGRAMS] == ["finished", "falsified", "finished"]
+    assert found.runs["ada"] == found.runs["zoe"]
+    assert found.runs["ada"].printed == ("A: 1",)
+    assert found.code == CODES.get(host, 0)
+
+
+def test_goals_are_checked_for_the_others(here: Command, tmp_path: Path) -> None:
+    (tmp_path / "goals.toml").write_text('title = "Done"\n[[goal]]\nname = "finish"\nfinish = true\n')
+    for name, text in PROGRAMS.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    assert here("run", "ada.py", "eve.py", "zoe.py").returncode == 1
+    done = here("goals", "check", "goals.toml", "1", "2", "3")
+    marks = [line.partition(" · ")[2] for line in done.stdout.splitlines() if line.startswith("run ")]
+    assert (done.returncode, marks) == (1, [f"Done: {points} of 1 goal, {points} of 1 points" for points in (1, 0, 1)])
