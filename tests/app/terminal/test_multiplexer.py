@@ -12,7 +12,7 @@ import pytest
 from tuisim.app.terminal.probe import colors_without_asking
 
 AROUND = {"COLORTERM": "truecolor"}
-TMUX = {"TMUX": "/tmp/tmux-0/default,1,0"}
+TMUX = {"TMUX": "/run/tmux/default,1,0"}
 
 
 @pytest.fixture
