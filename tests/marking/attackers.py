@@ -66,9 +66,16 @@ libc._exit(0)
 """,
     "closed": "import os\nos.closerange(3, 300)",
 }
+_TO_PARENT = """
+import os, signal
+parent = os.getppid()
+# One whose parent has ended has another one, which is none of ours.
+if b'tuisim' in open(f'/proc/{parent}/cmdline', 'rb').read():
+    os.kill(parent, signal.NUMBER)
+"""
 PARENTS: Mapping[str, str] = {
-    name: f"import os, signal\nos.kill(os.getppid() or 4711, signal.{signal})"
-    for name, signal in {"SIGSTOP to the parent": "SIGSTOP", "SIGKILL to the parent": "SIGKILL"}.items()
+    name: _TO_PARENT.replace("NUMBER", number)
+    for name, number in {"SIGSTOP to the parent": "SIGSTOP", "SIGKILL to the parent": "SIGKILL"}.items()
 }
 PROCESSES: Mapping[str, str] = {
     "a fork bomb": OWN_RUN + "while libc.fork() >= 0: libc.usleep(1000)\nlibc._exit(ctypes.get_errno())",

@@ -15,14 +15,13 @@ from typing import Any
 import numpy as np
 
 from tests.hosts import HOSTS, Hosted, Stored, hosted, isolated
+from tests.isolated import refusal
 from tests.marking.attackers import DISK, FILES, MEMORY, OWN_RUN, PROC, PROCESSES, SECRET
 from tests.proof.commands import check_said
 from tests.proof.kind import FaultError, Kind, TooLongError, home
 from tests.running import PATIENCE_S
 from tuisim.cli import EXIT_OUR_MISTAKE
-from tuisim.errors import ConfigError
 from tuisim.protocol import EVENTS, End
-from tuisim.runs.child.isolation import check_isolation
 from tuisim.runs.removal import remove_tree
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.side_files import SIDE_FILES
@@ -44,7 +43,7 @@ for link in links:
 _FILES = ("telemetry.bin", "output.bin", "run.json", "lock", "telemetry.bin.packed", "output.bin.packed", *SIDE_FILES)
 _PLACED = (
     "os.mkfifo(name)", "os.mkdir(name)", "os.symlink('/dev/zero', name)", "os.symlink('/dev/null', name)",
-    "os.symlink(name, name)", "os.symlink('/nowhere', name)", "os.symlink('/', name)", "os.symlink('run.json', name)",
+    "os.symlink(name, name)", "os.symlink('/nowhere', name)", "os.symlink('run.json', name)",
     "os.symlink('FIELD/secret.txt', name)",
     "open(name, 'wb').truncate(1 << 36)", "open(name, 'wb').write(os.urandom(999))", "open(name, 'w').write('null')",
     "__import__('socket').socket(1).bind(name)", "os.link(run + '/output.bin', name)", "pass",
@@ -128,17 +127,9 @@ LIMITED: Mapping[str, str] = {**DISK, **MEMORY, **PROCESSES, **PROC, **FILES}
 _ISOLATED = "isolated"
 
 
-def _can_isolate() -> bool:
-    try:
-        check_isolation()
-    except ConfigError:
-        return False
-    return True
-
-
 def _names(random: Random) -> Iterator[str]:
     cases = [f"{host}:{sort}" for host in HOSTS for sort in SORTS]
-    if _can_isolate():
+    if not refusal():
         cases += [f"{_ISOLATED}:{name}" for name in LIMITED]
     while True:
         yield from (f"{case}:{random.getrandbits(32)}" for case in random.sample(cases, len(cases)))
