@@ -61,7 +61,9 @@ def _stored(programs: Mapping[str, str]) -> dict[str, Stored]:
     found: dict[str, Stored] = {}
     for info in RunStore().runs():
         run = RunStore().load_run(info.id)
-        name = next(name for name, text in programs.items() if run.program.text.rstrip().endswith(text.rstrip()))
+        # The longest, since one program may be the end of another.
+        fits = [name for name, text in programs.items() if run.program.text.rstrip().endswith(text.rstrip())]
+        name = max(fits, key=lambda one: len(programs[one]))
         # One that is falsified holds whatever its program has left.
         rows = [] if run.state == "falsified" else run.output.all_rows()
         printed = tuple(row.text for row in rows if row.stream == Stream.STDOUT)
