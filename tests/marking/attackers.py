@@ -23,7 +23,7 @@ block = b'x' * (1 << 24)
 """Finds the folder of the attacker's own run."""
 TO_ALL = """
 import os
-for fd in range(3, 300):
+for fd in range(3, 20000):
     try: os.write(fd, b'hello\\n')
     except OSError: pass
 """

@@ -19,7 +19,7 @@ folder = os.path.dirname(output)
 """
 TO_ALL = """
 import os
-for fd in range(3, 256):
+for fd in range(3, 20000):
     try:
         os.write(fd, {!r})
     except OSError:

@@ -63,7 +63,6 @@ class A:
 A().speed
 """,
     "import-name": "from math import sqr",
-    "import-mod": "import maths",
     "import-from": "from collections import orderedDict",
     "keyword": """\
 def f(speed=1): pass

@@ -41,7 +41,7 @@ PROGRAMS = {
     ),
     "what a lock looks like": (
         "import threading\nlock = threading.Lock()\nwith lock: print(lock, type(lock).__name__)\nprint(lock)",
-        ["<locked _thread.lock object> lock", "<unlocked _thread.lock object>"],
+        ["<locked _thread.lock object at 0x7f0000000010> lock", "<unlocked _thread.lock object at 0x7f0000000010>"],
     ),
     "event": (
         "import threading, time\ne = threading.Event()\nthreading.Timer(0.5, e.set).start()\n"

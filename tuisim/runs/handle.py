@@ -7,7 +7,6 @@ child writes its recording by itself, and viewers read the run folder.
 from __future__ import annotations
 
 import os
-import select
 import subprocess
 import time
 from collections.abc import Hashable, Mapping
@@ -54,6 +53,7 @@ from tuisim.runs.child.process import (
     what_ended,
     write_command,
 )
+from tuisim.runs.child.readable import is_readable
 from tuisim.runs.packed_files import PACKED_MAGIC, PACKED_SUFFIX
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
 from tuisim.runs.side_files import LOG_FILE, MOST_BYTES, STACK_FILE, copy_modules, read_actions, read_stop_tick
@@ -430,7 +430,7 @@ class RunHandle:
             except subprocess.TimeoutExpired:
                 return
         else:
-            select.select([self._event_fd], [], [], timeout_s)
+            is_readable(self._event_fd, timeout_s)
 
     # Commands
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import errno
 import json
 import os
-import select
 import shutil
 import stat
 import subprocess
@@ -20,6 +19,7 @@ from pathlib import Path
 from typing import IO
 
 from tuisim.errors import ConfigError
+from tuisim.runs.child.readable import is_readable
 from tuisim.runs.child.seccomp import filter_descriptor
 
 BWRAP = "bwrap"
@@ -232,7 +232,7 @@ def spawn_isolated(
             os.close(fd)
     with open(info_fd, "rb") as info:
         # It is closed when the child starts, or when bubblewrap has given up.
-        text = info.read() if select.select([info_fd], [], [], START_S)[0] else b""
+        text = info.read() if is_readable(info_fd, START_S) else b""
     try:
         return IsolatedChild(process, int(json.loads(text)["child-pid"]))
     except (ValueError, KeyError) as error:

@@ -274,7 +274,9 @@ def write_command(fd: int, data: bytes) -> bool:
         except BrokenPipeError:
             return False
         except BlockingIOError:
-            if not select.select([], [fd], [], PATIENCE_S)[1]:
+            poll = select.poll()
+            poll.register(fd, select.POLLOUT)
+            if not poll.poll(round(PATIENCE_S * 1000)):
                 return False
     return True
 

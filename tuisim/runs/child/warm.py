@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import json
 import os
-import select
 import signal
 import socket
 import subprocess
@@ -15,6 +14,8 @@ import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Protocol
+
+from tuisim.runs.child.readable import is_readable
 
 ANSWER_S = 10.0
 """Longest wait for a server: a program may have stopped it. Then it is continued once, and given up after that."""
@@ -57,7 +58,7 @@ class ForkedChild:
     def poll(self) -> int | None:
         """Return the exit status, negative for a signal; None while it runs."""
         with self._lock:
-            if self.returncode is None and select.select([self._status_fd], [], [], 0)[0]:
+            if self.returncode is None and is_readable(self._status_fd, 0):
                 data = os.read(self._status_fd, _NUMBER_BYTES)
                 os.close(self._status_fd)
                 if len(data) == _NUMBER_BYTES:
@@ -82,7 +83,7 @@ class ForkedChild:
             left_s = None if give_up is None else max(give_up - time.monotonic(), 0.0)
             with suppress(OSError, ValueError):
                 # Another thread may close it.
-                if not select.select([self._status_fd], [], [], left_s)[0]:
+                if not is_readable(self._status_fd, left_s):
                     raise subprocess.TimeoutExpired("child of the warm process", timeout or 0.0)
         assert self.returncode is not None
         return self.returncode
@@ -173,7 +174,7 @@ class ForkServer:
 
     def _answer(self, status_fd: int) -> bytes:
         for _ in range(2):
-            if select.select([status_fd], [], [], ANSWER_S)[0]:
+            if is_readable(status_fd, ANSWER_S):
                 return os.read(status_fd, _NUMBER_BYTES)
             self._process.send_signal(signal.SIGCONT)
         raise TimeoutError(errno.ETIMEDOUT, "the server does not answer")
