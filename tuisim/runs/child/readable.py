@@ -1,0 +1,19 @@
+"""Waiting for a descriptor, whatever its number: `select.select` takes none from 1024 on."""
+
+from __future__ import annotations
+
+import select
+
+
+def is_readable(descriptor: int, timeout_s: float | None) -> bool:
+    """Return whether a descriptor can be read without blocking, or is at its end; block for so long, or until it is.
+
+    Raises:
+        OSError: it is closed.
+    """
+    poll = select.poll()
+    poll.register(descriptor, select.POLLIN)
+    found = poll.poll(None if timeout_s is None else max(0, round(timeout_s * 1000)))
+    if found and found[0][1] & select.POLLNVAL:
+        raise OSError(9, "Bad file descriptor")
+    return bool(found)
