@@ -15,10 +15,11 @@ import os
 import stat
 import zlib
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from tuisim.errors import NotSimulated
-from tuisim.shim.files.entries import FOLDER_MODE, DeviceFile, Folder
+from tuisim.shim.files.entries import FOLDER_MODE, DeviceFile, Folder, OpenFile
 from tuisim.shim.files.open_files import DeviceIO, OpenFiles, file_object, read, seek, write
 from tuisim.shim.files.tree import MAYBE_OURS, DeviceTree
 
@@ -235,22 +236,14 @@ class FilePatches:
         def pread(fd: int, length: int, offset: int, /) -> bytes:
             if fd not in by_fd:
                 return real_pread(fd, length, offset)
-            opened = by_fd[fd]
-            before, opened.at = opened.at, offset
-            try:
+            with _moved_to(by_fd[fd], offset) as opened:
                 return read(opened, length)
-            finally:
-                opened.at = before
 
         def pwrite(fd: int, data: Any, offset: int, /) -> int:
             if fd not in by_fd:
                 return real_pwrite(fd, data, offset)
-            opened = by_fd[fd]
-            before, opened.at = opened.at, offset
-            try:
+            with _moved_to(by_fd[fd], offset) as opened:
                 return write(opened, data)
-            finally:
-                opened.at = before
 
         def ftruncate(fd: int, length: int) -> None:
             if fd not in by_fd:
@@ -365,6 +358,16 @@ class FilePatches:
     def _mapping(self, fileno: Any, length: int, *_given: Any, **_named: Any) -> Any:
         opened = self._files.opened(fileno)
         return None if opened is None else opened.file.mapping(length)
+
+
+@contextmanager
+def _moved_to(opened: OpenFile, offset: int) -> Iterator[OpenFile]:
+    """Work at another position of a file, and leave its own as it was."""
+    before, opened.at = opened.at, offset
+    try:
+        yield opened
+    finally:
+        opened.at = before
 
 
 def _or_refuse(tree: DeviceTree, path: Any, flags: int) -> Folder | DeviceFile | None:
