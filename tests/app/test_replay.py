@@ -88,6 +88,7 @@ async def test_a_run_is_searched_for_and_chosen() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("real_mats")
 async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
     from PIL import Image
 

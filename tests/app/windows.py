@@ -48,7 +48,7 @@ class Window:
     environment: Mapping[str, str] = field(default_factory=dict)
     server: tuple[str, ...] = ()
     """A compositor that has to run before."""
-    around: Callable[[ExitStack, str, Path], str] = lambda _, program, __: program
+    around: Callable[[ExitStack, str, Path, Mapping[str, str]], str] = lambda _, program, __, ___: program
     """Returns a command line that runs a program in a multiplexer."""
 
     @property
@@ -57,7 +57,7 @@ class Window:
         return [name for name in programs if shutil.which(name) is None]
 
 
-def _in_screen(stack: ExitStack, program: str, folder: Path) -> str:
+def _in_screen(stack: ExitStack, program: str, folder: Path, _: Mapping[str, str]) -> str:
     sockets = folder / "screens"
     sockets.mkdir(mode=0o700)
     name, program = "tuisim-test", f"COLORTERM=truecolor {program}"
@@ -65,17 +65,17 @@ def _in_screen(stack: ExitStack, program: str, folder: Path) -> str:
     return f"SCREENDIR={shlex.quote(str(sockets))} screen -c /dev/null -S {name} sh -c {shlex.quote(program)}"
 
 
-def _in_tmux(stack: ExitStack, program: str, folder: Path) -> str:
+def _in_tmux(stack: ExitStack, program: str, folder: Path, _: Mapping[str, str]) -> str:
     tmux = ["tmux", "-S", str(folder / "tmux"), "-f", "/dev/null"]
     stack.callback(_quiet, [*tmux, "kill-server"])
     return f"{shlex.join(tmux)} new-session {shlex.quote(f'COLORTERM=truecolor {program}')}"
 
 
-def _in_mosh(stack: ExitStack, program: str, folder: Path) -> str:
+def _in_mosh(stack: ExitStack, program: str, _: Path, environment: Mapping[str, str]) -> str:
     """Both ends of mosh on this machine, without SSH."""
     server = ["mosh-server", "new", "-i", "127.0.0.1", "-c", "256", "--", "sh", "-c", program]
-    environment = {**os.environ, "LANG": "C.UTF-8", "TERM": "xterm-256color"}
-    done = subprocess.run(server, env=environment, capture_output=True, text=True, check=True)
+    at_server = {**environment, "TERM": "xterm-256color"}
+    done = subprocess.run(server, env=at_server, capture_output=True, text=True, check=True)
     found = re.search(r"MOSH CONNECT (\d+) (\S+)", done.stdout)
     process = re.search(r"pid = (\d+)", done.stderr + done.stdout)
     assert found and process, done
@@ -171,13 +171,14 @@ def shown_in(window: Window, arguments: list[str], folder: Path) -> Iterator[Dis
             stack.enter_context(_running(list(window.server), environment, folder))
             _wait_for(folder / window.environment["WAYLAND_DISPLAY"])
         program = shlex.join([sys.executable, "-m", "tuisim", *arguments])
-        command = [*window.command, window.around(stack, program, folder)]
+        command = [*window.command, window.around(stack, program, folder, environment)]
         stack.enter_context(_running(command, environment, folder))
         yield Display(name, folder)
 
 
 _OF_TERMINALS = (
-    "COLORTERM", "COLUMNS", "LINES", "NO_COLOR", "STY", "TERMCAP", "TERM_PROGRAM", "TMUX", "WAYLAND_DISPLAY",
+    "COLORTERM", "COLUMNS", "LC_ALL", "LC_CTYPE", "LINES", "NO_COLOR", "STY", "TERMCAP", "TERM_PROGRAM", "TMUX",
+    "WAYLAND_DISPLAY",
 )  # fmt: skip
 """Variables of the terminal that the tests run in."""
 
