@@ -71,6 +71,9 @@ class ExecutedLine:
     """Number of open calls of the program's own code, from 1."""
 
 
+CLEANUP_S = 2
+"""Simulated time for the program's cleanup after a stop: so far beyond its time limit a run may be recorded."""
+
 PROTOCOL_VERSION = 4
 COMMAND_SIGNAL, STACK_SIGNAL = signal.SIGRTMIN + 11, signal.SIGRTMIN + 12
 """To the child: a command has been sent; write the stack to a file. A program has SIGUSR1 and SIGUSR2 for itself."""

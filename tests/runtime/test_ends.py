@@ -37,6 +37,7 @@ ENDS = {
         0,
     ),
     "swallows everything": ("while True:\n    try: x = 1\n    except: pass", "time_limit", 0),
+    "a long cleanup": ("import time\ntry: time.sleep(100)\nfinally: time.sleep(50)", "time_limit", 0),
     "endless cleaning up": ("try:\n    while True: pass\nfinally:\n    while True: pass", "time_limit", 0),
 }
 

@@ -22,6 +22,7 @@ from tuisim.core.profile import due_ns
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.errors import HostError, LogError, counted
 from tuisim.protocol import (
+    CLEANUP_S,
     COMMAND_SIGNAL,
     STACK_SIGNAL,
     Answer,
@@ -68,7 +69,7 @@ ENDED_CHILD_S = 0.2
 """Time for a child to exit after its last event."""
 DEFAULT_TIME_LIMIT_S = 600.0
 """Simulated time that a run may take if nothing else is asked for."""
-_BEYOND_LIMIT_S = 1.0
+_BEYOND_LIMIT_S = CLEANUP_S + 1.0
 STALL_FACTOR = 2.0
 """A headless child without progress for this many stall limits of real time is stuck in C code."""
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from tuisim.core.field import Field
 from tuisim.core.profile import MS, NS_PER_S
 from tuisim.core.simulation import Simulation
-from tuisim.protocol import End, Message, MotorRegisters, Reply, ReplyWanted, Spoke
+from tuisim.protocol import CLEANUP_S, End, Message, MotorRegisters, Reply, ReplyWanted, Spoke
 from tuisim.runs.records import Stream
 from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel
@@ -37,9 +37,6 @@ REPEATED_WAIT_NS = 10 * NS_PER_S
 
 CHUNK_TICKS = 2000
 """A long wait is split into parts of this number of ticks, to check for commands in between."""
-
-STOP_GRACE_NS = 2 * NS_PER_S
-"""Simulated time for the program's cleanup after a stop."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,6 +276,9 @@ class Session:
 
         Returns:
             Whether a motor ended the wait.
+
+        Raises:
+            StopProgram: the time limit is reached, or the time for the program's cleanup after a stop is over.
         """
         if until > self._limit_ns and not self.stop_reason:
             changed = self._run_ticks(self._limit_ns, on_change)
@@ -286,6 +286,11 @@ class Session:
                 self.now = self._limit_ns
                 limit_s = self._limit_ns / NS_PER_S
                 raise self.request_stop(End.TIME_LIMIT, f"stopped at the limit of {limit_s:g} s simulated time")
+        elif self._stop_raised_at is not None and until > (last := self._stop_raised_at + CLEANUP_S * NS_PER_S):
+            self._run_ticks(last, False)
+            self.now = max(self.now, last)
+            assert self.stop_reason is not None
+            raise self.stop_reason
         else:
             changed = self._run_ticks(until, on_change)
         # A wait that a motor ended is over at the tick in which the motor stopped.
@@ -350,7 +355,7 @@ class Session:
                 re-run can find again.
 
         Raises:
-            StopProgram: when a stop is requested, and again once the grace period is over.
+            StopProgram: when a stop is requested, and again once the time for cleanup is over.
         """
         self.flags &= ~ATTENTION
         self.steering.receive(self)
@@ -362,7 +367,7 @@ class Session:
             if before_tick and reason.end is End.STOPPED:
                 self.steering.write_down_stop(self.sim.tick)
             raise reason
-        if self.now - self._stop_raised_at > STOP_GRACE_NS or self.steering.grace_is_over():
+        if self.steering.grace_is_over():
             raise reason
 
     def request_stop(self, end: End, summary: str) -> StopProgram:
