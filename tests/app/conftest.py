@@ -16,6 +16,7 @@ from textual import pilot as textual_pilot
 from textual._compositor import Compositor
 from textual._context import active_app, visible_screen_stack
 from textual._wait import wait_for_idle as seem_idle
+from textual._xterm_parser import XTermParser
 from textual.css import stylesheet
 from textual.css.model import RuleSet
 from textual.css.parse import parse
@@ -117,6 +118,13 @@ def _notices_stay(monkeypatch: pytest.MonkeyPatch) -> None:
     """Keep notices until the app removes them, so that a test on a busy machine still finds them."""
     monkeypatch.setattr(Notification, "has_expired", False)
     monkeypatch.setattr(Notification, "time_left", 3600.0)
+
+
+@pytest.fixture(autouse=True)
+def _apps_are_released() -> Iterator[None]:
+    """Forget the keys that Textual has parsed: each knows the app that it was sent to, with its mat and its run."""
+    yield
+    XTermParser._parse_extended_key.cache_clear()
 
 
 @pytest.fixture(autouse=True)

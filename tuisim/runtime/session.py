@@ -287,10 +287,11 @@ class Session:
                 limit_s = self._limit_ns / NS_PER_S
                 raise self.request_stop(End.TIME_LIMIT, f"stopped at the limit of {limit_s:g} s simulated time")
         elif self._stop_raised_at is not None and until > (last := self._stop_raised_at + CLEANUP_S * NS_PER_S):
-            self._run_ticks(last, False)
-            self.now = max(self.now, last)
-            assert self.stop_reason is not None
-            raise self.stop_reason
+            changed = self._run_ticks(last, on_change)
+            if not changed:
+                self.now = max(self.now, last)
+                assert self.stop_reason is not None
+                raise self.stop_reason
         else:
             changed = self._run_ticks(until, on_change)
         # A wait that a motor ended is over at the tick in which the motor stopped.
