@@ -15,7 +15,7 @@ from textual.timer import Timer
 from textual.widget import Widget
 from textual.widgets import Input
 
-from tuisim.app.action import FIELD_KEYS, KeyFooter, KeyWord, key_bindings
+from tuisim.app.action import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings
 from tuisim.app.actions import time_travel
 from tuisim.app.actions.app import welcome
 from tuisim.app.actions.keys import ACTIONS, PAGES, footer_actions, working
@@ -522,7 +522,7 @@ class LabApp(PanelMessages):
             return FIELD_KEYS
         code = self.panel_area.code
         typing = code is not None and code.typing and focused is not None and code in focused.ancestors
-        return code.typing_keys if typing and code else ()
+        return TYPING_KEYS if typing else ()
 
     def _hint_at_brick(self, what: str) -> None:
         if not self.panel_area.shown("brick"):
@@ -564,12 +564,9 @@ class LabApp(PanelMessages):
     # What the user does
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave to the widget with the focus: ctrl+p in an editor with keys of Emacs, page keys without a lesson."""
+        """Leave the page keys to the widget with the focus, without a lesson."""
         if action == "act" and parameters[0] in PAGES:
             return takes_pages(self.panel_area)
-        code = self.panel_area.code
-        if action == "command_palette" and code is not None and code.takes_palette_key:
-            return False
         return super().check_action(action, parameters)
 
     def action_leave_field(self) -> None:

@@ -188,6 +188,7 @@ ACTIONS: Mapping[str, LabAction] = {
         *_travels(),
         Action("open", "o", "Open a program, a world or goals", FILES, files.open_program, _can_change_world, "open"),
         Action("edit", "d", "Edit the program", FILES, files.edit, footer="edit"),
+        Action("own-editor", "ctrl+e", "Edit the program in $EDITOR", FILES, files.edit_in_own_editor),
         Action("new", "ctrl+t", "New program", FILES, files.new_program, _can_change_world, "new"),
         Action("mats", "b", "Choose a mat", ROBOT, robot.choose_mat, _can_change_world, "mats"),
         Action("home", "m", "Move the robot to its start pose", ROBOT, robot.home, footer="start"),
