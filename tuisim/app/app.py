@@ -29,7 +29,6 @@ from tuisim.app.feed import Feed, PastView, Series, sample_series
 from tuisim.app.form import NumberInput
 from tuisim.app.goals import AppGoals
 from tuisim.app.keymap import check_theme, with_keys
-from tuisim.app.layout.borders import LAYOUT_KEYS
 from tuisim.app.lesson import AppLesson
 from tuisim.app.loader import PERIOD_S, Loader
 from tuisim.app.panel_area import PanelArea
@@ -516,8 +515,6 @@ class LabApp(PanelMessages):
         """Return the keys of the text field that has the focus; empty if there is none."""
         # The focus may already be gone while the app ends.
         focused = self.focused if self.screen_stack else None
-        if self.panel_area.chosen:
-            return LAYOUT_KEYS
         if isinstance(focused, Input):
             return FIELD_KEYS
         code = self.panel_area.code
@@ -548,10 +545,6 @@ class LabApp(PanelMessages):
             self.lesson.show()
         self.panel_area.show_next_run(self.run_controller.next_run)
         self.call_after_refresh(self.draw, force=True)
-
-    def on_border_mover_layout_mode_changed(self) -> None:
-        """Show the keys of the layout mode, or the usual ones."""
-        self.situation_changed()
 
     def on_panel_area_rearranged(self) -> None:
         self.mark_box()

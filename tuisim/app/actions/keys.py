@@ -106,7 +106,6 @@ _PRESETS = {
     Preset.DRIVE: ("f6", "Layout to drive: large world, readings, position"),
     Preset.DEBUG: ("f7", "Layout to debug: code, variables, world, output"),
     Preset.ANALYSE: ("f8", "Layout to analyse: large chart, arrays, world"),
-    Preset.TEACH: ("f9", "Layout to teach: large world, code, output"),
 }
 
 
@@ -116,8 +115,6 @@ def _layouts() -> list[LabAction]:
             Action(f"layout-{preset}", key, title, PANEL, partial(app.choose_preset, preset=preset))
             for preset, (key, title) in _PRESETS.items()
         ),
-        Action("borders", "f4", "Move the borders of the focused panel", PANEL, app.move_borders),
-        Action("reset-borders", "shift+f4", "Borders back to the sizes of the layout", PANEL, app.reset_borders),
         Action("panel-next", "f2", "Next panel", PANEL, partial(app.next_panel, by=1), footer="panel"),
         Action("panel-before", "shift+f2", "Previous panel", PANEL, partial(app.next_panel, by=-1)),
     ]
