@@ -40,17 +40,18 @@ def _home(home: Path) -> None:
         pytest.param("[simulation]\nbackground = 'Lop'", "no such mat 'Lop' (did you mean Loop?", id="no mat"),
         pytest.param("[simulation]\nprofile = 'p.toml'", "simulation.profile: ", id="no file"),
         pytest.param("[simulation]\npencolor = 'gren'", "no such colour 'gren' (did you mean green", id="no colour"),
+        pytest.param("[editor]\nmotions = 'vim'", "editor: this table is no longer used: remove it (", id="removed"),
         pytest.param("[keys]\nrun = 3", "keys.run: must be a key or a list of keys, got 3", id="no key"),
         pytest.param("[keys]\nrun = []", "keys.run: must be a key or a list of keys, got []", id="no keys"),
     ],
 )
 def test_what_is_wrong_is_named_and_counts_as_missing(text: str, problem: str) -> None:
-    found = config_of_text(f"{text}\n[editor]\nmotions = 'vim'\n", PATH)
+    found = config_of_text(f"{text}\n", PATH)
 
     (error,) = map(str, found.problems)
     assert error.startswith("config.toml: ")
     assert problem in error
-    assert dict(found.written) == {"editor.motions": "vim"}
+    assert dict(found.written) == {}
     with pytest.raises(ConfigError):
         found.checked()
 
@@ -112,11 +113,11 @@ def test_a_change_keeps_comments_and_what_else_is_in_the_file() -> None:
     config_file().write_text("# mine\n[app]\nfps = 30 # slow link\nwrong = 1\n")
 
     save_setting(SETTINGS["app.fps"], 10)
-    save_setting(SETTINGS["editor.motions"], "emacs")
+    save_setting(SETTINGS["simulation.robot"], "Small_Robot")
 
     text = config_file().read_text()
     assert text.startswith("# mine\n[app]\nfps = 10 # slow link\nwrong = 1\n")
-    assert tomllib.loads(text)["editor"] == {"motions": "emacs"}
+    assert tomllib.loads(text)["simulation"] == {"robot": "Small_Robot"}
 
 
 def test_a_wrong_value_is_not_written() -> None:

@@ -41,7 +41,7 @@ QUESTIONS = {
     "where are my settings saved": "settings",
     "always start with the light theme": "settings",
     "remap a key": "settings",
-    "vim keys in the editor": "settings",
+    "edit with vim": "keys",
     "run faster than real time": "virtual-time",
     "move the robot to another start": "options",
     "black outside the mat": "how-sensors-see",

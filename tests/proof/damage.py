@@ -21,7 +21,7 @@ from tests.proof.odd_values import Syntax, with_odd_text, with_odd_value
 from tuisim.analysis.source import read_notes
 from tuisim.app import debugger
 from tuisim.app.editor import text_file
-from tuisim.app.layout.kept import load_borders, load_layout
+from tuisim.app.layout.kept import drop_former, load_layout
 from tuisim.app.panels import TerminalSize
 from tuisim.batch.batch_file import load_batch
 from tuisim.config.build import build_run_spec
@@ -203,7 +203,7 @@ def _journal(path: str) -> None:
 
 
 def _layout() -> object:
-    return load_borders("wide"), load_layout(TerminalSize.SMALL)
+    return drop_former(), load_layout(TerminalSize.SMALL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,7 +240,7 @@ FORMATS: Mapping[str, Format] = {
         "progress.json", _home(load_progress, lambda: home_folder() / "lessons/progress.json"), Syntax.JSON
     ),
     "preferences": Format("preferences.json", _home(lambda: preference("theme"), preferences_file), Syntax.JSON),
-    "borders": Format("preferences.json", _home(_layout, preferences_file), Syntax.JSON),
+    "layout": Format("preferences.json", _home(_layout, preferences_file), Syntax.JSON),
     "breaks": Format("breaks.json", _home(lambda: debugger.load_kept("program.py"), _breaks), Syntax.JSON),
     "draft": Format("draft.json", _home(lambda: text_file.find_draft("program.py"), _draft), Syntax.JSON),
     "notes": Format("notes.jsonl", _reads(lambda path: read_notes(Path(path))), Syntax.ROWS),

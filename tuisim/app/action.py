@@ -253,18 +253,6 @@ TYPING_KEYS: tuple[KeyWord, ...] = (
 """Keys while the user types in the program."""
 
 
-VIM_KEYS: tuple[KeyWord, ...] = (
-    ("esc", "done"), ("i", "insert"), ("^s", "save"), ("^r", "run"), ("/", "find"), ("^g", "line"), ("u", "undo"),
-    ("U", "redo"), ("^/", "comment"),
-)  # fmt: skip
-"""The same with the keys of vim, in the normal mode."""
-EMACS_KEYS: tuple[KeyWord, ...] = (
-    ("esc", "done"), ("^s", "save"), ("^r", "run"), ("M-s", "find"), ("^g", "line"), ("^z", "undo"), ("M-z", "redo"),
-    ("^y", "yank"), ("^/", "comment"),
-)  # fmt: skip
-"""The same with the keys of Emacs."""
-
-
 def fitting(actions: Sequence[Action[Any, Any]], width: int) -> list[Action[Any, Any]]:
     """Return the actions that fit a footer, the keys for help and for leaving before any other.
 

@@ -15,7 +15,7 @@ from textual.timer import Timer
 from textual.widget import Widget
 from textual.widgets import Input
 
-from tuisim.app.action import FIELD_KEYS, KeyFooter, KeyWord, key_bindings
+from tuisim.app.action import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings
 from tuisim.app.actions import time_travel
 from tuisim.app.actions.app import welcome
 from tuisim.app.actions.keys import ACTIONS, PAGES, footer_actions, working
@@ -29,7 +29,6 @@ from tuisim.app.feed import Feed, PastView, Series, sample_series
 from tuisim.app.form import NumberInput
 from tuisim.app.goals import AppGoals
 from tuisim.app.keymap import check_theme, with_keys
-from tuisim.app.layout.borders import LAYOUT_KEYS
 from tuisim.app.lesson import AppLesson
 from tuisim.app.loader import PERIOD_S, Loader
 from tuisim.app.panel_area import PanelArea
@@ -516,13 +515,11 @@ class LabApp(PanelMessages):
         """Return the keys of the text field that has the focus; empty if there is none."""
         # The focus may already be gone while the app ends.
         focused = self.focused if self.screen_stack else None
-        if self.panel_area.chosen:
-            return LAYOUT_KEYS
         if isinstance(focused, Input):
             return FIELD_KEYS
         code = self.panel_area.code
         typing = code is not None and code.typing and focused is not None and code in focused.ancestors
-        return code.typing_keys if typing and code else ()
+        return TYPING_KEYS if typing else ()
 
     def _hint_at_brick(self, what: str) -> None:
         if not self.panel_area.shown("brick"):
@@ -549,10 +546,6 @@ class LabApp(PanelMessages):
         self.panel_area.show_next_run(self.run_controller.next_run)
         self.call_after_refresh(self.draw, force=True)
 
-    def on_border_mover_layout_mode_changed(self) -> None:
-        """Show the keys of the layout mode, or the usual ones."""
-        self.situation_changed()
-
     def on_panel_area_rearranged(self) -> None:
         self.mark_box()
         self.call_after_refresh(self.draw, force=True)
@@ -564,12 +557,9 @@ class LabApp(PanelMessages):
     # What the user does
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave to the widget with the focus: ctrl+p in an editor with keys of Emacs, page keys without a lesson."""
+        """Leave the page keys to the widget with the focus, without a lesson."""
         if action == "act" and parameters[0] in PAGES:
             return takes_pages(self.panel_area)
-        code = self.panel_area.code
-        if action == "command_palette" and code is not None and code.takes_palette_key:
-            return False
         return super().check_action(action, parameters)
 
     def action_leave_field(self) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, TypeVar, cast
 
 from textual import events
+from textual.containers import Container
 from textual.message import Message
 from textual.widget import Widget
 from textual.widgets._toast import ToastRack
@@ -16,14 +17,13 @@ from tuisim.app.layout.arrangement import (
     arrange,
     core_panels,
     is_single,
-    is_tall,
     size_class,
     stacked,
     wanted_panels,
     with_room,
 )
-from tuisim.app.layout.borders import BorderMover
-from tuisim.app.layout.kept import KeptLayout, load_borders, load_layout, save_borders, save_layout
+from tuisim.app.layout.kept import KeptLayout, drop_former, load_layout, save_layout
+from tuisim.app.layout.tree import PanelLayout
 from tuisim.app.panels import PANELS, NextRunPanel, Panel, TerminalSize
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import Snapshot
@@ -59,13 +59,15 @@ _NOTICE_COLUMNS = 24
 """Columns that are enough for a notice."""
 
 
-class PanelArea(BorderMover):
+class PanelArea(Container):
     """The area of all panels.
 
     Args:
         on: Ids of panels shown whatever the size.
         off: Ids of panels hidden whatever the size.
     """
+
+    ALLOW_SELECT = False
 
     class Rearranged(Message):
         """Posted when panels were shown, hidden or moved."""
@@ -77,7 +79,11 @@ class PanelArea(BorderMover):
         panel: str
 
     def __init__(self, on: frozenset[str], off: frozenset[str]) -> None:
-        super().__init__()
+        super().__init__(id="panel-area")
+        self.panels: dict[str, Widget] = {}
+        """The panels that have been mounted, by id."""
+        self.arrangement = PanelLayout()
+        """What is on the screen."""
         given = {**dict.fromkeys(on, True), **dict.fromkeys(off, False)}
         self._given = {panel: given[panel] for panel in PANELS if panel in given}
         """Panels shown or hidden by options, which are not kept."""
@@ -90,8 +96,8 @@ class PanelArea(BorderMover):
         """Id of the maximized panel, empty for none."""
         self.front = "world"
         """The panel shown where there is room for one only."""
-        self._shape = ""
-        """The form of the screen for which `moved` was loaded; empty before the first layout."""
+        self._is_loaded = False
+        """Whether what was kept has been taken up."""
         self.is_stacked = False
         """Whether a roomy panel stands above the lesson, and nothing else is shown."""
         self._roomy: tuple[str, int, int] | None = None
@@ -177,11 +183,10 @@ class PanelArea(BorderMover):
 
         Only what is shown changes, never the run.
         """
-        unchanged = self.preset == preset and self._asked in ({}, self._given) and not self.moved
+        unchanged = self.preset == preset and self._asked in ({}, self._given)
         self.preset = Preset.STANDARD if unchanged else preset
         self._asked, self._chosen = dict(self._given) if self.preset == Preset.STANDARD else {}, {}
         self.alone, self._roomy, self.front = "", None, (*core_panels(self.preset), "world")[0]
-        self._load_borders()
         self.lay_out()
         self._keep_panels()
         return self.preset
@@ -189,27 +194,20 @@ class PanelArea(BorderMover):
     def _keep_panels(self) -> None:
         save_layout(self._size_class(), KeptLayout(self.preset, self._chosen))
 
-    def borders_changed(self) -> None:
-        """Keep the borders for this form of the screen."""
-        save_borders(self._shape, self.moved)
-
     def _size_class(self) -> TerminalSize:
         return size_class(self.size.width, self.size.height + 1)
 
-    def _load_borders(self) -> None:
-        tall = " tall" if is_tall(self.size.width, self.size.height) else ""
-        self._shape = f"{self.preset} {self._size_class()}{tall}"
-        self.moved = load_borders(self._shape)
-
     def _load(self) -> None:
-        """Take up what was kept for this size, at the start, and the borders whenever the size has changed."""
-        if not self._shape:
-            kept = load_layout(self._size_class())
-            self.preset = kept.preset
-            self._chosen = kept.asked
-            self._asked = {**{panel: on for panel, on in kept.asked.items() if panel not in self._given}, **self._given}
-        if not self.chosen:
-            self._load_borders()
+        """Take up what was kept for this size."""
+        self._is_loaded = True
+        if drop_former():
+            self.app.notify(
+                "Moved borders and the layout to teach are no longer there: what was kept of them is dropped"
+            )
+        kept = load_layout(self._size_class())
+        self.preset = kept.preset
+        self._chosen = kept.asked
+        self._asked = {**{panel: on for panel, on in kept.asked.items() if panel not in self._given}, **self._given}
 
     def request(self, wanted: Mapping[str, bool | None]) -> None:
         """Show and hide panels. Later requests get room first; None leaves a panel to the size of the terminal."""
@@ -268,7 +266,7 @@ class PanelArea(BorderMover):
         if self.is_stacked:
             self.arrangement = stacked(wanted[0], wanted[1], self.size.width, self.size.height)
         else:
-            self.arrangement = arrange(wanted, self.size.width, self.size.height, fill, self.preset, self.moved)
+            self.arrangement = arrange(wanted, self.size.width, self.size.height, fill, self.preset)
         with self.app.batch_update():
             for panel, widget in self.panels.items():
                 widget.display = panel in self.arrangement.boxes
@@ -340,7 +338,8 @@ class PanelArea(BorderMover):
                 self._panel(panel).display = False
 
     def on_resize(self, event: events.Resize) -> None:
-        self._load()
+        if not self._is_loaded:
+            self._load()
         self.lay_out()
 
     def on_descendant_focus(self, event: events.DescendantFocus) -> None:

@@ -65,9 +65,6 @@ class PanelMessages(ActionHost, TerminalApp):
             controller.close()
             self.workspace.app.run_changed()
 
-    def on_code_mode_changed(self) -> None:
-        self.situation_changed()
-
     def on_code_edited(self, message: Code.Edited) -> None:
         self.workspace.document.edited(message.text)
         self.workspace.debugger.edited(message.text)

@@ -30,23 +30,13 @@ class Section(StrEnum):
 
     SIMULATION = "simulation"
     APP = "app"
-    EDITOR = "editor"
     KEYS = "keys"
-
-
-class Motions(StrEnum):
-    """The keys that move the cursor while the user types in a program."""
-
-    STANDARD = "standard"
-    VIM = "vim"
-    EMACS = "emacs"
 
 
 ABOUT: Mapping[Section, str] = {
     Section.SIMULATION: "What runs in the app and by `tuisim run` use where neither a switch nor the program's magic "
     "line says it. It does not apply with a world file, goals or a lesson: they are the same for everybody.",
     Section.APP: "How the app looks and sounds.",
-    Section.EDITOR: "Typing in the code panel.",
     Section.KEYS: "Other keys for actions of the app: `tuisim guide keys` lists the actions by id.",
 }
 """What each table is for."""
@@ -109,17 +99,15 @@ def _of_option(option: Option) -> Iterator[Setting]:
         yield Setting(section, option.name, option.help, option.in_file, option)
 
 
-THEME, MOTIONS, CELL_SET = f"{Section.APP}.theme", f"{Section.EDITOR}.motions", f"{Section.APP}.cells"
+THEME, CELL_SET = f"{Section.APP}.theme", f"{Section.APP}.cells"
 """Paths of settings that are read by themselves."""
 _THEME = InFile("textual-dark", "the name of a theme")
-_MOTIONS = InFile(Motions.STANDARD.value, f"one of {', '.join(Motions)}", tuple(Motions))
 _EVERY = (
     *(setting for option in OPTIONS for setting in _of_option(option)),
     Setting(Section.APP, "theme", "Colours of the app; F10 lists the themes.", _THEME),
-    Setting(
-        Section.EDITOR, "motions", f"Keys that move the cursor and edit while you type: {', '.join(Motions)}.", _MOTIONS
-    ),
 )
+REMOVED = {"editor": "there are no keys of vim and Emacs; ctrl+e in the app opens the program in $EDITOR"}
+"""What to do without a table that files of before may have."""
 SETTINGS: Mapping[str, Setting] = {one.path: one for section in Section for one in _EVERY if one.section is section}
 """Every setting by its path, in the order of the file."""
 
@@ -251,6 +239,8 @@ def _entries(data: Any, at: Location, problems: list[ConfigError]) -> Iterator[t
     for section, content in data.items():
         here = at.at(section)
         try:
+            if section in REMOVED:
+                raise here.wrong("this table is no longer used: remove it", REMOVED[section])
             if section not in names:
                 raise here.wrong("no such table", f"{_hint(section, names)}; {see_page(PAGE)}")
             table(content, here)

@@ -23,7 +23,6 @@ APPLIED: dict[str, tuple[list[str], object, Callable[[LabApp], bool]]] = {
     "app.pixels": (["enter", "wait", "end", "enter"], "none", lambda app: app.pixels == "none"),
     "app.speed": (["enter", "wait", "5", "enter"], 5, lambda app: app.run_controller.speed == 5.0),
     "simulation.motornoise": (["enter", "wait", "7", "enter"], 7, lambda app: "next start" in screen_text(app)),
-    "editor.motions": (["enter", "wait", "down", "enter"], "vim", lambda app: "Written" in screen_text(app)),
 }
 
 

@@ -12,7 +12,7 @@ from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import RunPhase
 
 SIZES = [(80, 24), (100, 30), (120, 40), (160, 48), (200, 60), (300, 100), (60, 80)]
-KEYS = {Preset.DRIVE: "f6", Preset.DEBUG: "f7", Preset.ANALYSE: "f8", Preset.TEACH: "f9"}
+KEYS = {Preset.DRIVE: "f6", Preset.DEBUG: "f7", Preset.ANALYSE: "f8"}
 
 in_each_size = pytest.mark.parametrize("size", SIZES, ids=[f"{width}x{height}" for width, height in SIZES])
 for_each_preset = pytest.mark.parametrize("preset", Preset)

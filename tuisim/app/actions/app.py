@@ -58,21 +58,6 @@ def next_panel(workspace: Workspace, by: int) -> None:
         workspace.app.call_after_refresh(workspace.panel_area.attend, panel)
 
 
-def move_borders(workspace: Workspace) -> None:
-    """Begin the layout mode, in which the arrow keys move the borders of the focused panel."""
-    area = workspace.panel_area
-    if not area.arrangement.borders:
-        workspace.app.say("There is one panel only: no borders to move")
-        return
-    area.begin_layout_mode(area.focused_panel() or next(iter(area.arrangement.boxes)))
-
-
-def reset_borders(workspace: Workspace) -> None:
-    """Give every panel the size that the layout gives it."""
-    workspace.panel_area.action_reset_borders()
-    workspace.panel_area.borders_changed()
-
-
 EXAMPLE = "log_greys.py"
 """The program that the welcome offers."""
 

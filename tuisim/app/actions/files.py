@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 
 from tuisim.app import background
 from tuisim.app.actions.time_travel import to_tick
+from tuisim.app.editor.own_editor import own_editor
 from tuisim.app.setup import next_run as plans
 from tuisim.config.obstacles import save_obstacles as write
+from tuisim.errors import TuisimError
 from tuisim.runs.store import RunStore
 
 if TYPE_CHECKING:
@@ -113,6 +115,18 @@ def _type(workspace: Workspace) -> None:
         # A newly mounted panel has not received the program yet.
         workspace.document.introduce()
         code.start_typing(at_error=True)
+
+
+def edit_in_own_editor(workspace: Workspace) -> None:
+    """Open the program's file in the editor that the environment names; unsaved changes are saved before."""
+    workspace.document.when_in_file(partial(_open_in_own_editor, workspace))
+
+
+def _open_in_own_editor(workspace: Workspace, path: Path) -> None:
+    try:
+        workspace.app.run_in_terminal([*own_editor(), str(path)])
+    except TuisimError as error:
+        workspace.app.complain(error)
 
 
 def new_program(workspace: Workspace) -> None:

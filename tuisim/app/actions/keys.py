@@ -106,7 +106,6 @@ _PRESETS = {
     Preset.DRIVE: ("f6", "Layout to drive: large world, readings, position"),
     Preset.DEBUG: ("f7", "Layout to debug: code, variables, world, output"),
     Preset.ANALYSE: ("f8", "Layout to analyse: large chart, arrays, world"),
-    Preset.TEACH: ("f9", "Layout to teach: large world, code, output"),
 }
 
 
@@ -116,8 +115,6 @@ def _layouts() -> list[LabAction]:
             Action(f"layout-{preset}", key, title, PANEL, partial(app.choose_preset, preset=preset))
             for preset, (key, title) in _PRESETS.items()
         ),
-        Action("borders", "f4", "Move the borders of the focused panel", PANEL, app.move_borders),
-        Action("reset-borders", "shift+f4", "Borders back to the sizes of the layout", PANEL, app.reset_borders),
         Action("panel-next", "f2", "Next panel", PANEL, partial(app.next_panel, by=1), footer="panel"),
         Action("panel-before", "shift+f2", "Previous panel", PANEL, partial(app.next_panel, by=-1)),
     ]
@@ -188,6 +185,7 @@ ACTIONS: Mapping[str, LabAction] = {
         *_travels(),
         Action("open", "o", "Open a program, a world or goals", FILES, files.open_program, _can_change_world, "open"),
         Action("edit", "d", "Edit the program", FILES, files.edit, footer="edit"),
+        Action("own-editor", "ctrl+e", "Edit the program in $EDITOR", FILES, files.edit_in_own_editor),
         Action("new", "ctrl+t", "New program", FILES, files.new_program, _can_change_world, "new"),
         Action("mats", "b", "Choose a mat", ROBOT, robot.choose_mat, _can_change_world, "mats"),
         Action("home", "m", "Move the robot to its start pose", ROBOT, robot.home, footer="start"),

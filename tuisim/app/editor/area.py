@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import ClassVar
 
@@ -23,9 +23,7 @@ from textual.widgets import Input, Static, TextArea
 from textual.widgets.text_area import Edit, EditResult, Selection
 
 from tuisim.app.editor import text_lines
-from tuisim.app.editor.motions import Mode, Moment, State, Step, Wanted, press_emacs, press_vim
 from tuisim.app.editor.syntax import KINDS, Colouring
-from tuisim.config.user_config import Motions
 
 # A `TextArea` treats these characters as line ends, Python does not: they are replaced by substitutes.
 _BREAKS = "\x0b\x0c\x1c\x1d\x1e\x85\u2028\u2029"
@@ -86,9 +84,6 @@ class CodeArea(TextArea):
 
         command: EditorCommand
 
-    class ModeChanged(Message):
-        """Posted when letters begin to be commands, or to be typed."""
-
     @dataclass
     class GutterClicked(Message):
         """Posted when a line number was clicked."""
@@ -100,8 +95,6 @@ class CodeArea(TextArea):
         self._colouring = Colouring()
         self._breaks: Mapping[int, str] = {}
         self._lit = self._error = 0
-        self._motions = Motions.STANDARD
-        self._state = State()
         super().__init__(
             read_only=True, show_line_numbers=True, compact=True, highlight_cursor_line=False, soft_wrap=False
         )
@@ -255,61 +248,9 @@ class CodeArea(TextArea):
         return not self.read_only
 
     @property
-    def motions(self) -> Motions:
-        """Whose keys move the cursor and edit."""
-        return self._motions
-
-    @property
-    def mode(self) -> Mode | None:
-        """The mode, with the keys of vim, while the user types."""
-        return self._state.mode if self.typing and self._motions is Motions.VIM else None
-
-    @property
     def takes_letters(self) -> bool:
-        """Whether letters are typed, and none is a command."""
-        return self.typing and self._motions is not Motions.VIM
-
-    def begin_typing(self, motions: Motions) -> None:
-        """Let the user type, with these keys."""
-        self.read_only = False
-        self._motions = motions
-        self._take_state(replace(self._state, mode=Mode.NORMAL if motions is Motions.VIM else Mode.INSERT, typed=""))
-
-    def _take_state(self, state: State) -> None:
-        before, self._state = self._state, state
-        if before.mode is not state.mode:
-            self.post_message(self.ModeChanged())
-
-    def _press(self, event: events.Key) -> bool:
-        """Do what a key does with the user's kind of keys. Return False to leave it to the usual ones."""
-        press = _PRESS.get(self._motions)
-        if press is None:
-            return False
-        now = Moment(self.document.lines, self.cursor_location, self._state)
-        character = event.character if event.is_printable else None
-        step = press(now, event.key, character)
-        if step is None:
-            self._state = replace(self._state, mark=None, column=None)
-            return False
-        self._done(event)
-        self._take_step(step)
-        return True
-
-    def _take_step(self, step: Step) -> None:
-        if step.change:
-            start, end, text = step.change
-            self.history.checkpoint()
-            self.replace(text, start, end, maintain_selection_offset=False)
-            self.history.checkpoint()
-        mark = step.state.mark
-        self.selection = Selection(mark or step.to, step.to)
-        self.scroll_cursor_visible()
-        self._take_state(step.state)
-        if again := {Wanted.UNDO: self.undo, Wanted.REDO: self.redo}.get(step.wanted):
-            for _ in range(min(step.times, MAX_UNDO)):
-                again()
-        elif step.wanted:
-            self.post_message(self.Wanted(EditorCommand(step.wanted.value)))
+        """Whether letters are typed."""
+        return self.typing
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leave the keys of undo and redo, of the pages, home and end to the app while the user does not type."""
@@ -326,8 +267,6 @@ class CodeArea(TextArea):
             if event.key == "enter":
                 self._done(event)
                 self.post_message(self.Wanted(EditorCommand.TYPE))
-            return
-        if self._press(event):
             return
         if event.key == "enter":
             self._done(event)
@@ -392,9 +331,6 @@ class CodeArea(TextArea):
 _TYPING_ACTIONS = frozenset(
     {"undo", "redo", "cursor_page_up", "cursor_page_down", "cursor_line_start", "cursor_line_end"}
 )
-_PRESS = {Motions.VIM: press_vim, Motions.EMACS: press_emacs}
-"""What does the work of keys that are not the usual ones."""
-MAX_UNDO = 100
 
 _WHILE_TYPING = {"escape": EditorCommand.STOP_TYPING, "ctrl+n": EditorCommand.NEW, "ctrl+o": EditorCommand.OPEN}
 """Usual editor keys; while the user does not type, the last two are keys of the robot and the obstacles."""

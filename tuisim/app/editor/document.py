@@ -324,6 +324,14 @@ class Document:
 
         self._app.push_screen(ProgramDialog("program", str(Path.cwd() / self._name), self._write), saved)
 
+    def when_in_file(self, do: Callable[[Path], None]) -> None:
+        """Call a function with the file of the program, which is saved before if necessary."""
+        path = Path(self._path)
+        if self._path and self._is_file and not self.dirty and not is_protected(path):
+            do(path)
+        else:
+            self.save(lambda: do(Path(self._path)))
+
     def save_own(self) -> None:
         """Save the text to its file without a question, if it is a file of the student's own."""
         path = Path(self._path)

@@ -48,7 +48,6 @@ class Preset(StrEnum):
     DRIVE = "drive"
     DEBUG = "debug"
     ANALYSE = "analyse"
-    TEACH = "teach"
 
 
 Form = Callable[[Sequence[str], int, int], Node]
@@ -128,7 +127,7 @@ def _wide(panels: Sequence[str], width: int, height: int) -> Node:
     return joined(Axis.COLUMNS, [left, joined(Axis.ROWS, side)], shares=shares)
 
 
-def _under(panels: Sequence[str], width: int, height: int, strip_rows: int = 0) -> Node:
+def _under(panels: Sequence[str], width: int, height: int) -> Node:
     """The world in the whole width, and everything else in columns below it."""
     side, strip, main = (_in(panels, where) for where in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN))
     most = max(1, width // _COLUMN_COLS)
@@ -151,17 +150,11 @@ def _under(panels: Sequence[str], width: int, height: int, strip_rows: int = 0) 
     columns = growing + packed
     fixed = min(side_width(width, side), width // len(columns))
     below = _stacks(columns, {len(growing) + at: fixed for at in range(len(packed))} if growing else {}, width)
-    if strip_rows and not isinstance(below, str):
-        below = joined(below.axis, below.parts, strip_rows, below.shares)
     return joined(Axis.ROWS, [*main, below])
 
 
 def _fair(panels: Sequence[str]) -> int:
     return sum(PANELS[panel].fair_rows for panel in panels)
-
-
-def _over_strip(panels: Sequence[str], width: int, height: int) -> Node:
-    return _under(panels, width, height, max(8, height * 3 // 10))
 
 
 def _halves(first: Sequence[str], second: Sequence[str], share: float) -> Form:
@@ -234,9 +227,6 @@ _PLANS: Mapping[Preset, _Plan] = {
         ("instrumentation", "output"),
         (_halves(("chart",), ("world", "arrays", "instrumentation", "output"), 0.58),),
     ),
-    Preset.TEACH: _Plan(
-        ("world", "code", "output"), (), (_halves(("world", "output"), ("code",), 0.57), _over_strip),
-    ),
 }  # fmt: skip
 
 
@@ -307,7 +297,6 @@ def arrange(
     height: int,
     fill: Sequence[str] = (),
     preset: Preset = Preset.STANDARD,
-    moved: Mapping[str, float] | None = None,
 ) -> PanelLayout:
     """Place panels on a screen, in the form in which the world is largest.
 
@@ -317,7 +306,6 @@ def arrange(
         height: Rows.
         fill: Panels for what space is left.
         preset: Which forms there are.
-        moved: Borders that the user has moved: share of their split, by name.
 
     Returns:
         Boxes that fill the screen without overlap; panels that found no room are left out.
@@ -334,20 +322,20 @@ def arrange(
         return PanelLayout(left_out=tuple(panels))
     shown = panels_of(best[1])
     layout = PanelLayout(left_out=tuple(panel for panel in panels if panel not in shown), wanted=panels)
-    place(best[1], PanelBox(0, 0, width, height), moved or {}, layout)
+    place(best[1], PanelBox(0, 0, width, height), layout)
     return layout
 
 
 def _scored(
     panels: Sequence[str], fill: Sequence[str], preset: Preset, width: int, height: int
 ) -> Iterator[tuple[tuple[int, float], Node]]:
-    """Yield the tree in each form, and how good that is, whatever borders were moved."""
+    """Yield the tree in each form, and how good that is."""
     for form in _PLANS[preset].forms:
         if not (kept := _kept(form, panels, fill, width, height)):
             continue
         node = form(kept, width, height)
         layout = PanelLayout(wanted=panels)
-        place(node, PanelBox(0, 0, width, height), {}, layout)
+        place(node, PanelBox(0, 0, width, height), layout)
         if form is not _PLANS[preset].forms[0] and not _fills(layout, _LEAST_FILLED):
             continue
         crowded = not _PLANS[preset].compact and fair_rows(node, width) > height

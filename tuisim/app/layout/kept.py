@@ -1,8 +1,7 @@
-"""The arrangement that the user has made, kept for the next start: panels, preset, and borders that were moved."""
+"""The arrangement that the user has made, kept for the next start: panels and preset."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
@@ -44,29 +43,23 @@ def save_layout(size: TerminalSize, layout: KeptLayout) -> None:
     """Keep an arrangement; without a writable folder it lasts until the app ends."""
     # A list: the order counts, and the file sorts the keys of tables.
     panels = [[panel, on] for panel, on in layout.asked.items()]
-    _save(size, {"preset": layout.preset.value, "panels": panels})
-
-
-def load_borders(shape: str) -> dict[str, float]:
-    """Return the borders that were moved in a form of the screen: share of their split, by name."""
-    borders = _table(_table(preference(_NAME)).get("borders"))
-    return {
-        name: float(share)
-        for name, share in _table(borders.get(shape)).items()
-        if isinstance(share, int | float) and 0 < share < 1
-    }
-
-
-def save_borders(shape: str, moved: Mapping[str, float]) -> None:
-    """Keep the borders that were moved in a form of the screen; none forgets them."""
-    borders = _table(_table(preference(_NAME)).get("borders"))
-    shapes = {**borders, shape: {name: round(share, 4) for name, share in moved.items()}}
-    _save("borders", {name: of for name, of in shapes.items() if of})
-
-
-def _save(part: str, value: object) -> None:
     with suppress(OSError):
-        keep(_NAME, {**_table(preference(_NAME)), part: value})
+        keep(_NAME, {**_table(preference(_NAME)), size: {"preset": layout.preset.value, "panels": panels}})
+
+
+def drop_former() -> bool:
+    """Forget what earlier versions kept and no layout has any more: moved borders, and the preset to teach.
+
+    Returns:
+        Whether there was any.
+    """
+    kept = _table(preference(_NAME))
+    known = {part: of for part, of in kept.items() if part != "borders" and _table(of).get("preset") != "teach"}
+    if known == kept:
+        return False
+    with suppress(OSError):
+        keep(_NAME, known)
+    return True
 
 
 def _table(value: object) -> dict[str, Any]:

@@ -1,11 +1,11 @@
-"""The screen as a tree: panels one above the other or side by side, and the borders between them."""
+"""The screen as a tree: panels one above the other or side by side."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from itertools import accumulate
+from itertools import accumulate, pairwise
 
 from tuisim.app.panels import PANELS
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
@@ -36,8 +36,6 @@ class Split:
     parts: tuple[Node, ...]
     shares: tuple[float, ...] = ()
     """Share of the width of each part, for parts side by side; the sum is 1."""
-    least_rows: int = 0
-    """Rows that it gets before the world gets what its shape needs."""
 
 
 Node = str | Split
@@ -53,39 +51,6 @@ class PanelBox:
     width: int
     height: int
 
-    def contains(self, x: int, y: int) -> bool:
-        """Return whether a cell is in the box."""
-        return self.x <= x < self.x + self.width and self.y <= y < self.y + self.height
-
-
-@dataclass(frozen=True, slots=True)
-class Border:
-    """A border between two parts, which can be moved."""
-
-    name: str
-    """The panels that it separates: `world|output`, or `world/output` if one is above the other."""
-    axis: Axis
-    at: int
-    """Column or row of the first cell of the second part."""
-    box: PanelBox
-    """The box of the split that it belongs to."""
-    low: int
-    """The smallest `at`."""
-    high: int
-    before: tuple[str, ...]
-    """The panels of the part before it."""
-    after: tuple[str, ...]
-
-    def touches(self, x: int, y: int) -> bool:
-        """Return whether a cell is one of the two edges at this border."""
-        along = x if self.axis == Axis.COLUMNS else y
-        return along in (self.at - 1, self.at) and self.box.contains(x, y)
-
-    def share_at(self, at: int) -> float:
-        """Return a position as a share of the split, within what the panels need."""
-        start, extent = _along(self.box, self.axis)
-        return (min(max(at, self.low), self.high) - start) / extent
-
 
 @dataclass
 class PanelLayout:
@@ -93,7 +58,6 @@ class PanelLayout:
 
     boxes: dict[str, PanelBox] = field(default_factory=dict)
     """By panel."""
-    borders: list[Border] = field(default_factory=list)
     left_out: tuple[str, ...] = ()
     wanted: Sequence[str] = ()
     """Panels that get rows first, the most wanted first; the world is before them."""
@@ -110,14 +74,14 @@ def ideal_rows(width: int) -> int:
     return round((width - EDGES) * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / _CELL_ASPECT) + EDGES + TIME_BAR_ROWS
 
 
-def joined(axis: Axis, parts: Sequence[Node], least_rows: int = 0, shares: Sequence[float] = ()) -> Node:
+def joined(axis: Axis, parts: Sequence[Node], shares: Sequence[float] = ()) -> Node:
     """Return parts as one node; a single part stays as it is."""
     if len(parts) == 1:
         return parts[0]
     if axis == Axis.COLUMNS and not shares:
         weights = [_weight(part) for part in parts]
         shares = [weight / sum(weights) for weight in weights]
-    return Split(axis, tuple(parts), tuple(shares), least_rows)
+    return Split(axis, tuple(parts), tuple(shares))
 
 
 def panels_of(node: Node) -> tuple[str, ...]:
@@ -146,7 +110,7 @@ def least_rows(node: Node) -> int:
     if isinstance(node, str):
         return PANELS[node].min_rows
     needed = [least_rows(part) for part in node.parts]
-    return max(node.least_rows, sum(needed) if node.axis == Axis.ROWS else max(needed))
+    return sum(needed) if node.axis == Axis.ROWS else max(needed)
 
 
 def fair_rows(node: Node, width: int) -> int:
@@ -162,9 +126,9 @@ def _wished(node: Node, width: int, rows_of: Callable[[str], int]) -> int:
     if isinstance(node, str):
         return ideal_rows(width) if node == "world" else rows_of(node)
     if node.axis == Axis.ROWS:
-        return max(node.least_rows, sum(_wished(part, width, rows_of) for part in node.parts))
+        return sum(_wished(part, width, rows_of) for part in node.parts)
     parts = zip(node.parts, _columns(node, width), strict=True)
-    return max(node.least_rows, *(_wished(part, columns, rows_of) for part, columns in parts))
+    return max(_wished(part, columns, rows_of) for part, columns in parts)
 
 
 def _columns(split: Split, width: int) -> list[int]:
@@ -191,58 +155,34 @@ def _rows(split: Split, width: int, height: int, rank: Callable[[Node], int]) ->
     return rows
 
 
-def _along(box: PanelBox, axis: Axis) -> tuple[int, int]:
-    return (box.x, box.width) if axis == Axis.COLUMNS else (box.y, box.height)
-
-
-def _names(split: Split) -> Iterator[str]:
-    for before, after in zip(split.parts, split.parts[1:], strict=False):
-        yield f"{panels_of(before)[0]}{split.axis}{panels_of(after)[0]}"
-
-
-def _sizes(
-    split: Split, box: PanelBox, moved: Mapping[str, float], rank: Callable[[Node], int]
-) -> tuple[list[int], list[int]]:
-    """Return the extent of each part, with the borders that were moved where they are wanted, and the least extents."""
+def _sizes(split: Split, box: PanelBox, rank: Callable[[Node], int]) -> list[int]:
+    """Return the extent of each part, which is at least what it needs."""
     rows = split.axis == Axis.ROWS
     needs = [least_rows(part) if rows else least_columns(part) for part in split.parts]
     extent = box.height if rows else box.width
     natural = _rows(split, box.width, box.height, rank) if rows else _columns(split, box.width)
-    wanted = [
-        round(moved[name] * extent) if name in moved else end
-        for name, end in zip(_names(split), accumulate(natural[:-1]), strict=True)
-    ]
-    low, ends = 0, []
-    for at, end in enumerate(wanted):
-        low = min(max(end, low + needs[at]), extent - sum(needs[at + 1 :]))
-        ends.append(low)
-    ends.append(extent)
-    return [end - start for start, end in zip([0, *ends[:-1]], ends, strict=True)], needs
+    ends = [0]
+    for at, end in enumerate(accumulate(natural[:-1])):
+        ends.append(min(max(end, ends[-1] + needs[at]), extent - sum(needs[at + 1 :])))
+    return [end - start for start, end in pairwise([*ends, extent])]
 
 
-def place(node: Node, box: PanelBox, moved: Mapping[str, float], layout: PanelLayout) -> None:
+def place(node: Node, box: PanelBox, layout: PanelLayout) -> None:
     """Put the panels of a node into a box.
 
     Args:
         node: What to place.
         box: Where; large enough for what its panels need.
-        moved: Borders that the user has moved: share of their split, by name.
-        layout: Gets the boxes and borders.
+        layout: Gets the boxes.
     """
     if isinstance(node, str):
         layout.boxes[node] = box
         return
-    sizes, needs = _sizes(node, box, moved, layout.rank)
-    start, extent = _along(box, node.axis)
-    at = start
-    names = [*_names(node), ""]
-    for index, (part, size) in enumerate(zip(node.parts, sizes, strict=True)):
-        inner = (
-            PanelBox(at, box.y, size, box.height) if node.axis == Axis.COLUMNS else PanelBox(box.x, at, box.width, size)
-        )
-        place(part, inner, moved, layout)
-        at += size
-        if names[index]:
-            low, high = start + sum(needs[: index + 1]), start + extent - sum(needs[index + 1 :])
-            after = panels_of(node.parts[index + 1])
-            layout.borders.append(Border(names[index], node.axis, at, box, low, high, panels_of(part), after))
+    x, y = box.x, box.y
+    for part, size in zip(node.parts, _sizes(node, box, layout.rank), strict=True):
+        if node.axis == Axis.COLUMNS:
+            place(part, PanelBox(x, y, size, box.height), layout)
+            x += size
+        else:
+            place(part, PanelBox(x, y, box.width, size), layout)
+            y += size

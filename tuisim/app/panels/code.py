@@ -16,13 +16,11 @@ from textual.message import Message
 from textual.widgets import TextArea
 from textual.widgets.text_area import Selection
 
-from tuisim.app.action import EMACS_KEYS, TYPING_KEYS, VIM_KEYS, KeyWord, with_keys_of
+from tuisim.app.action import TYPING_KEYS, with_keys_of
 from tuisim.app.editor.area import FIND, LINE, CodeArea, EditorCommand, FindBar
-from tuisim.app.editor.motions import Mode
 from tuisim.app.editor.text_lines import LineMap, places
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import RunPhase, Snapshot
-from tuisim.config.user_config import MOTIONS, Motions, load_config
 from tuisim.source import source_lines
 
 LIT_GAP_S = 0.1
@@ -70,9 +68,6 @@ class Code(Vertical):
         """Posted when typing in the text begins or ends."""
 
         typing: bool
-
-    class ModeChanged(Message):
-        """Posted when letters begin to be commands, or to be typed."""
 
     @dataclass
     class BreakpointToggled(Message):
@@ -163,7 +158,7 @@ class Code(Vertical):
         title, edited = self._said
         # A file name is no markup.
         self.border_title = title.replace("[", "\\[") + edited
-        keys = "  ".join(f"{key} {does}" for key, does in self.typing_keys[:_HINT_KEYS]) if self.typing else ""
+        keys = "  ".join(f"{key} {does}" for key, does in TYPING_KEYS[:_HINT_KEYS]) if self.typing else ""
         words = self._error_words if self.error_line else ""
         told = words or "  ".join(filter(None, ["running text differs" if self.differs else "", keys]))
         self.border_subtitle = told.replace("[", "\\[")
@@ -260,23 +255,6 @@ class Code(Vertical):
 
     # Typing
 
-    @property
-    def typing_keys(self) -> tuple[KeyWord, ...]:
-        """The keys of the text for the footer, and the mode first, if there are modes."""
-        if mode := self._area.mode:
-            return ((mode.value, "mode"), *(VIM_KEYS if mode is Mode.NORMAL else TYPING_KEYS))
-        return EMACS_KEYS if self._area.motions is Motions.EMACS else TYPING_KEYS
-
-    @property
-    def takes_palette_key(self) -> bool:
-        """Whether the key of the command palette moves the cursor now."""
-        return self.typing and self._area.has_focus and self._area.motions is Motions.EMACS
-
-    def on_code_area_mode_changed(self, event: CodeArea.ModeChanged) -> None:
-        event.stop()
-        self._say()
-        self.post_message(self.ModeChanged())
-
     def start_typing(self, at_error: bool = False) -> None:
         """Start typing in the text.
 
@@ -298,10 +276,7 @@ class Code(Vertical):
 
     def _type(self, typing: bool) -> None:
         if typing != self.typing:
-            if typing:
-                self._area.begin_typing(Motions(str(load_config().value(MOTIONS))))
-            else:
-                self._area.read_only = True
+            self._area.read_only = not typing
             self._say()
             self.post_message(self.TypingChanged(typing))
 

@@ -29,7 +29,7 @@ _APPLY: Mapping[str, Callable[[Workspace, Any], None]] = {
     "app.pixels": lambda workspace, value: workspace.app.choose_pixels(value),
     THEME: _theme,
 }
-"""What applies a setting to the app that is open, by its path. The editor reads its own when typing begins."""
+"""What applies a setting to the app that is open, by its path."""
 
 
 def change(workspace: Workspace, one: Setting, value: FileValue | None) -> None:

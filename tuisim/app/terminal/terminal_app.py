@@ -6,10 +6,8 @@ import asyncio
 import os
 import re
 import signal
-import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
-from encodings import utf_8
+from contextlib import contextmanager
 from functools import partial
 from io import TextIOWrapper
 from pathlib import Path
@@ -53,7 +51,9 @@ from tuisim.app.terminal.answers import AnswerParser, TerminalAnswered
 from tuisim.app.terminal.browser import in_browser, offer
 from tuisim.app.terminal.cell_view import RowsView
 from tuisim.app.terminal.compositor import ThoroughCompositor
+from tuisim.app.terminal.foreground import run_in_foreground
 from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
+from tuisim.app.terminal.lost_terminal import InputDecoder, ResilientOutput
 from tuisim.app.terminal.multiplexer import is_multiplexer
 from tuisim.app.terminal.picture_mode import PictureMode, color_depth, picture_mode_of
 from tuisim.app.terminal.probe import SILENT, take_typed
@@ -70,7 +70,7 @@ from tuisim.app.terminal.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_T
 from tuisim.charts.traces import TRACE_COLORS
 from tuisim.config.options import AUTO, NO_PIXELS, CellSet, FileValue, Protocol
 from tuisim.config.user_config import SETTINGS, THEME, load_config
-from tuisim.errors import SIGNALLED, ConfigError
+from tuisim.errors import SIGNALLED, ConfigError, TuisimError
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
 
@@ -394,8 +394,20 @@ class TerminalApp(App[None]):
         elif in_browser():
             self.notify("tuisim cannot be suspended in a browser", markup=False)
 
+    def run_in_terminal(self, command: Sequence[str]) -> None:
+        """Give the terminal to another program until it ends.
+
+        Raises:
+            TuisimError: the app has no terminal to give, or the program cannot start.
+        """
+        if not isinstance(self._driver, TerminalDriver):
+            raise TuisimError(f"{command[0]} needs a terminal, and here is none to give it, as in a browser")
+        self.suspending()
+        with self._driver.lent():
+            run_in_foreground(command)
+
     def suspending(self) -> None:
-        """Called before the app stops."""
+        """Called before the app stops, or gives its terminal away."""
 
     def action_command_palette(self) -> None:
         """Open the command palette, unless it or a dialog is open: its commands would open dialogs above that one."""
@@ -424,67 +436,6 @@ class _Codes(CompositorUpdate):
     def render_segments(self, console: Console) -> str:
         """Return the codes."""
         return self._codes
-
-
-class ResilientOutput:
-    """Terminal output that accepts writes even after the terminal is gone, for example after a lost connection.
-
-    Textual writes from a thread of its own. That thread would end at the first failed write, and the app, which has to
-    write a little more before it can shut down, would wait for it for ever.
-
-    Args:
-        file: The output.
-    """
-
-    def __init__(self, file: TextIO) -> None:
-        self._file = file
-        self.gone = False
-        """Whether a write has failed; later output is dropped."""
-
-    def write(self, text: str) -> int:
-        """Write a text, or drop it. Return its length."""
-        if not self.gone:
-            try:
-                self._file.write(text)
-            except OSError:
-                self._lose()
-        return len(text)
-
-    def flush(self) -> None:
-        """Flush the output."""
-        if not self.gone:
-            try:
-                self._file.flush()
-            except OSError:
-                self._lose()
-
-    def _lose(self) -> None:
-        # Data left in the file's buffer would fail again when Python ends, and change the exit code.
-        with suppress(OSError), Path(os.devnull).open("wb") as nothing:
-            os.dup2(nothing.fileno(), self._file.fileno())
-            self._file.flush()
-        self.gone = True
-
-    def fileno(self) -> int:
-        """Return the file descriptor."""
-        return self._file.fileno()
-
-
-class InputDecoder(utf_8.IncrementalDecoder):
-    """Decodes what the terminal sends: bytes that are no UTF-8, as from a faulty line, must not end the app."""
-
-    def __init__(self) -> None:
-        super().__init__("replace")
-
-    def decode(self, data: bytes, final: bool = False) -> str:  # type: ignore[override]
-        """Return the characters that are complete.
-
-        Raises:
-            EOFError: the terminal is gone; it would be read again and again, in vain.
-        """
-        if not data and not final and not sys.stdin.isatty():
-            raise EOFError
-        return super().decode(data, final)
 
 
 def text_selection(widget: Widget) -> Selection | None:
@@ -518,8 +469,8 @@ class TerminalDriver(LinuxDriver):
     ) -> None:
         super().__init__(app, debug=debug, mouse=mouse, size=size)
         self._file = cast(TextIOWrapper, ResilientOutput(cast(TextIO, self._file)))
-        self._is_stopping = False
-        """Whether it is about to stop as a job, or has stopped."""
+        self._is_lent = False
+        """Whether the terminal belongs to the shell or another program."""
         self._was_continued = False
         """Whether it has been continued since."""
 
@@ -547,6 +498,25 @@ class TerminalDriver(LinuxDriver):
             self.write(kitty.through_tmux(kitty.DELETE_ALL) if graphics.in_tmux else kitty.DELETE_ALL)
         super().stop_application_mode()
 
+    @contextmanager
+    def lent(self) -> Iterator[None]:
+        """Give the terminal back for a while: to the shell while the app is stopped, or to another program."""
+        # Were the terminal taken over again by a stop from outside that ends meanwhile, it would be taken from them.
+        self._is_lent = True
+        self.suspend_application_mode()
+        handler = signal.signal(signal.SIGTSTP, signal.SIG_DFL)
+        try:
+            yield
+        finally:
+            signal.signal(signal.SIGTSTP, handler)
+            self._is_lent = False
+            if os.isatty(self.fileno):
+                self._must_signal_resume = True
+                self.resume_application_mode()
+            else:
+                # The terminal was lost meanwhile, and nobody reads from it who would notice.
+                self._app.exit(return_code=_LOST)
+
     def stop_as_job(self) -> bool:
         """Restore the terminal and stop the whole process group; resume when the shell says so.
 
@@ -556,24 +526,13 @@ class TerminalDriver(LinuxDriver):
         Returns:
             Whether the app was stopped, and has resumed.
         """
-        # Were the terminal taken over again by a stop from outside that ends meanwhile, it would stay so for the shell.
-        self._is_stopping = True
-        self.suspend_application_mode()
-        handler = signal.signal(signal.SIGTSTP, signal.SIG_DFL)
-        self._was_continued = False
-        os.kill(0, signal.SIGTSTP)
-        signal.signal(signal.SIGTSTP, handler)
-        stopped, self._is_stopping = self._was_continued, False
-        if os.isatty(self.fileno):
-            self._must_signal_resume = True
-            self.resume_application_mode()
-        else:
-            # The terminal was lost meanwhile, and nobody reads from it who would notice.
-            self._app.exit(return_code=_LOST)
-        return stopped
+        with self.lent():
+            self._was_continued = False
+            os.kill(0, signal.SIGTSTP)
+            return self._was_continued
 
     def _sigcont_application(self, *_: object) -> None:
-        if self._is_stopping:
+        if self._is_lent:
             self._was_continued = True
         elif self._auto_restart and not self._loop.is_closed():
             # The signal may come while the app holds the lock of its output, which is not to be taken twice.

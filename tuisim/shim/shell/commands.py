@@ -9,11 +9,11 @@ import os
 import re
 import sys
 from collections.abc import Callable, Generator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tuisim.shim.console import Terminal
 from tuisim.shim.session import Session
-from tuisim.shim.shell.syntax import NOT_THERE, Call, Job, NotUnderstood, Pipeline, read_line
+from tuisim.shim.shell.syntax import NOT_THERE, Line, NotUnderstood, read_line
 from tuisim.shim.sound import Mixer
 from tuisim.shim.tones import Heard, beep_heard, file_heard, speech_heard
 
@@ -97,45 +97,30 @@ class Shell:
     def line(self, text: str, streams: Streams, folder: str = "") -> Steps:
         """Run a line as a shell does."""
         try:
-            jobs = read_line(text)
+            line = read_line(text)
         except NotUnderstood as error:
             _write_error(f"sh: {error}", streams.errors, error.status)
             return error.status
-        status = 0
-        for job in jobs:
-            steps = self._job(job, streams, folder)
-            if job.background:
-                Running(self.session, steps, several=len(job.pipelines) > 1)
-            status = 0 if job.background else (yield from steps)
-        return status
+        return (yield from self._run(line, streams, folder, in_shell=True))
 
     def program(self, words: Sequence[str], streams: Streams, folder: str) -> Steps:
         """Run one command without a shell."""
-        return (yield from self._pipeline(Pipeline((Call(tuple(words)),)), streams, folder, in_shell=False))
+        return (yield from self._run(Line((tuple(words),)), streams, folder, in_shell=False))
 
-    def _job(self, job: Job, streams: Streams, folder: str) -> Steps:
-        status = 0
-        for pipeline in job.pipelines:
-            if status == 0 if pipeline.joint == "||" else pipeline.joint == "&&" and status != 0:
-                continue
-            status = yield from self._pipeline(pipeline, streams, folder, in_shell=True)
-        return status
-
-    def _pipeline(self, pipeline: Pipeline, streams: Streams, folder: str, in_shell: bool) -> Steps:
+    def _run(self, line: Line, streams: Streams, folder: str, in_shell: bool) -> Steps:
         flow, result = Flow(), Result()
         heard: tuple[Heard, ...] = ()
-        for at, call in enumerate(pipeline.calls):
-            if at == 0 and _reads(call.words):
+        for at, words in enumerate(line.calls):
+            if at == 0 and _reads(words):
                 while streams.given is None:
                     yield NEEDS_INPUT
                 flow = streams.given
-            result = self._result(Use(call.words[1:], flow, folder, in_shell), call.words[0])
-            if call.file and not result.status:
-                result = _written(result, call.file)
+            result = self._result(Use(words[1:], flow, folder, in_shell), words[0])
+            if line.file and at == len(line.calls) - 1 and not result.status:
+                result = _written(result, line.file)
             if result.errors:
-                sink = streams.output if call.joined else _nowhere if call.silent_errors else streams.errors
-                _write_error(result.errors, sink, result.status)
-            flow, heard = Flow() if call.silent or call.file else result.output, (*heard, *result.heard)
+                _write_error(result.errors, streams.errors, result.status)
+            flow, heard = result.output, (*heard, *result.heard)
         if flow.data:
             streams.output(flow.data)
         streams.sound = flow.sound or streams.sound
@@ -163,7 +148,7 @@ def _written(result: Result, file: str) -> Result:
             device.write(result.output.data)
     except OSError as error:
         return Result(FAILED, errors=f"sh: cannot write {file}: {error.strerror}")
-    return result
+    return replace(result, output=Flow())
 
 
 def _write_error(text: str, sink: Sink, status: int) -> None:
@@ -174,15 +159,11 @@ def _write_error(text: str, sink: Sink, status: int) -> None:
         own_errors(line)
 
 
-def _nowhere(_data: bytes) -> None:
-    """Discard output."""
-
-
 class Running:
     """Commands that run in the background.
 
     Args:
-        several: Whether more follows the first sound, so that progress must not depend on calls of `poll`.
+        several: Whether more sounds may follow the first one, so that progress must not depend on calls of `poll`.
     """
 
     def __init__(self, session: Session, steps: Steps, several: bool = False) -> None:

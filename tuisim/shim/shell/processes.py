@@ -250,7 +250,7 @@ def finish_asyncio(module: types.ModuleType) -> None:
 
 
 def _steps(shell: Shell, args: Any, in_shell: bool, streams: Streams, folder: str) -> tuple[Steps, bool]:
-    """Return what a process runs, and whether that may be several commands."""
+    """Return what a process runs, and whether that may be several sounds."""
     words = [os.fsdecode(word) for word in ([args] if isinstance(args, str | bytes | os.PathLike) else args)]
     if in_shell:
         return shell.line(words[0], streams, folder), True

@@ -1,0 +1,100 @@
+"""The editor that the environment names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.app.app_help import LOGS, notices, ready, settings, until
+from tests.app.editor.test_editor import own
+from tests.app.terminals import Terminal
+from tuisim.app.app import LabApp
+from tuisim.app.editor.own_editor import own_editor
+from tuisim.errors import TuisimError
+
+pytestmark = pytest.mark.usefixtures("home")
+
+EDITOR = """\
+import sys
+print("THE EDITOR")
+input()
+with open(sys.argv[1], "a") as file:
+    file.write("print('B: 2')\\n")
+"""
+
+
+@pytest.mark.parametrize(
+    ("environment", "command"),
+    [
+        pytest.param({"EDITOR": "nano"}, ["nano"], id="EDITOR"),
+        pytest.param({"EDITOR": "nano", "VISUAL": "code --wait"}, ["code", "--wait"], id="VISUAL counts first"),
+        pytest.param({"EDITOR": "nano", "VISUAL": " "}, ["nano"], id="an empty one does not count"),
+        pytest.param({"EDITOR": "'my editor' -n"}, ["my editor", "-n"], id="quoted"),
+    ],
+)
+def test_the_environment_names_the_editor(environment: dict[str, str], command: list[str]) -> None:
+    assert own_editor(environment) == command
+
+
+@pytest.mark.parametrize(
+    ("environment", "problem"), [({}, "VISUAL and EDITOR are not set"), ({"EDITOR": "'nano"}, "EDITOR='nano: ")]
+)
+def test_without_an_editor_that_is_said(environment: dict[str, str], problem: str) -> None:
+    with pytest.raises(TuisimError, match=problem):
+        own_editor(environment)
+
+
+async def test_without_a_terminal_to_give_that_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("VISUAL", "nano")
+    async with LabApp(own(tmp_path / "prog.py", "a = 1\n")).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("ctrl+e")
+        await until(pilot, lambda: any(one.startswith("nano needs a terminal") for one in notices(app)))
+
+
+async def test_unsaved_changes_are_saved_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path, opened = tmp_path / "prog.py", list[str]()
+    monkeypatch.setenv("VISUAL", "nano")
+    monkeypatch.setattr(LabApp, "run_in_terminal", lambda app, command: opened.append(" ".join(command)))
+    async with LabApp(own(path, "a = 1\n")).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("d", "b", "escape", "ctrl+e")
+        await until(pilot, lambda: opened == [f"nano {path}"])
+        assert path.read_text() == "ba = 1\n"
+        assert not app.document.dirty
+
+
+async def test_of_an_example_a_copy_is_saved_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    opened = list[str]()
+    monkeypatch.setenv("VISUAL", "nano")
+    monkeypatch.setattr(LabApp, "run_in_terminal", lambda app, command: opened.append(" ".join(command)))
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("ctrl+e")
+        await until(pilot, lambda: len(app.screen_stack) == 2)
+        assert opened == []
+
+
+@pytest.mark.slow
+@pytest.mark.tmux
+def test_the_editor_has_the_terminal_and_the_file_is_loaded_again(
+    open_terminal: Callable[[], Terminal], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "editor.py").write_text(EDITOR)
+    (tmp_path / "prog.py").write_text("print('A: 1')\n")
+    monkeypatch.setenv("VISUAL", f"python3 {tmp_path / 'editor.py'}")
+    terminal = open_terminal()
+    terminal.start(["prog.py"], 120, 40)
+    terminal.until(lambda text: "d edit" in text.splitlines()[-1])
+    terminal.keys("C-e")
+    terminal.until(lambda text: "THE EDITOR" in text and "d edit" not in text)
+    terminal.keys("C-c")
+    terminal.until(lambda text: "d edit" in text)
+    terminal.keys("C-e")
+    terminal.until(lambda text: "THE EDITOR" in text and "d edit" not in text)
+    terminal.keys("Enter")
+    terminal.until(lambda text: "d edit" in text and "B: 2" in text)
+    terminal.keys("q")
+    terminal.until(lambda text: "EXIT 0" in text)

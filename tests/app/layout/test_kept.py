@@ -1,0 +1,45 @@
+"""The arrangement that is kept for the next start."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.app.app_help import LOGS, notices, ready, settings
+from tuisim.app.app import LabApp
+from tuisim.app.layout.arrangement import Preset
+from tuisim.app.layout.kept import KeptLayout, drop_former, load_layout, save_layout
+from tuisim.app.panels import TerminalSize
+from tuisim.config.preferences import keep, preference
+
+SMALL = {"preset": "drive", "panels": [["chart", True]]}
+
+
+@pytest.mark.slow
+async def test_the_next_start_finds_the_arrangement_for_its_size() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("f7", "i")
+        kept = app.panel_area.arrangement.boxes
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        assert (await ready(pilot)).panel_area.arrangement.boxes == kept
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        assert (await ready(pilot)).panel_area.preset == "standard"
+
+
+@pytest.mark.parametrize(
+    "former", [{"borders": {"wide": {"world|output": 0.5}}}, {"medium": {"preset": "teach", "panels": []}}]
+)
+async def test_what_no_layout_has_any_more_is_dropped_with_one_notice(former: dict[str, object]) -> None:
+    keep("layout", {"small": SMALL, **former})
+    for told in (1, 0):
+        async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+            app = await ready(pilot)
+            assert app.panel_area.preset == Preset.STANDARD
+            assert sum("no longer there" in notice for notice in notices(app)) == told
+    assert preference("layout") == {"small": SMALL}
+
+
+def test_what_is_known_stays() -> None:
+    save_layout(TerminalSize.SMALL, KeptLayout(Preset.DRIVE, {"chart": True}))
+    assert not drop_former()
+    assert load_layout(TerminalSize.SMALL) == KeptLayout(Preset.DRIVE, {"chart": True})
