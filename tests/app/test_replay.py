@@ -125,7 +125,7 @@ def _no_run_file(folder: Path) -> str:
 
 def _torn_pack(name: str) -> Callable[[Path], str]:
     def damage(folder: Path) -> str:
-        compact(folder, RunStore().load_run(folder.name).spec)
+        compact(folder)
         packed = folder / f"{name}.packed"
         packed.write_bytes(packed.read_bytes()[:-5])
         return "the packed recording is damaged"
