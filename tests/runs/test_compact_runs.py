@@ -5,18 +5,18 @@ from __future__ import annotations
 import json
 import os
 import signal
-import zlib
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from tests.running import Start, over, until_tick
+from tests.runs.earlier_pack import pack_as_earlier
 from tuisim.cli import run_command
 from tuisim.errors import LogError
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.packed_files import PACKED_SUFFIX
-from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE
+from tuisim.runs.records import TELEMETRY_FILE
 from tuisim.runs.store import PACKERS, RunStore, compact_run
 
 LONG = "tank_drive.on_for_seconds(20, 30, 61)\nprint('Far:', ultrasonic.distance_centimeters)\n"
@@ -81,24 +81,6 @@ def test_command(home: Path, start: Start, capsys: pytest.CaptureFixture[str]) -
     over(third)
     assert run_command(["runs", "compact", "--all"]) == 0
     assert packed(third.folder)
-
-
-HEAD_BYTES, VERSION, CHECKSUM = 128, 8, 12
-"""Size of a packed file's header, and where in it the version of the form and the checksum of the recording are."""
-
-
-def pack_as_earlier(folder: Path, checksum_off: int = 0) -> bytes:
-    """Pack a run as an earlier tuisim did, of which only the header can be read; return its telemetry."""
-    stored = RunStore().load_run(folder.name)
-    telemetry = stored.telemetry.array().tobytes()
-    compact_run(stored)
-    for name in (TELEMETRY_FILE, OUTPUT_FILE):
-        path = folder / (name + PACKED_SUFFIX)
-        head = bytearray(path.read_bytes()[:HEAD_BYTES])
-        head[VERSION : VERSION + 4] = (1).to_bytes(4, "little")
-        head[CHECKSUM] ^= checksum_off
-        path.write_bytes(head + zlib.crc32(head).to_bytes(4, "little") + b"not read")
-    return telemetry
 
 
 def killed(start: Start) -> RunHandle:

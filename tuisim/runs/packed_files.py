@@ -140,12 +140,12 @@ def renew(folder: Path, again: Path) -> None:
     Raises:
         LogError: the re-run has other recordings, or they cannot be read or written.
     """
-    contents = {packed.name: _same_recording(packed, again / packed.name) for packed in earlier_forms(folder)}
-    for name, data in contents.items():
-        try:
+    try:
+        contents = {packed.name: _same_recording(packed, again / packed.name) for packed in earlier_forms(folder)}
+        for name, data in contents.items():
             _write(folder / name, data)
-        except OSError as error:
-            raise LogError(f"cannot be packed: {error.strerror or error}", file=str(folder / name)) from error
+    except OSError as error:
+        raise LogError(f"cannot be packed again: {error.strerror or error}", file=str(folder)) from error
 
 
 def _same_recording(packed: Packed, path: Path) -> bytes:
