@@ -15,6 +15,7 @@ from textual.widgets import Input, OptionList
 from tests.app.app_help import LOGS, notices, program, ready, screen_text, settings, until
 from tests.conftest import Command
 from tests.running import PATIENCE_S
+from tests.runs.earlier_pack import pack_as_earlier
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.runs import RunChooser, matching
 from tuisim.app.snapshot import RunPhase
@@ -125,7 +126,7 @@ def _no_run_file(folder: Path) -> str:
 
 def _torn_pack(name: str) -> Callable[[Path], str]:
     def damage(folder: Path) -> str:
-        compact(folder, RunStore().load_run(folder.name).spec)
+        compact(folder)
         packed = folder / f"{name}.packed"
         packed.write_bytes(packed.read_bytes()[:-5])
         return "the packed recording is damaged"
@@ -133,9 +134,16 @@ def _torn_pack(name: str) -> Callable[[Path], str]:
     return damage
 
 
+def _earlier_pack(folder: Path) -> str:
+    pack_as_earlier(folder)
+    return "its recording was packed by an earlier tuisim"
+
+
 @pytest.mark.quick_cases("output")
 @pytest.mark.parametrize(
-    "damage", [_no_run_file, _torn_pack("telemetry.bin"), _torn_pack("output.bin")], ids=["file", "ticks", "output"]
+    "damage",
+    [_no_run_file, _torn_pack("telemetry.bin"), _torn_pack("output.bin"), _earlier_pack],
+    ids=["file", "ticks", "output", "earlier"],
 )
 async def test_a_damaged_run_is_a_notice(damage: Callable[[Path], str]) -> None:
     run_id = stored("print('A: 1')\ntank_drive.on_for_seconds(50, 50, 1)\n")

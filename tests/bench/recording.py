@@ -106,7 +106,7 @@ def _packing(effort: Effort) -> Iterator[Figure]:
             start = time.perf_counter()
             _, size = compact_run(run)
             took_s = time.perf_counter() - start
-            yield Figure(f"packed, {name}{words}", size / run.telemetry.count, "bytes a tick", most=12)
+            yield Figure(f"packed, {name}{words}", size / run.telemetry.count, "bytes a tick", most=36)
             opened_s = median(_opened_s(run) for _ in range(effort.repeats))
             yield Figure(
                 f"opening 10 minutes, {name}{words}", 1e3 * opened_s, "ms", most=4, ratio=loop_time(opened_s, RUN_S)

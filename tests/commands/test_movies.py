@@ -2,30 +2,25 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
-import pyte
 import pytest
 from PIL import Image
 
 from tests.conftest import Command
 from tests.running import told
 from tests.runs.run_recorder import PROGRAM, Recorder
-from tuisim.charts.glyphs import GLYPHS, glyph_set
 from tuisim.charts.world_image import COLORED, Viewport, fitting_view, pen_trace
-from tuisim.config.options import CellSet
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import PenSpec, RobotSpec, RunSpec, WorldSpec
 from tuisim.core.tick_record import TICK_FIELDS
-from tuisim.movies.cell_painter import CellPainter
-from tuisim.movies.clip import END_MS, Panel, Recorded
+from tuisim.movies.clip import END_MS, Recorded
 from tuisim.movies.files import SMALL_BYTES, small_movie
 from tuisim.movies.painter import FramePainter
 from tuisim.runs.records import HEADER_BYTES, OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, TelemetryWriter
@@ -80,7 +75,7 @@ def view(width_px: int, height_px: int) -> Viewport:
 
 
 @pytest.mark.quick_cases(".webp")
-@pytest.mark.parametrize("suffix", [".gif", ".webp", ".apng"])
+@pytest.mark.parametrize("suffix", [".gif", ".webp"])
 def test_a_movie_follows_the_robot(here: Command, run: StoredRun, tmp_path: Path, suffix: str) -> None:
     done = here("runs", "movie", "last", "--out", f"a{suffix}", "--fps", "10")
     assert (done.returncode, told(done)) == (0, [])
@@ -104,69 +99,12 @@ def test_colours_of_the_mat_are_exact_in_a_gif(here: Command, tmp_path: Path) ->
 
 def test_a_part_at_another_speed(here: Command, tmp_path: Path) -> None:
     words = ("--from", "0.8", "--to", "1", "--speed", "2", "--fps", "20", "--panels", "world", "--size", "320x200")
-    here("runs", "movie", "1", "--out", "a.apng", *words)
-    frames, durations = frames_of(tmp_path / "a.apng")
+    here("runs", "movie", "1", "--out", "a.webp", *words)
+    frames, durations = frames_of(tmp_path / "a.webp")
     assert (len(frames), sum(durations)) == (3, 150 + END_MS)
     assert frames[0].shape == (200, 320, 3)
     # The pen was down before.
     assert [(frame == (255, 0, 255)).all(axis=2).any() for frame in frames] == [True] * 3
-
-
-def replayed(path: Path, until_s: float) -> tuple[pyte.Screen, float]:
-    """The screen of a cast at a time, and how long it is."""
-    head, *events = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
-    assert head["version"] == 2
-    screen = pyte.Screen(head["width"], head["height"])
-    for time_s, kind, text in events:
-        assert kind == "o"
-        if time_s <= until_s:
-            pyte.Stream(screen).feed(text)
-    return screen, events[-1][0]
-
-
-@pytest.mark.quick_cases("80x36-world", "100x30-chart", "80x36-arrays")
-@pytest.mark.parametrize("panels", ["world", "world,chart", "chart", "arrays", "world,chart,arrays"])
-@pytest.mark.parametrize("size", ["80x36", "100x30"])
-def test_a_cast_shows_in_a_terminal_what_was_drawn(
-    here: Command, run: StoredRun, tmp_path: Path, panels: str, size: str
-) -> None:
-    here("runs", "movie", "last", "--out", "a.cast", "--fps", "5", "--size", size, "--panels", panels)
-    columns, rows = map(int, size.split("x"))
-    recorded = Recorded(run)
-    painter = CellPainter(recorded, [Panel(name) for name in panels.split(",")], (0, 1), (columns, rows))
-    for time_s in (0.0, 0.2, 0.4, 0.6, 0.8, 1.0):
-        screen, lasts_s = replayed(tmp_path / "a.cast", time_s)
-        assert lasts_s == 6 / 5 + END_MS / 1000
-        for y, row in enumerate(painter.cells(recorded.moment(time_s))):
-            shown = [screen.buffer[y][x] for x in range(columns)]
-            assert [cell.data for cell in shown] == [text for text, _ in row]
-            assert [cell.bg for cell in shown] == [bytes(look.ground).hex() for _, look in row]
-            inks = [
-                (cell.fg, bytes(look.ink).hex()) for cell, (text, look) in zip(shown, row, strict=True) if text != " "
-            ]
-            assert [fg for fg, _ in inks] == [ink for _, ink in inks]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("cells", ["half", "quadrant", "sextant", "octant"])
-def test_a_cast_has_the_glyphs_of_a_set(here: Command, tmp_path: Path, cells: str) -> None:
-    here("runs", "movie", "last", "--out", "a.cast", "--fps", "5", "--panels", "world", "--cells", cells)
-    screen, _ = replayed(tmp_path / "a.cast", 100)
-    glyphs = glyph_set(CellSet(cells))
-    known = {" ", "▀", *(GLYPHS[number] for number in glyphs.numbers.tolist())}
-    shown = set("".join(screen.display[1:]))
-    assert shown <= known
-    assert len(shown) > (4 if glyphs.cols == 2 else 1)
-
-
-@pytest.mark.slow
-def test_a_cast_has_the_robot_the_chart_and_the_value(here: Command, tmp_path: Path) -> None:
-    assert here("runs", "movie", "last", "--out", "a.cast").returncode == 0
-    screen, _ = replayed(tmp_path / "a.cast", 100)
-    assert screen.display[0].split() == ["1.00", "s", "Colour:", "50"]
-    assert any("[x] Colour" in line for line in screen.display)
-    body = bytes(COLORED.body).hex()
-    assert any(body in (cell.fg, cell.bg) for row in screen.buffer.values() for cell in row.values())
 
 
 @pytest.mark.parametrize(("at", "value"), [("0.2", "100"), ("0.7", "50")])
@@ -217,7 +155,7 @@ def test_no_small_movie(monkeypatch: pytest.MonkeyPatch, speed_dps: float, most:
 
 # Words after `runs`, and what the line on stderr must say.
 BAD = {
-    "unknown format": ("movie last --out a.mp4", "unknown format '.mp4' (a movie ends in .gif,"),
+    "unknown format": ("movie last --out a.mp4", "unknown format '.mp4' (a movie ends in .gif, .webp)"),
     "unknown format of a picture": ("picture last --out a.gif", "unknown format '.gif' (a picture ends in .png, .svg)"),
     "no folder": ("movie last --out no/a.gif", "cannot write no/a.gif: there is no folder no"),
     "folder": ("movie last --out folder.gif", "cannot write folder.gif: it is a folder"),
@@ -235,19 +173,6 @@ BAD = {
     "size": (
         "movie last --size 20x20",
         "--size: no such size '20x20' (width and height in pixels, 160x120 to 3840x2160)",
-    ),
-    "size of a cast": (
-        "movie last --out a.cast --size 10x10",
-        "--size: no such size '10x10' (width and height in characters, 20x10 to 400x200)",
-    ),
-    "no room in a cast": (
-        "movie last --out a.cast --size 20x10",
-        "--size: 20x10 is too small (no room for all panels)",
-    ),
-    "glyphs of pixels": ("movie last --cells octant", "--cells: .gif is drawn with pixels (only a .cast has glyphs)"),
-    "no such glyphs": (
-        "movie last --out a.cast --cells ascii",
-        "--cells: no such set 'ascii' (one of half, quadrant, sextant, octant)",
     ),
     "no room": ("movie last --size 160x120", "--size: 160x120 is too small (no room for the panel world)"),
     "too large": (
@@ -290,10 +215,9 @@ def test_damaged_records_cost_only_their_frames(
     path.write_bytes(content)
     # A line to a point far away takes minutes to draw.
     assert all(abs(at) < 10_000 for line in pen_trace(SPEC, records).lines for point in line for at in point)
-    for name in ("a.webp", "a.cast"):
-        done = here("runs", "movie", "last", "--out", name, "--fps", "2", "--panels", "world,chart,arrays")
-        note = f"note: {TELEMETRY_FILE}: 3 of 101 records are damaged and left out"
-        assert (done.returncode, done.stderr.splitlines()) == (0, [note])
+    done = here("runs", "movie", "last", "--out", "a.webp", "--fps", "2", "--panels", "world,chart,arrays")
+    note = f"note: {TELEMETRY_FILE}: 3 of 101 records are damaged and left out"
+    assert (done.returncode, done.stderr.splitlines()) == (0, [note])
     assert len(frames_of(tmp_path / "a.webp")[0]) == 3
 
 

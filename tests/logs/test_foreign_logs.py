@@ -85,7 +85,8 @@ CASES: dict[str, Case] = {
     "the heading is a comment": ("a.csv", b"# a log\n# time,red\n0,1\n1,2\n", TWO),
     "the heading begins with the sign": ("a.csv", b"#" + CSV, TWO),
     "as numpy saves it": ("a.txt", savetxt, TWO),
-    "as Zeek writes it": ("conn.log", ZEEK.encode(), Read(2, check=lambda log: times(log) == [0, 1])),
+    "as Zeek writes it": ("conn.log", ZEEK.encode(), "is a Zeek log with a heading of its own"),
+    "a heading that is called fields": ("a.csv", b"# log\n#fields,red\n0,1\n1,2\n", Read(2, ("fields", "red"))),
     "colours are no comments": (
         "a.csv",
         b"time,colour,red\n0,#ff0000,1\n1,#00ff00,2\n",
@@ -119,11 +120,11 @@ CASES: dict[str, Case] = {
         lambda: gzip.compress(arrow_stream(True)),
         "Arrow stream of before",
     ),
-    "dates with a time of day": ("a.arrow", arrow_date64, Read(2, check=lambda log: times(log) == [0, 60])),
+    "dates of 64 bits": ("a.arrow", arrow_date64, "column 'date' is of Arrow's type date64"),
     "bzip2": ("a.csv.bz2", bz2.compress(CSV), TWO),
     "two bzip2 files in one": ("a.csv.bz2", bz2.compress(CSV[:15]) + bz2.compress(CSV[15:]), TWO),
     "bzip2 cut off": ("a.csv.bz2", bz2.compress(CSV)[:-20], "no rows: the compressed file is truncated"),
-    "xz": ("a.csv.xz", lzma.compress(CSV), TWO),
+    "xz": ("a.csv.xz", lzma.compress(CSV), "is an xz file, which cannot be read"),
     "zstd": ("a.csv.zst", pa.compress(CSV, "zstd", asbytes=True), TWO),
     "zstd cut off": (
         "a.csv.zst",

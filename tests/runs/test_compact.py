@@ -6,7 +6,6 @@ import os
 import random
 import shutil
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +17,7 @@ from tuisim.core.simulation import Simulation
 from tuisim.core.spec import NoiseSpec, RobotSpec, RunSpec, WorldSpec
 from tuisim.errors import LogError
 from tuisim.runs import packed_codec
-from tuisim.runs.packed_codec import TICK, RobotGeometry
+from tuisim.runs.packed_codec import TICK
 from tuisim.runs.packed_files import PACKED_SUFFIX, compact
 from tuisim.runs.records import (
     HEADER_BYTES,
@@ -31,7 +30,6 @@ from tuisim.runs.records import (
 from tuisim.runs.views import OutputView, TelemetryView
 
 SPEC = RunSpec(RobotSpec(), WorldSpec(), PROFILES["robolab"])
-GEOMETRY = RobotGeometry.of(SPEC)
 
 
 def _straight(sim: Simulation) -> None:
@@ -78,11 +76,11 @@ def _moved_by_hand(sim: Simulation) -> None:
 
 
 WAYS = {"straight": _straight, "curves": _curves, "steered": _steered, "moves": _moves, "by hand": _moved_by_hand}
-MOST_BYTES = {"straight": 0.5, "curves": 2.5, "steered": 12.0, "moves": 6.0, "by hand": 8.0}
+MOST_BYTES = {"straight": 3.0, "curves": 15.0, "steered": 25.0, "moves": 15.0, "by hand": 15.0}
 """A tick, without noise; short recordings, in which the first of everything weighs more."""
 
 
-def _recorded(folder: Path, way: str, profile: str = "robolab", noise: int = 0) -> RunSpec:
+def _recorded(folder: Path, way: str, profile: str = "robolab", noise: int = 0) -> None:
     folder.mkdir()
     spec = RunSpec(RobotSpec(), WorldSpec(noise=NoiseSpec(0, noise)), PROFILES[profile], 5)
     writer = TelemetryWriter(folder)
@@ -92,7 +90,6 @@ def _recorded(folder: Path, way: str, profile: str = "robolab", noise: int = 0) 
     for row in range(300):
         output.write(f"Größe: {row % 7}".encode() * (row % 3), row // 2, row * 7_000_000, row % 5, Stream.STDOUT)
     output.close()
-    return spec
 
 
 @pytest.mark.quick_cases("*-robolab-*")
@@ -101,9 +98,9 @@ def _recorded(folder: Path, way: str, profile: str = "robolab", noise: int = 0) 
 @pytest.mark.parametrize("way", WAYS)
 def test_every_bit_comes_back(tmp_path: Path, way: str, profile: str, noise: int) -> None:
     folder = tmp_path / "run"
-    spec = _recorded(folder, way, profile, noise)
+    _recorded(folder, way, profile, noise)
     telemetry, output = TelemetryView(folder).array().tobytes(), OutputView(folder).all_rows()
-    compact(folder, spec)
+    compact(folder)
     assert sorted(path.name for path in folder.iterdir()) == [
         name + PACKED_SUFFIX for name in (OUTPUT_FILE, TELEMETRY_FILE)
     ]
@@ -120,12 +117,11 @@ def test_every_bit_comes_back_of_what_no_motion_makes() -> None:
     chance = np.random.default_rng(4)
     for count in (0, 1, 2, 3, 500):
         records = chance.bytes(count * TICK.itemsize)
-        assert packed_codec.unfold_ticks(packed_codec.fold_ticks(records, GEOMETRY), count, GEOMETRY) == records
+        assert packed_codec.unfold_ticks(packed_codec.fold_ticks(records), count) == records
     special = np.zeros(8, TICK)
     special["x_mm"] = [0.0, -0.0, np.nan, np.inf, -np.inf, 5e-324, 1.7e308, -1.7e308]
     special["left_speed_dps"] = [0.0, -0.0, np.nan, np.inf, -np.inf, 1e-45, 3e38, -3e38]
-    folded = packed_codec.fold_ticks(special.tobytes(), GEOMETRY)
-    assert packed_codec.unfold_ticks(folded, 8, GEOMETRY) == special.tobytes()
+    assert packed_codec.unfold_ticks(packed_codec.fold_ticks(special.tobytes()), 8) == special.tobytes()
 
 
 def test_rows_in_several_pieces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -149,7 +145,7 @@ def test_a_reader_that_was_there_before_goes_on(tmp_path: Path) -> None:
     sim.advance(20_000)
     writer.close()
     whole = TelemetryView(folder).array().tobytes()
-    compact(folder, SPEC)
+    compact(folder)
     assert view.count == 20_001
     assert view.array().tobytes() == whole
 
@@ -161,7 +157,7 @@ class Killed(BaseException):
 @pytest.mark.parametrize("step", range(1, 9))
 def test_packing_may_be_cut_off_anywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: int) -> None:
     folder = tmp_path / "run"
-    spec = _recorded(folder, "curves")
+    _recorded(folder, "curves")
     telemetry, output = TelemetryView(folder).array().tobytes(), OutputView(folder).all_rows()
     done = 0
 
@@ -180,16 +176,16 @@ def test_packing_may_be_cut_off_anywhere(tmp_path: Path, monkeypatch: pytest.Mon
             patch.setattr(module, name, counted(getattr(module, name)))
         if step <= 2:
             with pytest.raises(Killed):
-                compact(folder, spec)
+                compact(folder)
         else:
             # Past the last step nothing is cut off.
             try:
-                compact(folder, spec)
+                compact(folder)
             except Killed:
                 assert step <= done
     assert TelemetryView(folder).array().tobytes() == telemetry
     assert OutputView(folder).all_rows() == output
-    compact(folder, spec)
+    compact(folder)
     assert TelemetryView(folder).array().tobytes() == telemetry
     assert OutputView(folder).all_rows() == output
     assert not (folder / TELEMETRY_FILE).exists()
@@ -201,7 +197,7 @@ def _flip(data: bytes, at: int) -> bytes:
 
 DAMAGES: dict[str, tuple[Callable[[bytes], bytes], str]] = {
     "magic": (lambda data: _flip(data, 2), "not a packed recording"),
-    "version": (lambda data: _flip(data, 8), "format version 17, this tuisim reads 1"),
+    "version": (lambda data: _flip(data, 8), "format version 18, this tuisim reads 2"),
     "header": (lambda data: _flip(data, 90), "header is corrupt"),
     "content": (lambda data: _flip(data, len(data) - 30), "damaged"),
     "cut": (lambda data: data[:-1], "damaged"),
@@ -215,7 +211,8 @@ DAMAGES: dict[str, tuple[Callable[[bytes], bytes], str]] = {
 @pytest.mark.parametrize("name", [TELEMETRY_FILE, OUTPUT_FILE])
 def test_damage_is_told_and_loses_nothing_else(tmp_path: Path, name: str, damage: str) -> None:
     folder = tmp_path / "run"
-    compact(folder, _recorded(folder, "moves"))
+    _recorded(folder, "moves")
+    compact(folder)
     path = folder / (name + PACKED_SUFFIX)
     change, told = DAMAGES[damage]
     path.write_bytes(change(path.read_bytes()))
@@ -226,52 +223,50 @@ def test_damage_is_told_and_loses_nothing_else(tmp_path: Path, name: str, damage
     assert other > 300
 
 
-def test_any_flipped_byte_is_noticed(tmp_path: Path) -> None:
+def test_any_flipped_byte_is_noticed_unless_it_changes_nothing(tmp_path: Path) -> None:
     folder = tmp_path / "run"
-    compact(folder, _recorded(folder, "curves"))
+    _recorded(folder, "curves")
+    telemetry = TelemetryView(folder).array().tobytes()
+    compact(folder)
     path = folder / (TELEMETRY_FILE + PACKED_SUFFIX)
-    data = path.read_bytes()
+    data, noticed = path.read_bytes(), 0
     for at in random.Random(2).sample(range(len(data)), 200):
         path.write_bytes(_flip(data, at))
-        with pytest.raises(LogError):
-            TelemetryView(folder).array()
+        try:
+            # Some bits of compressed data mean nothing.
+            assert TelemetryView(folder).array().tobytes() == telemetry
+        except LogError:
+            noticed += 1
+    assert noticed > 190
 
 
 def test_a_recording_without_its_end_stays(tmp_path: Path) -> None:
     folder = tmp_path / "run"
-    spec = _recorded(folder, "straight")
+    _recorded(folder, "straight")
     path = folder / TELEMETRY_FILE
     os.truncate(path, path.stat().st_size - 100)
     note = TelemetryView(folder).note
-    compact(folder, spec)
+    compact(folder)
     assert note and TelemetryView(folder).note == note
 
 
 def test_left_over_files_go_when_they_are_old(tmp_path: Path) -> None:
     folder = tmp_path / "run"
-    spec = _recorded(folder, "straight")
+    _recorded(folder, "straight")
     old, new = (folder / f".{TELEMETRY_FILE}{PACKED_SUFFIX}.{name}.tmp" for name in ("old", "new"))
     old.touch()
     new.touch()
     os.utime(old, (0, 0))
-    compact(folder, spec)
+    compact(folder)
     assert not old.exists() and new.exists()
-
-
-def test_the_wrong_geometry_costs_bytes_but_no_bits(tmp_path: Path) -> None:
-    _recorded(tmp_path / "run", "steered")
-    records = TelemetryView(tmp_path / "run").array()
-    wrong = replace(GEOMETRY, mm_per_deg=0.1)
-    folded = packed_codec.fold_ticks(records.tobytes(), wrong)
-    assert packed_codec.unfold_ticks(folded, len(records), wrong) == records.tobytes()
 
 
 def test_what_would_not_come_back_is_not_packed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = tmp_path / "run"
-    spec = _recorded(folder, "curves")
+    _recorded(folder, "curves")
     kept = tmp_path / "kept"
     shutil.copytree(folder, kept)
     monkeypatch.setattr(packed_codec, "unfold_ticks", lambda *_: bytes(TICK.itemsize))
     with pytest.raises(LogError, match="without loss"):
-        compact(folder, spec)
+        compact(folder)
     assert (folder / TELEMETRY_FILE).read_bytes() == (kept / TELEMETRY_FILE).read_bytes()

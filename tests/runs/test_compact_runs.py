@@ -11,9 +11,10 @@ from pathlib import Path
 import pytest
 
 from tests.running import Start, over, until_tick
+from tests.runs.earlier_pack import pack_as_earlier
 from tuisim.cli import run_command
 from tuisim.errors import LogError
-from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.packed_files import PACKED_SUFFIX
 from tuisim.runs.records import TELEMETRY_FILE
 from tuisim.runs.store import PACKERS, RunStore, compact_run
@@ -82,6 +83,47 @@ def test_command(home: Path, start: Start, capsys: pytest.CaptureFixture[str]) -
     assert packed(third.folder)
 
 
+def killed(start: Start) -> RunHandle:
+    """Return a run whose process was killed."""
+    handle = start("while True:\n    tank_drive.on_for_seconds(20, 30, 1)\n", live=True)
+    until_tick(handle, 10)
+    os.kill(handle._process.pid, signal.SIGKILL)
+    handle._process.wait()
+    return handle
+
+
+@pytest.mark.parametrize("is_killed", [False, True], ids=["finished", "killed"])
+def test_what_an_earlier_tuisim_packed_is_made_again(
+    start: Start, is_killed: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    handle = killed(start) if is_killed else start(SHORT + "print('Far:', ultrasonic.distance_centimeters)\n")
+    over(handle)
+    settle()
+    telemetry = pack_as_earlier(handle.folder)
+    stored = RunStore().load_run(handle.run_id)
+    assert (stored.program.text, stored.spec, stored.telemetry.count) == (handle.program.text, handle.spec, 0)
+    assert run_command(["runs", "show", handle.run_id]) == 0
+    assert capsys.readouterr().out.count("packed by an earlier tuisim and cannot be read: `tuisim runs rerun RUN`") == 1
+    assert run_command(["log", "summary", handle.run_id]) == 2
+    assert "packed by an earlier tuisim" in capsys.readouterr().err
+    assert run_command(["runs", "rerun", handle.run_id]) == 0
+    said = capsys.readouterr()
+    assert ("is made again" in said.err, "identical" in said.out) == (True, True)
+    again = RunStore().load_run(handle.run_id)
+    assert (again.notes, again.telemetry.array().tobytes()) == ((), telemetry)
+    assert packed(handle.folder)
+
+
+def test_a_rerun_that_differs_replaces_no_recording(start: Start, capsys: pytest.CaptureFixture[str]) -> None:
+    handle = start(SHORT)
+    over(handle)
+    pack_as_earlier(handle.folder, checksum_off=1)
+    before = {path: path.read_bytes() for path in handle.folder.iterdir()}
+    assert run_command(["runs", "rerun", handle.run_id]) == 2
+    assert "a re-run has another recording than this one" in capsys.readouterr().err
+    assert {path: path.read_bytes() for path in handle.folder.iterdir()} == before
+
+
 def test_not_while_it_runs_but_after_it_was_killed(start: Start) -> None:
     handle = start("while True:\n    tank_drive.on_for_seconds(20, 30, 1)\n", live=True)
     until_tick(handle, 10)
@@ -91,5 +133,6 @@ def test_not_while_it_runs_but_after_it_was_killed(start: Start) -> None:
     os.kill(handle._process.pid, signal.SIGKILL)
     handle._process.wait()
     before = RunStore().load_run(handle.run_id).telemetry.array().tobytes()
-    assert compact_run(stored)[1] < 20_000
+    compact_run(stored)
+    assert packed(handle.folder)
     assert RunStore().load_run(handle.run_id).telemetry.array().tobytes() == before

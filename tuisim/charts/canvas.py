@@ -157,8 +157,6 @@ def xy_lines(
     marker: str,
     width: int,
     height: int,
-    *,
-    joined: bool = True,
 ) -> list[list[Run]]:
     """Return the chart as lines of text.
 
@@ -168,7 +166,6 @@ def xy_lines(
         names: Of x and of y.
         marker: `braille`, or one character.
         width, height: Size in characters.
-        joined: Whether braille dots are joined by lines.
     """
     good = np.isfinite(xs) & np.isfinite(ys)
     title: list[Run] = [(f"{names[1]} against {names[0]}", PLAIN)]
@@ -180,7 +177,7 @@ def xy_lines(
     left = max(map(len, labels.values())) + 1
     columns = max(width - left, 2)
     points = seen_points(xs[good], ys[good], (x_limits, y_limits), columns, rows)
-    curve = Curve(*points, rgb, marker, rising=False, joined=joined)
+    curve = Curve(*points, rgb, marker, rising=False)
     drawn = canvas([curve], columns, rows, x_limits, y_limits)
     lines = [title]
     for row in range(rows):

@@ -16,7 +16,6 @@ from tuisim.charts.layout import (
     FONT_PX,
     Chart,
     Drawing,
-    Fill,
     Raster,
     Rule,
     Shade,
@@ -178,8 +177,6 @@ def _svg_shape(shape: Shape) -> str:
                 return f'<path d="{path}" fill="none" stroke="{color}" stroke-width="5" stroke-linecap="round"/>'
             path = "M" + "L".join(points)
             return f'<path d="{path}" fill="none" stroke="{color}" stroke-width="1.8" stroke-linejoin="round"/>'
-        case Fill():
-            return f'<rect {_place(shape)} fill="{_hex(shape.rgb)}"/>'
         case Raster():
             content = io.BytesIO()
             _image(shape).save(content, "png")
@@ -187,7 +184,7 @@ def _svg_shape(shape: Shape) -> str:
             return f'<image {_place(shape)} preserveAspectRatio="none" href="data:image/png;base64,{data}"/>'
 
 
-def _place(shape: Shade | Fill | Raster) -> str:
+def _place(shape: Shade | Raster) -> str:
     return f'x="{shape.x:.1f}" y="{shape.y:.1f}" width="{shape.width:.1f}" height="{shape.height:.1f}"'
 
 
@@ -219,7 +216,7 @@ def image_of(drawing: Drawing) -> Image:
     return image.resize((drawing.width, drawing.height), Image.Resampling.LANCZOS)
 
 
-def _paint(draw: ImageDraw, shape: Rule | Words | Shade | Stroke | Fill, font: FreeTypeFont | BitmapFont) -> None:
+def _paint(draw: ImageDraw, shape: Rule | Words | Shade | Stroke, font: FreeTypeFont | BitmapFont) -> None:
     match shape:
         case Rule():
             ends = [end * _FINE for end in (shape.x1, shape.y1, shape.x2, shape.y2)]
@@ -229,11 +226,9 @@ def _paint(draw: ImageDraw, shape: Rule | Words | Shade | Stroke | Fill, font: F
             # The font has one weight: bold text is drawn twice, half a pixel apart.
             for place in ((x, y), (x + 1, y))[: 1 + shape.strong]:
                 draw.text(place, shape.text, fill=shape.rgb or _INK, font=font, anchor=_ANCHORS[shape.anchor])
-        case Shade() | Fill():
+        case Shade():
             corners = (shape.x, shape.y, shape.x + shape.width, shape.y + shape.height)
-            draw.rectangle(
-                [corner * _FINE for corner in corners], fill=shape.rgb if isinstance(shape, Fill) else _SHADE
-            )
+            draw.rectangle([corner * _FINE for corner in corners], fill=_SHADE)
         case Stroke():
             points = [(x * _FINE, y * _FINE) for x, y in shape.points.tolist()]
             if not shape.dots:

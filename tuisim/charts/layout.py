@@ -138,17 +138,6 @@ class Stroke:
 
 
 @dataclass(frozen=True, slots=True)
-class Fill:
-    """A rectangle filled with a colour."""
-
-    x: float
-    y: float
-    width: float
-    height: float
-    rgb: Rgb
-
-
-@dataclass(frozen=True, slots=True)
 class Raster:
     """Pixels stretched over a rectangle."""
 
@@ -160,7 +149,7 @@ class Raster:
     """Shape (rows, columns, 3)."""
 
 
-Shape: TypeAlias = Rule | Words | Shade | Stroke | Fill | Raster
+Shape: TypeAlias = Rule | Words | Shade | Stroke | Raster
 
 
 @dataclass(frozen=True, slots=True)

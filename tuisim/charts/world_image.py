@@ -308,12 +308,6 @@ def fitting_view(robot: RobotSpec, width_px: int, height_px: int) -> Viewport:
     return world_view(robot, mm_per_px)
 
 
-def field_view(width_px: int, height_px: int) -> Viewport:
-    """Return the field alone, without a rim, in the largest scale that fits a size."""
-    mm_per_px = max(FIELD_WIDTH_MM / width_px, FIELD_HEIGHT_MM / height_px)
-    return Viewport(*_field_px(mm_per_px), mm_per_px, 0.0, FIELD_HEIGHT_MM)
-
-
 _FAR_MM = 1e5
 """Pen traces farther from the field are not drawn: the time for a line grows with its length."""
 
@@ -369,7 +363,7 @@ class WorldPainter:
     Args:
         spec: The specification of the run.
         mat: Shape (height, width, 3), rows from the top.
-        view: From `world_view`, `fitting_view` or `field_view`.
+        view: From `world_view` or `fitting_view`.
     """
 
     def __init__(self, spec: RunSpec, mat: Pixels, view: Viewport) -> None:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim import __version__
 from tuisim.batch.partial import PartialTable, partial_of, rows_of_table
-from tuisim.batch.pictures import text_of, write_picture
+from tuisim.batch.pictures import text_of, write_poses
 from tuisim.batch.sweep import run_plan
 from tuisim.batch.table import (
     GOAL,
@@ -184,16 +184,17 @@ class _Batch:
             echo(f"{counted(len(kept), 'run')} stored, in column {RUN_ID} of the table: {command}")
 
     def _draw(self, frame: pd.DataFrame) -> None:
-        """Draw the pictures: to their files, else as text unless rows are printed."""
+        """Draw the end poses if asked to: to their file, or as text unless rows are printed."""
+        plan, path = self.request.plan, self.request.picture
+        if path is not None:
+            tell(f"drawing {path}")
+            write_poses(frame, plan, path)
+        if not self.request.draws_poses or self.as_json:
+            return
         terminal = shutil.get_terminal_size()
         width, height = max(terminal.columns, _LEAST_COLUMNS), min(max(terminal.lines - 1, _ROWS[0]), _ROWS[1])
-        for picture, path in self.request.pictures:
-            if path is not None:
-                tell(f"drawing {path}")
-                write_picture(picture, frame, self.request.plan, path)
-            elif not self.as_json:
-                echo()
-                echo_drawn(partial(text_of, picture, frame, self.request.plan, width, height), width)
+        echo()
+        echo_drawn(partial(text_of, frame, plan, width, height), width)
 
     def _tell_interrupted(self) -> None:
         out = self.request.out

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from itertools import zip_longest
 from pathlib import Path
 
 from tuisim.batch.batch_file import BatchFile, load_batch, means_batch
 from tuisim.batch.parameters import SEED, Choice, parse_seeds, parse_set
-from tuisim.batch.pictures import POSES, USAGE, Picture, check_picture, check_picture_file, parse_picture
+from tuisim.batch.pictures import POSES, check_picture_file, parse_picture
 from tuisim.batch.plan import Plan, Subject
-from tuisim.batch.table import check_expressions, usual_columns
+from tuisim.batch.table import check_expressions
 from tuisim.batch.task import Keep
 from tuisim.batch.workers import Workers
 from tuisim.commands.batch_options import jobs_option, keep_option, workers_option
@@ -28,7 +26,7 @@ from tuisim.config.folders import user_path
 from tuisim.config.overrides import field_of_key
 from tuisim.config.worlds import WorldFile, means_world
 from tuisim.core.spec import RunSpec
-from tuisim.errors import ConfigError, counted
+from tuisim.errors import ConfigError
 from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.logs.export import LISTED, check_target
 from tuisim.runs.handle import RunOptions
@@ -49,11 +47,10 @@ OPTIONS = (
            help="Add a column, such as 'error_mm=hypot(x_mm - 750, y_mm - 850)'; may be repeated."),
     option("--goals", metavar="FILE", type=Value(), group=_RESULTS, help="Judge the goals in a file, one column each."),
     keep_option(Keep.NONE, _RESULTS),
-    option("--picture", "picture_files", multiple=True, metavar="FILE", type=Value(), group=_RESULTS,
-           help="Write a picture (.svg or .png) instead of drawing it as text; the first file for the first "
-           "--picture-of, and so on."),
-    option("--picture-of", "pictures", multiple=True, metavar="WHAT", type=Value(parse_picture), group=_RESULTS,
-           help=f"Draw {USAGE}; may be repeated."),
+    option("--picture-of", metavar="WHAT", type=Value(parse_picture, lambda: (POSES,)), group=_RESULTS,
+           help=f"Draw {POSES}: the end poses over the mat."),
+    option("--picture", metavar="FILE", type=Value(), group=_RESULTS,
+           help="Write the end poses as a picture (.svg or .png) instead of drawing them as text."),
     option("--resume", is_flag=True, group=_RESULTS, help="Go on with an interrupted batch that wrote the same --out."),
     option("--json", "as_json", is_flag=True, group=_RESULTS, help="Print one JSON object per run, not the summary."),
     timeout_option(_LIMITS),
@@ -74,8 +71,10 @@ class Request:
     out: Path | None
     workers: Workers
     resume: bool
-    pictures: tuple[tuple[Picture, Path | None], ...] = ()
-    """Each with its file; None for text."""
+    draws_poses: bool = False
+    """Whether the end poses are drawn as text."""
+    picture: Path | None = None
+    """File for the end poses; None for none."""
 
 
 def read_request(arguments: Arguments) -> Request:
@@ -105,14 +104,16 @@ def read_request(arguments: Arguments) -> Request:
         options_of=lambda spec: _run_options(spec, arguments, goals),
     )
     expressions = {**file.expressions, **dict(map(_expression, arguments.expressions))}
-    goal_names = [goal.name for goal in plan.goals]
-    check_expressions(expressions, plan.names, goal_names)
-    pictures = _pictures(arguments, [*expressions, *usual_columns(plan.names, goal_names)])
+    check_expressions(expressions, plan.names, [goal.name for goal in plan.goals])
+    picture = Path(arguments.picture) if arguments.picture else None
+    if picture is not None:
+        check_picture_file(picture)
     out = arguments.out or file.out
     if arguments.resume and out is None:
         raise ConfigError("needs the table to go on with", "--out FILE", key="--resume")
     target = check_target(out) if out is not None else None
-    return Request(plan, expressions, target, _workers(arguments, file), arguments.resume, pictures)
+    draws_poses = bool(arguments.picture_of) and picture is None
+    return Request(plan, expressions, target, _workers(arguments, file), arguments.resume, draws_poses, picture)
 
 
 def _workers(arguments: Arguments, file: BatchFile) -> Workers:
@@ -179,24 +180,6 @@ def _typed_choices(arguments: Arguments) -> dict[str, Choice]:
             raise ConfigError("is given together with --set seed", "give one of them", key="--seeds")
         found[SEED] = parse_seeds(arguments.seeds)
     return found
-
-
-def _pictures(arguments: Arguments, columns: Sequence[str]) -> tuple[tuple[Picture, Path | None], ...]:
-    """Return the pictures with their files, after checking both; a file alone gets the end poses."""
-    files = [Path(name) for name in arguments.picture_files]
-    wanted = list(arguments.pictures)
-    if files and not wanted:
-        wanted = [parse_picture(POSES)]
-    if len(files) > len(wanted):
-        message = f"{len(files)} files for {counted(len(wanted), 'picture')}"
-        raise ConfigError(message, "add a --picture-of for each", key="--picture")
-    for file in files:
-        check_picture_file(file)
-    if len({os.path.realpath(file) for file in files}) < len(files):
-        raise ConfigError("two pictures have the same file", "give each its own", key="--picture")
-    for picture in wanted:
-        check_picture(picture, columns)
-    return tuple(zip_longest(wanted, files))
 
 
 def _expression(text: str) -> tuple[str, str]:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from tuisim.commands.echo import Progress, echo, echo_error, tell
 from tuisim.config.command_line import Value, argument, command, option
 from tuisim.config.files import name_of
-from tuisim.config.options import CellSet
 from tuisim.errors import ConfigError, nearest
 from tuisim.runs.store import RunStore
 
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
 
 _SIZE = re.compile(r"(\d{1,6})[x×](\d{1,6})")
 _PANELS = "world, chart, arrays"
-_BLOCKS = (CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT)
 _FAST_S = 60
 """A longer run is shown faster, unless the speed is given."""
 
@@ -31,21 +29,17 @@ _panels = option(
     "--panels", metavar="NAMES", help=f"What is shown: some of {_PANELS} (world, and chart if there are samples)."
 )
 _size = option("--size", default="", metavar="WxH", help="Width and height in pixels (600 wide).")
-_movie_size = option(
-    "--size", default="", metavar="WxH", help="Width and height in pixels (600 wide); of a .cast in characters (80)."
-)
 
 
 @command(
     _run,
-    option("--out", metavar="FILE", type=Value(), help="The file: .gif, .webp, .apng or .cast (PROGRAM-movie.gif)."),
+    option("--out", metavar="FILE", type=Value(), help="The file: .gif or .webp (PROGRAM-movie.gif)."),
     option("--from", "start_s", type=float, metavar="S", help="Start, in simulated seconds."),
     option("--to", "stop_s", type=float, metavar="S", help="End, in simulated seconds."),
     option("--speed", type=float, metavar="N", help="Multiple of real time (1; more for more than a minute)."),
     option("--fps", type=float, default=20.0, metavar="N", help="Frames per second, 1 to 50 (20)."),
     _panels,
-    _movie_size,
-    option("--cells", metavar="SET", help=f"Glyphs of the world in a .cast: {', '.join(_BLOCKS)} (half)."),
+    _size,
 )
 def movie(
     word: str,
@@ -56,7 +50,6 @@ def movie(
     fps: float,
     panels: str | None,
     size: str,
-    cells: str | None,
 ) -> int:
     """Save a run as a movie: the world, the chart, the sensor arrays, with time and values."""
     from tuisim.movies.files import MOVIE_FORMATS, Clip, check_target, save_movie
@@ -67,14 +60,12 @@ def movie(
     if speed is not None:
         _check_number(speed, 0.01, 1000, "--speed")
     _check_number(fps, 1, 50, "--fps")
-    kind = MOVIE_FORMATS[path.suffix.lower()]
-    shown, sides = _panels_of(panels), _size_of(size, kind.least, kind.most, kind.unit)
-    cell_set = _cell_set_of(cells, path)
+    shown, sides = _panels_of(panels), _size_of(size)
     with Progress(f"drawing {path.name}"):
         recorded = _recorded(run)
         span_s = recorded.span_s(start_s, stop_s)
         speed = speed or max(1, math.ceil((span_s[1] - span_s[0]) / _FAST_S))
-        clip = Clip(recorded, shown or _useful(recorded), span_s, speed, fps, sides, cell_set)
+        clip = Clip(recorded, shown or _useful(recorded), span_s, speed, fps, sides)
         size_bytes = save_movie(clip, path, partial(tell, f"drawing {path.name}"))
     shots = clip.shots
     lasts_s = sum(shot.duration_ms for shot in shots) / 1000
@@ -92,12 +83,11 @@ def movie(
 def picture(word: str, out: str | None, time_s: float | None, panels: str | None, size: str) -> int:
     """Save one instant of a run as a picture: the world, the chart, the sensor arrays."""
     from tuisim.movies.files import PICTURE_FORMATS, check_target, save_picture
-    from tuisim.movies.painter import LEAST, MOST
 
     run = RunStore().load_run(word)
     path = Path(out or _default_name(run, "picture.png"))
     check_target(path, "picture", PICTURE_FORMATS)
-    shown, sides = _panels_of(panels), _size_of(size, LEAST, MOST, "pixels")
+    shown, sides = _panels_of(panels), _size_of(size)
     with Progress(f"drawing {path.name}"):
         recorded = _recorded(run)
         at_s = recorded.end_s if time_s is None else time_s
@@ -150,22 +140,14 @@ def _panels_of(text: str | None) -> tuple[Panel, ...]:
     return tuple(panel for panel in Panel if panel in names)
 
 
-def _size_of(text: str, least: Size, most: Size, unit: str) -> Size | None:
+def _size_of(text: str) -> Size | None:
+    from tuisim.movies.painter import LEAST, MOST
+
     if not text:
         return None
     match = _SIZE.fullmatch(text)
     size = (int(match[1]), int(match[2])) if match else (0, 0)
-    if not all(low <= side <= high for low, side, high in zip(least, size, most, strict=True)):
-        allowed = " to ".join(f"{width}x{height}" for width, height in (least, most))
-        raise ConfigError(f"no such size {text!r}", f"width and height in {unit}, {allowed}", key="--size")
+    if not all(low <= side <= high for low, side, high in zip(LEAST, size, MOST, strict=True)):
+        allowed = " to ".join(f"{width}x{height}" for width, height in (LEAST, MOST))
+        raise ConfigError(f"no such size {text!r}", f"width and height in pixels, {allowed}", key="--size")
     return size
-
-
-def _cell_set_of(name: str | None, path: Path) -> CellSet:
-    if name is None:
-        return CellSet.HALF
-    if path.suffix.lower() != ".cast":
-        raise ConfigError(f"{path.suffix} is drawn with pixels", "only a .cast has glyphs", key="--cells")
-    if name not in _BLOCKS:
-        raise ConfigError(f"no such set {name!r}", f"one of {', '.join(_BLOCKS)}", key="--cells")
-    return CellSet(name)

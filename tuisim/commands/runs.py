@@ -33,9 +33,10 @@ from tuisim.protocol import Unended
 from tuisim.runs.diff import RunDiff, recording_in_words, setup_in_words
 from tuisim.runs.frames import damage_note
 from tuisim.runs.handle import ASK_AGAIN_S
+from tuisim.runs.packed_files import earlier_forms, renew
 from tuisim.runs.records import OutputRow, Stream, line_of
 from tuisim.runs.rerun import changed_files, rerun, same
-from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.run_folder import StoredRun, read_run
 from tuisim.runs.side_files import MOST_PATH, FilesRead, read_reads
 from tuisim.runs.store import COMPACT_TICKS, RunStore, bytes_in, compact_run
 from tuisim.runs.temporary import temporary_home
@@ -232,6 +233,11 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
         finally:
             handle.close()
         tell(f"comparing run {run.number}")
+        if earlier_forms(run.folder):
+            renew(run.folder, scratch.folder(handle.run_id))
+            notes = (*notes, "its recording, which an earlier tuisim packed, is made again")
+            echo_error(f"note: {notes[-1]}")
+            run = read_run(run.folder)
         found = same(run, scratch.load_run(handle.run_id))
     if as_json:
         echo_json({"run": run.number, **found.to_plain(), "notes": list(notes)})
@@ -255,8 +261,7 @@ def diff_text(found: RunDiff) -> str:
     _runs,
     option("--all", "every", is_flag=True, help="Compact every finished run."),
     AS_JSON,
-    help="Compress recordings to a few bytes per tick, losslessly. "
-    f"Runs of {COMPACT_TICKS} ticks or more are compressed when they end.",
+    help=f"Compress recordings losslessly. Runs of {COMPACT_TICKS} ticks or more are compressed when they end.",
 )
 def compact(words: Sequence[str], every: bool, as_json: bool) -> int:
     """Compact the named runs, or all finished ones."""

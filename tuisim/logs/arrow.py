@@ -186,7 +186,7 @@ def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
 
     try:
         file = pq.ParquetFile(path)
-        _check_names(file.schema_arrow)
+        _check_columns(file.schema_arrow)
     except (pa.ArrowException, OSError, ValueError) as error:
         hint = "a truncated Parquet file cannot be read: its index is at its end"
         raise LogError(f"not a readable Parquet file: {_short(error)}", hint, file=str(path)) from error
@@ -215,6 +215,7 @@ def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
     with pa.memory_map(str(path)) as source:
         try:
             with pa.ipc.open_file(source) as reader:
+                _check_columns(reader.schema)
                 count = reader.num_record_batches
                 if not count:
                     yield 1.0, _named(reader.schema.empty_table(), notes)
@@ -248,7 +249,7 @@ def _stream_parts(path: Path, source: Any, start: int, notes: Notes) -> Iterator
     source.seek(start)
     try:
         stream = pa.ipc.open_stream(source)
-        _check_names(stream.schema)
+        _check_columns(stream.schema)
     except (pa.ArrowException, OSError, ValueError) as error:
         raise LogError(f"not a readable Arrow file: {_short(error)}", file=str(path)) from error
     yield 0.0, _named(stream.schema.empty_table(), notes)
@@ -263,17 +264,22 @@ def _stream_parts(path: Path, source: Any, start: int, notes: Notes) -> Iterator
         yield source.tell() / size, _named(part, notes)
 
 
-def _check_names(schema: pa.Schema) -> None:
-    """Raise a ValueError if the name of a column is not UTF-8, as in a damaged file."""
-    _ = schema.names
+def _check_columns(schema: pa.Schema) -> None:
+    """Check names and types of the columns.
+
+    Raises:
+        ValueError: a name is not UTF-8, as in a damaged file.
+        LogError: a column is of a type that cannot be read.
+    """
+    for name, kind in zip(schema.names, schema.types, strict=True):
+        if pa.types.is_date64(kind):
+            message = f"column {name!r} is of Arrow's type date64, which cannot be read"
+            raise LogError(message, "write dates as date32 and times as timestamp")
 
 
 def _whole(batch: pa.RecordBatch) -> pa.Table:
-    """Return a validated batch as a table; dates in milliseconds keep their time of day."""
-    columns = [
-        column.view(pa.timestamp("ms")) if pa.types.is_date64(column.type) else column for column in batch.columns
-    ]
-    part = pa.Table.from_arrays(columns, batch.schema.names).replace_schema_metadata(batch.schema.metadata)
+    """Return a validated batch as a table."""
+    part = pa.Table.from_batches([batch])
     part.validate(full=True)
     return part
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import bz2
 import codecs
-import lzma
 import zlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -154,12 +153,11 @@ _UNPACKED_BYTES = 1 << 18
 """Unpacked at once."""
 _CUT_OFF = "the compressed file is truncated or damaged: only the readable part was read"
 
-_ERRORS = (zlib.error, OSError, EOFError, lzma.LZMAError, pa.ArrowException)
+_ERRORS = (zlib.error, OSError, EOFError, pa.ArrowException)
 
 _FORMATS: Mapping[bytes, Callable[[Any], Any]] = {
     b"\x1f\x8b": lambda handle: GzipFile(fileobj=handle),
     b"BZh": bz2.BZ2File,
-    b"\xfd7zXZ\0": lzma.LZMAFile,
     b"\x28\xb5\x2f\xfd": lambda handle: pa.CompressedInputStream(pa.PythonFile(handle, "r"), "zstd"),
     b"\x04\x22\x4d\x18": lambda handle: pa.CompressedInputStream(pa.PythonFile(handle, "r"), "lz4"),
 }
@@ -167,6 +165,7 @@ _FORMATS: Mapping[bytes, Callable[[Any], Any]] = {
 _REFUSED = {
     b"PK\x03\x04": "a ZIP archive or a spreadsheet",
     b"7z\xbc\xaf\x27\x1c": "a 7-Zip archive",
+    b"\xfd7zXZ\0": "an xz file",
     b"\xd0\xcf\x11\xe0": "an old Excel workbook",
     b"\x89HDF": "an HDF5 file",
     b"SQLite format 3": "an SQLite database",

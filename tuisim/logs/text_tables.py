@@ -16,6 +16,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pa_csv
 
+from tuisim.errors import LogError
 from tuisim.logs.arrow import texts_array, unique_names
 from tuisim.logs.blocks import Block
 from tuisim.logs.csv_cells import WRITTEN, restored
@@ -97,6 +98,8 @@ SEPARATORS = (",", ";", "\t", "|")
 BLANKS = " "
 """A separator of any number of blanks."""
 COMMENT = "#"
+_ZEEK = re.compile(r"#separator \\x[0-9a-fA-F]{2}")
+"""The first line of a Zeek log."""
 _YEARS = range(1900, 2101)
 
 
@@ -116,17 +119,22 @@ class Heading:
 
 
 def find_heading(lines: Sequence[tuple[int, str]], notes: Notes) -> Heading:
-    """Detect the header of a table from its first non-blank lines, each with its line number in the file."""
+    """Detect the header of a table from its first non-blank lines, each with its line number in the file.
+
+    Raises:
+        LogError: it is that of a Zeek log.
+    """
     comments = [text for _, text in takewhile(lambda line: line[1].startswith(COMMENT), lines)]
+    if comments and _ZEEK.match(comments[0]):
+        raise LogError("is a Zeek log with a heading of its own, which cannot be read", "let Zeek write JSON")
     body = lines[len(comments) :]
     if not body:
         return Heading(has_comments=bool(comments))
     texts = [text for _, text in body]
-    fields = next((text for text in reversed(comments) if text.startswith("#fields")), "")
-    separator = _zeek_separator(comments) if fields else sniff_separator(texts)
+    separator = sniff_separator(texts)
     decimal_comma = separator == ";" and _has_decimal_comma(texts[1:] or texts)
     rows = [cells_of(text, separator) for text in texts]
-    above = _heading_above(comments, rows, separator, fields)
+    above = _heading_above(comments, rows, separator)
     if above:
         names, follow = above, body[0][0]
     elif _is_heading(rows, decimal_comma):
@@ -183,18 +191,8 @@ def sniff_separator(lines: Sequence[str]) -> str:
     return BLANKS if len(widths) == 1 and min(widths) > 1 else ","
 
 
-def _zeek_separator(comments: Sequence[str]) -> str:
-    """Return the separator that a Zeek log names, such as `#separator \\x09`."""
-    named = next((text.split(maxsplit=1)[-1] for text in comments if text.startswith("#separator")), r"\x09")
-    found = re.fullmatch(r"\\x([0-9a-fA-F]{2})", named)
-    separator = chr(int(found[1], 16)) if found else named
-    return separator if separator in SEPARATORS else "\t"
-
-
-def _heading_above(comments: Sequence[str], rows: Sequence[list[str]], separator: str, fields: str) -> list[str]:
+def _heading_above(comments: Sequence[str], rows: Sequence[list[str]], separator: str) -> list[str]:
     """Return column names from the last comment, if they match the number of cells; else an empty list."""
-    if fields:
-        return [name.strip() for name in fields.split(separator)[1:]]
     if not comments:
         return []
     text = comments[-1].lstrip(COMMENT).strip()

@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tuisim.charts.cell_image import CellGrid
 from tuisim.charts.files import svg_of, write_whole
-from tuisim.config.options import CellSet
-from tuisim.errors import ConfigError, ExportError, printable
+from tuisim.errors import ConfigError, ExportError
 from tuisim.logs.export import check_place
-from tuisim.movies import cell_painter, image_files
-from tuisim.movies.cast import cast_of
-from tuisim.movies.cell_painter import CellPainter
+from tuisim.movies import image_files
 from tuisim.movies.clip import Panel, Recorded, Shot, shot_count, shots_of
-from tuisim.movies.painter import LEAST, MOST, FramePainter, Size
+from tuisim.movies.painter import FramePainter, Size
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -45,9 +41,7 @@ class Clip:
     """Simulated seconds per second."""
     fps: float = 20.0
     size: Size | None = None
-    """In the unit of the format; None for the size that fits the panels."""
-    cell_set: CellSet = CellSet.HALF
-    """The glyphs of the world, in a format of characters."""
+    """In pixels; None for the size that fits the panels."""
 
     @property
     def shots(self) -> tuple[Shot, ...]:
@@ -61,11 +55,7 @@ class MovieFormat:
 
     write: Callable[[Clip, Watch], bytes]
     frame_bytes: int
-    """Bytes of a pixel or of a character of a frame in memory; 0 if the frames are not kept."""
-    painter: type[FramePainter | CellPainter] = FramePainter
-    least: Size = LEAST
-    most: Size = MOST
-    unit: str = "pixels"
+    """Bytes of a pixel of a frame in memory; 0 if the frames are not kept."""
 
 
 class _Frames:
@@ -106,30 +96,7 @@ def _webp(clip: Clip, watch: Watch) -> bytes:
     return image_files.webp(frames.draw, frames.durations_ms)
 
 
-def _apng(clip: Clip, watch: Watch) -> bytes:
-    frames = _Frames(clip, watch)
-    return image_files.apng(frames.draw, frames.durations_ms)
-
-
-def _cast(clip: Clip, watch: Watch) -> bytes:
-    shots, recorded = clip.shots, clip.recorded
-    painter = CellPainter(recorded, clip.panels, clip.span_s, clip.size, clip.cell_set)
-
-    def frames() -> Iterator[CellGrid]:
-        for at, shot in enumerate(shots):
-            watch(at, len(shots))
-            yield painter.cells(recorded.moment(shot.time_s))
-
-    durations_ms = [shot.duration_ms for shot in shots]
-    return cast_of(frames(), durations_ms, painter.size, printable(recorded.run.program.name))
-
-
-MOVIE_FORMATS: Mapping[str, MovieFormat] = {
-    ".gif": MovieFormat(_gif, 1),
-    ".webp": MovieFormat(_webp, 0),
-    ".apng": MovieFormat(_apng, 6),
-    ".cast": MovieFormat(_cast, 24, CellPainter, cell_painter.LEAST, cell_painter.MOST, "characters"),
-}
+MOVIE_FORMATS: Mapping[str, MovieFormat] = {".gif": MovieFormat(_gif, 1), ".webp": MovieFormat(_webp, 0)}
 """Every format of a movie by the suffix of its files. To add one: write its function and a line here."""
 
 
@@ -180,7 +147,7 @@ def save_movie(clip: Clip, path: Path, watch: Watch = lambda done, total: None) 
 
 
 def _check_size(clip: Clip, kind: MovieFormat) -> None:
-    width, height = kind.painter(clip.recorded, clip.panels, clip.span_s, clip.size).size
+    width, height = FramePainter(clip.recorded, clip.panels, clip.span_s, clip.size).size
     most = min(MOST_BYTES // (kind.frame_bytes * width * height), MOST_FRAMES) if kind.frame_bytes else MOST_FRAMES
     count = shot_count(*clip.span_s, clip.speed, clip.fps)
     if count > most:

@@ -1,4 +1,4 @@
-"""Frames as animated images: GIF, WebP and APNG."""
+"""Frames as animated images: GIF and WebP."""
 
 from __future__ import annotations
 
@@ -97,13 +97,6 @@ def webp(draw: Draw, durations_ms: Sequence[int], *, lossless: bool = True) -> b
     how = {"lossless": True, "quality": 20} if lossless else {"lossless": False, "quality": 40}
     reel = _Reel(draw, len(durations_ms))
     return _saved(reel, (), "WEBP", duration=list(durations_ms), method=2, minimize_size=True, **how)
-
-
-def apng(draw: Draw, durations_ms: Sequence[int]) -> bytes:
-    """Return an animated PNG that repeats for ever."""
-    # Pillow goes through them twice.
-    first, *others = map(draw, range(len(durations_ms)))
-    return _saved(first, others, "PNG", duration=list(durations_ms), optimize=True)
 
 
 def _saved(first: Image, others: Iterable[Image], kind: str, **how: Any) -> bytes:

@@ -8,14 +8,13 @@ length, its last record, and a checksum of its bytes.
 from __future__ import annotations
 
 import zlib
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from struct import Struct
 from struct import error as StructError
 from typing import BinaryIO
 
 from tuisim.atomic import replacing, sweep
-from tuisim.core.spec import RunSpec
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.errors import LogError
 from tuisim.regular_file import open_regular
@@ -33,9 +32,12 @@ from tuisim.runs.records import (
 PACKED_SUFFIX = ".packed"
 PACKED_MAGIC = {TELEMETRY_FILE: b"TUISIMTP", OUTPUT_FILE: b"TUISIMOP"}
 """By the original file name."""
-PACKED_VERSION = 1
-_HEADER = Struct("<8sIIQQ4d64s")
-"""Magic, version, checksum of the recording, length from its own header, packed bytes, geometry, last record."""
+PACKED_VERSION = 2
+_EARLIER_VERSION = 1
+EARLIER = "its recording was packed by an earlier tuisim and cannot be read: `tuisim runs rerun RUN` makes it again"
+_HEADER = Struct("<8sIIQQ32x64s")
+"""Magic, version, checksum of the recording, length from its own header, packed bytes, 32 bytes that only the earlier
+version uses, last record."""
 _READ_BYTES = 1 << 22
 _CHECK = Struct("<I")
 """Checksum of the header, directly after it."""
@@ -46,12 +48,12 @@ class Packed:
     """The header of a packed recording."""
 
     path: Path
+    is_earlier: bool
+    """Whether it is of the earlier version, of which only the header is read."""
     checksum: int
     length: int
     """Number of records of telemetry, number of bytes of output."""
     packed_bytes: int
-    geometry: tuple[float, ...]
-    """The fields of `packed_codec.RobotGeometry`."""
     last_record: bytes
     """The last telemetry record; zeros for output, and if there is none."""
 
@@ -74,15 +76,20 @@ class Packed:
             raise LogError(f"the packed recording is damaged: {what}", file=str(self.path)) from error
         if zlib.crc32(content) != self.checksum:
             raise LogError("the packed recording is damaged: its checksum is wrong", file=str(self.path))
-        return header(*_form(self.path.name.removesuffix(PACKED_SUFFIX)), self.length) + content
+        return header(*_form(self.name), self.length) + content
+
+    @property
+    def name(self) -> str:
+        """File name of the recording when it was not packed."""
+        return self.path.name.removesuffix(PACKED_SUFFIX)
 
     def _unfolded(self, data: bytes) -> bytes:
         # Imported here and below: numpy is needed only for packed recordings.
         from tuisim.runs import packed_codec
 
-        if self.path.name.startswith(OUTPUT_FILE):
+        if self.name == OUTPUT_FILE:
             return packed_codec.unfold_rows(data)
-        return packed_codec.unfold_ticks(data, self.length, packed_codec.RobotGeometry(*self.geometry))
+        return packed_codec.unfold_ticks(data, self.length)
 
 
 def find_packed(path: Path) -> Packed | None:
@@ -100,20 +107,60 @@ def find_packed(path: Path) -> Packed | None:
     except OSError as error:
         raise LogError(f"cannot be read: {error.strerror or error}", file=str(packed)) from error
     try:
-        magic, version, checksum, length, size, *numbers, last = _HEADER.unpack_from(head)
+        magic, version, checksum, length, size, last = _HEADER.unpack_from(head)
         (check,) = _CHECK.unpack_from(head, _HEADER.size)
     except StructError as error:
         raise LogError("too short to be a packed recording", file=str(packed)) from error
     if magic != PACKED_MAGIC[path.name]:
         raise LogError("not a packed recording", file=str(packed))
-    if version != PACKED_VERSION:
+    if version not in (PACKED_VERSION, _EARLIER_VERSION):
         raise LogError(f"format version {version}, this tuisim reads {PACKED_VERSION}", file=str(packed))
     if check != zlib.crc32(head[: _HEADER.size]):
         raise LogError("the packed recording is damaged: its header is corrupt", file=str(packed))
-    return Packed(packed, checksum, length, size, tuple(numbers), last)
+    return Packed(packed, version == _EARLIER_VERSION, checksum, length, size, last)
 
 
-def compact(folder: Path, spec: RunSpec) -> None:
+def earlier_forms(folder: Path) -> list[Packed]:
+    """Return the recordings of a run that an earlier tuisim packed.
+
+    Raises:
+        LogError: a packed recording is damaged.
+    """
+    found = (find_packed(folder / name) for name in PACKED_MAGIC if not (folder / name).exists())
+    return [packed for packed in found if packed is not None and packed.is_earlier]
+
+
+def renew(folder: Path, again: Path) -> None:
+    """Replace the recordings of a run that an earlier tuisim packed by those of a re-run, as far as they went.
+
+    Args:
+        folder: The folder of the run.
+        again: That of the re-run, whose recordings are not packed.
+
+    Raises:
+        LogError: the re-run has other recordings, or they cannot be read or written.
+    """
+    try:
+        contents = {packed.name: _same_recording(packed, again / packed.name) for packed in earlier_forms(folder)}
+        for name, data in contents.items():
+            _write(folder / name, data)
+    except OSError as error:
+        raise LogError(f"cannot be packed again: {error.strerror or error}", file=str(folder)) from error
+
+
+def _same_recording(packed: Packed, path: Path) -> bytes:
+    """Return the recording in a file, cut off where a packed one ends, if it has the checksum of that."""
+    magic, record_bytes = _form(packed.name)
+    with open_regular(path) as handle:
+        data = _recording(handle, path) or b""
+    content = data[HEADER_BYTES : HEADER_BYTES + packed.length * max(1, record_bytes)]
+    if zlib.crc32(content) != packed.checksum:
+        message = "a re-run has another recording than this one, which an earlier tuisim packed and which stays"
+        raise LogError(message, "the program, a file that it reads, or the mat may have changed", file=str(packed.path))
+    return header(magic, record_bytes, packed.length) + content
+
+
+def compact(folder: Path) -> None:
     """Pack the recordings of a finished run, which no process writes any more; packed ones are left unchanged.
 
     Raises:
@@ -122,13 +169,13 @@ def compact(folder: Path, spec: RunSpec) -> None:
     for name in PACKED_MAGIC:
         path = folder / name
         try:
-            _compact_file(path, spec)
+            _compact_file(path)
             sweep(folder, name + PACKED_SUFFIX)
         except OSError as error:
             raise LogError(f"cannot be packed: {error.strerror or error}", file=str(path)) from error
 
 
-def _compact_file(path: Path, spec: RunSpec) -> None:
+def _compact_file(path: Path) -> None:
     try:
         with open_regular(path) as handle:
             data = _recording(handle, path)
@@ -136,11 +183,16 @@ def _compact_file(path: Path, spec: RunSpec) -> None:
         return
     if data is None:
         return
-    packed = _packed(path, data, spec)
-    with replacing(path.with_name(path.name + PACKED_SUFFIX), owner_only=True, follow_links=False) as handle:
-        handle.write(packed)
+    _write(path, data)
     # Another process may have packed it in the meantime.
     path.unlink(missing_ok=True)
+
+
+def _write(path: Path, data: bytes) -> None:
+    """Write the packed form of the recording that is, or was, at a path."""
+    packed = _packed(path, data)
+    with replacing(path.with_name(path.name + PACKED_SUFFIX), owner_only=True, follow_links=False) as handle:
+        handle.write(packed)
 
 
 def _recording(handle: BinaryIO, path: Path) -> bytes | None:
@@ -156,16 +208,16 @@ def _recording(handle: BinaryIO, path: Path) -> bytes | None:
     return bytes(found)
 
 
-def _packed(path: Path, data: bytes, spec: RunSpec) -> bytes:
+def _packed(path: Path, data: bytes) -> bytes:
     """Return the bytes of the packed file."""
     from tuisim.runs import packed_codec
 
     content = data[HEADER_BYTES:]
     length = published_length(data, _form(path.name)[0], str(path))
-    geometry, last = packed_codec.RobotGeometry.of(spec), bytes(TICK_RECORD.size)
+    last = bytes(TICK_RECORD.size)
     if path.name == TELEMETRY_FILE:
-        folded = packed_codec.fold_ticks(content, geometry)
-        back = packed_codec.unfold_ticks(folded, length, geometry)
+        folded = packed_codec.fold_ticks(content)
+        back = packed_codec.unfold_ticks(folded, length)
         last = content[-TICK_RECORD.size :] or last
     else:
         try:
@@ -175,9 +227,7 @@ def _packed(path: Path, data: bytes, spec: RunSpec) -> bytes:
         back = packed_codec.unfold_rows(folded)
     if back != content:
         raise LogError("cannot be packed without loss", file=str(path))
-    head = _HEADER.pack(
-        PACKED_MAGIC[path.name], PACKED_VERSION, zlib.crc32(content), length, len(folded), *astuple(geometry), last
-    )
+    head = _HEADER.pack(PACKED_MAGIC[path.name], PACKED_VERSION, zlib.crc32(content), length, len(folded), last)
     return head + _CHECK.pack(zlib.crc32(head)) + folded
 
 

@@ -248,7 +248,10 @@ def read_run(folder: Path, document: bytes | None = None) -> StoredRun:
             tags=tuple(_typed(tag, str, "a tag") for tag in data.get("tags", ())),
             end=None if data["end"] is None else _end_of(data["end"]),
             actions=actions,
-            notes=tuple(filter(None, (telemetry.note, output.note, cut, _model_note(data["spec"]["profile"])))),
+            # Both recordings may have the same note.
+            notes=tuple(
+                filter(None, dict.fromkeys((telemetry.note, output.note, cut, _model_note(data["spec"]["profile"]))))
+            ),
             telemetry=telemetry,
             output=output,
         )

@@ -450,7 +450,7 @@ def compact_run(run: StoredRun) -> tuple[int, int]:
     if run.end is None and state_without_end(run.folder) is Unended.RUNNING:
         raise LogError(f"run {run.id} is still running", "stop it first")
     before = bytes_in(run.folder)
-    compact(run.folder, run.spec)
+    compact(run.folder)
     return before, bytes_in(run.folder)
 
 

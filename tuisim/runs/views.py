@@ -29,7 +29,7 @@ from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
 from tuisim.errors import LogError, counted
 from tuisim.regular_file import of_the_machine, open_regular
 from tuisim.runs.brick_state import DRAWN_STREAMS, is_sound
-from tuisim.runs.packed_files import Packed, find_packed
+from tuisim.runs.packed_files import EARLIER, Packed, find_packed
 from tuisim.runs.records import (
     HEADER_BYTES,
     MAX_OUTPUT_BYTES,
@@ -136,6 +136,8 @@ class _View(ABC):
         self._unpacked = False
         self._packed: Packed | None = None
         """The packed form, while only its header has been read."""
+        self._earlier: Packed | None = None
+        """The packed form of an earlier tuisim, of which no more than the header is read."""
 
     @property
     def damage(self) -> str:
@@ -212,9 +214,12 @@ class _View(ABC):
                 self._damage = f"{self._path.name} was deleted"
             return
         # Searched after the file itself: a recording that is being packed is always found.
-        self._packed = find_packed(self._path)
-        if self._packed is not None:
-            self._published = self._there = self._packed.length
+        packed = find_packed(self._path)
+        if packed is not None and packed.is_earlier:
+            self._earlier, self._damage = packed, EARLIER
+        elif packed is not None:
+            self._packed = packed
+            self._published = self._there = packed.length
 
     def _read_from(self, fd: int) -> None:
         head = _whole_header(fd)
@@ -374,11 +379,11 @@ class TelemetryView(_View):
     def last(self) -> TickRecord | None:
         """Return the newest record; None if there is none."""
         count = self.count
-        if not count:
-            return None
-        packed = self._packed
+        packed = self._packed or self._earlier
         # The packed form provides its last record without being unpacked.
-        return self.record(count - 1) if packed is None else TickRecord(*TICK_RECORD.unpack(packed.last_record))
+        if packed is not None and packed.length:
+            return TickRecord(*TICK_RECORD.unpack(packed.last_record))
+        return self.record(count - 1) if count else None
 
     def record(self, index: int) -> TickRecord:
         """Return one record.

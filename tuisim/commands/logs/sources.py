@@ -83,10 +83,11 @@ def _open_runs(words: Sequence[str], arguments: Arguments) -> Iterator[Log]:
     logs = [telemetry_log(run) for run in runs] if arguments.telemetry else [log_of_runs(runs)]
     for log in logs:
         if not log.rows:
+            damage = "; ".join(log.notes)
             if arguments.telemetry:
-                raise LogError("no ticks: its recording is empty or truncated", file=log.title)
+                raise LogError("no ticks: its recording is empty or truncated", damage, file=log.title)
             hint = "a program logs by printing lines such as `Colour: 50`; --telemetry uses every tick instead"
-            raise LogError("no samples", hint, file=log.title)
+            raise LogError("no samples", damage or hint, file=log.title)
         layout = choose_columns(log.table, arguments.time, arguments.value, arguments.unit)
         yield _with_notes(log.with_layout(layout))
 
