@@ -103,14 +103,16 @@ async def test_program_is_tried_from_another_start(tmp_path: Path) -> None:
     made = opened(tmp_path)
     text = (tmp_path / "lessons" / "try.md").read_text()
     # 20 mm of tolerance, and a start 40 mm farther back.
-    wide = text.replace('run = "far"', "run = { goals = ['far'], also_from = [[460, 500, 0]] }")
+    wide = text.replace(
+        'run = "far"', "run = { goals = ['far'], also = [{ where = 'from farther back', start = { x_mm = 460 } }] }"
+    )
     (tmp_path / "lessons" / "try.md").write_text(wide)
     async with LabApp(made).run_test(size=LARGE) as pilot:
         app = await ready(pilot)
         app.lesson.open("try")
         app.lesson.skip_step()
         await run_over(pilot, app)
-        words = "From another start, x = 460, y = 500 mm, it does not work: At the end the robot was 40 mm left of"
+        words = "Also tried from farther back, it does not work: At the end the robot was 40 mm left of"
         await until(pilot, lambda: words in " ".join(shown(app).split()))
         assert "drive" not in states()
         program = "tank_drive.on(30, 30)\nwhile ultrasonic.distance_centimeters > 156:\n    pass\ntank_drive.off()\n"

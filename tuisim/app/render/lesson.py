@@ -52,7 +52,7 @@ class LessonView:
     story: str = ""
     """What the run did that has passed it; empty if it was not about a run."""
     remark: str = ""
-    """Why the last note, or the last program from another start, does not pass the step."""
+    """Why the last note, or the last program in another world, does not pass the step."""
     next_title: str = ""
     """Title of the next lesson; empty if this is the last."""
 
