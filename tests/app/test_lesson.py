@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
+from textual.events import MouseScrollUp
+from textual.pilot import Pilot
 from textual.widgets import Static
 
 from tests.app.app_help import ready, until
@@ -14,6 +17,14 @@ from tuisim.app.analyser.app import Analyser
 from tuisim.app.app import LabApp
 from tuisim.app.panels.lesson import LessonPanel
 from tuisim.lessons.progress import load_progress, program_path
+
+
+async def wheel_up(pilot: Pilot[Any], panel: LessonPanel) -> None:
+    """Turn the mouse wheel over a panel."""
+    x, y = panel.region.x + 2, panel.region.y + 2
+    panel.screen._forward_event(MouseScrollUp(panel, x, y, 0, 0, 0, False, False, False, x, y))
+    await pilot.pause()
+
 
 PLACED = "question = { ask = 'What?', answer = 5, at_x_mm = [[600, 700]], where = 'the right: → moves it' }"
 
@@ -121,3 +132,50 @@ async def test_program_is_tried_from_another_start(tmp_path: Path) -> None:
         app.check_files()
         await run_over(pilot, app)
         await until(pilot, lambda: states().get("drive") == "done")
+
+
+@pytest.mark.usefixtures("home")
+async def test_lesson_scrolls_while_one_types_in_a_small_terminal(tmp_path: Path) -> None:
+    async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await pilot.press("d")
+        code, lesson = app.panel_area.code, app.panel_area.lesson
+        await until(pilot, lambda: code is not None and code.typing and "1. Think" in shown(app).split("\n")[1])
+        assert code is not None and lesson is not None
+        cursor = code.cursor_line
+        assert "ctrl+↑ ctrl+↓ read on" in str(lesson.border_subtitle)
+        await pilot.press("ctrl+up")
+        await until(pilot, lambda: "Line 39" in shown(app))
+        await pilot.press("ctrl+down")
+        await until(pilot, lambda: "1. Think" in shown(app).split("\n")[1])
+        await wheel_up(pilot, lesson)
+        await until(pilot, lambda: "1. Think" in shown(app).split("\n")[2])
+        assert code.typing
+        assert code.cursor_line == cursor
+
+
+@pytest.mark.usefixtures("home")
+async def test_way_to_the_next_lesson_is_in_sight_in_a_small_terminal(tmp_path: Path) -> None:
+    made = opened(tmp_path)
+    (tmp_path / "lessons" / "zz.md").write_text((tmp_path / "lessons" / "try.md").read_text().replace("Try it", "Next"))
+    async with LabApp(made).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        app.lesson.skip_step()
+        await pilot.press("c")
+        await until(pilot, lambda: "M, then enter: the next lesson, Next." in " ".join(shown(app).split()))
+
+
+@pytest.mark.usefixtures("home")
+async def test_way_back_to_the_start_is_said_when_the_run_is_over(tmp_path: Path) -> None:
+    made = opened(tmp_path)
+    async with LabApp(made).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        await pilot.press("shift+right")
+        await pilot.press("n")
+        await until(pilot, lambda: "This run began elsewhere." in " ".join(shown(app).split()))
+        assert "then R" not in shown(app)
+        await pilot.press("S")
+        words = "This run began elsewhere: m moves the robot to its start, then R."
+        await until(pilot, lambda: words in " ".join(shown(app).split()))

@@ -332,6 +332,9 @@ class AppLesson:
             except TuisimError as error:
                 self._next_look_s = time.monotonic() + 10
                 self._app.complain(error)
+            if self._is_elsewhere:
+                # What a run from elsewhere needs depends on whether it is over.
+                self.show()
 
     def _observed(self, step: Step) -> Iterator[Event]:
         match step.check:
@@ -500,10 +503,11 @@ class AppLesson:
             judgements=self._judgements,
             good_runs=good,
             is_elsewhere=self._is_elsewhere,
+            in_run=self._is_elsewhere and self._run_controller.in_run,
             done=self._done,
             story=self._story if self._done else "",
             remark=self._remark,
-            next_title=self._next_title(),
+            next_title="" if step else self._next_title(),
         )
 
 
