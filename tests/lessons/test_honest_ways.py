@@ -327,6 +327,25 @@ def mean(n):
     return total / n
 print("Light: {:.2f}".format(mean(200)))
 """,
+    "exact-moves corner degrees": """\
+S = SpeedPercent(40)
+tank_drive.on_for_degrees(S, S, 600 / 175.93 * 360)
+tank_drive.on_for_degrees(-20, 20, 0.804 * 360)
+tank_drive.on_for_degrees(S, S, 400 / 175.93 * 360)
+""",
+    "exact-moves corner function": """\
+def mm(n):
+    tank_drive.on_for_rotations(SpeedPercent(60), SpeedPercent(60), n / 175.9)
+mm(600)
+tank_turn.on_for_rotations(-100, SpeedPercent(10), 0.804)
+mm(400)
+""",
+    "exact-moves corner degrees-by-right-wheel": """\
+S = SpeedPercent(30)
+tank_drive.on_for_rotations(S, S, 3.41)
+tank_turn.on_for_degrees(-100, S, 289)
+tank_drive.on_for_rotations(S, S, 2.27)
+""",
 }
 """By lesson, step and what is special."""
 
