@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,9 @@ from tuisim.analysis.source import NOTES_FILE, Note, write_notes
 from tuisim.app.analyser.app import Analyser
 from tuisim.app.app import LabApp
 from tuisim.app.panels.lesson import LessonPanel
+from tuisim.lessons import trial
 from tuisim.lessons.progress import load_progress, program_path
+from tuisim.lessons.trial import tried_elsewhere
 
 
 async def wheel_up(pilot: Pilot[Any], panel: LessonPanel) -> None:
@@ -179,3 +182,31 @@ async def test_way_back_to_the_start_is_said_when_the_run_is_over(tmp_path: Path
         await pilot.press("S")
         words = "This run began elsewhere: m moves the robot to its start, then R."
         await until(pilot, lambda: words in " ".join(shown(app).split()))
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("home")
+async def test_run_counts_although_the_next_one_is_over_before_it_was_tried(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = opened(tmp_path)
+    path = tmp_path / "lessons" / "try.md"
+    also = "run = { goals = ['far'], times = 2, also = [{ where = 'a little farther back', start = { x_mm = 495 } }] }"
+    path.write_text(path.read_text().replace('run = "far"', also))
+    tries, both = [], threading.Event()
+
+    def tried_late(*of: Any) -> object:
+        tries.append(of)
+        both.wait(20)
+        return tried_elsewhere(*of)
+
+    monkeypatch.setattr(trial, "tried_elsewhere", tried_late)
+    async with LabApp(made).run_test(size=LARGE) as pilot:
+        app = await ready(pilot)
+        app.lesson.open("try")
+        app.lesson.skip_step()
+        for count in (1, 2):
+            await pilot.press("R")
+            await until(pilot, lambda: len(tries) == count)  # noqa: B023
+        both.set()
+        await until(pilot, lambda: states().get("drive") == "done")

@@ -396,16 +396,19 @@ class AppLesson:
 
     def _tried_elsewhere(self, check: Run, run_id: str, found: list[tuple[OtherWorld, tuple[Judgement, ...]]]) -> None:
         """Take in how the program did in other worlds, unless the student has gone on meanwhile."""
-        if self.step is None or self.step.check is not check or self._tried != run_id:
+        if self.step is None or self.step.check is not check:
             return
-        self._remark = ""
+        # The student may have begun another run meanwhile: this one counts, but what is told is about that one.
+        is_newest, remark = self._tried == run_id, ""
         for other, judgements in found:
             met = frozenset(each.goal.name for each in judgements if each.state is GoalState.MET)
             if self._take(TriedElsewhere(run_id, other.where, met)):
                 return
             missed = [each for each in judgements if each.goal.name in other.goals and each.goal.name not in met]
-            if missed and not self._remark:
-                self._remark = f"Also tried {other.where}, it does not work: {missed[0].reason}"
+            if missed and not remark:
+                remark = f"Also tried {other.where}, it does not work: {missed[0].reason}"
+        if is_newest:
+            self._remark = remark
         self.show()
 
     def _count_try(self, step: Step, recording: Recording, judgements: tuple[Judgement, ...]) -> None:
