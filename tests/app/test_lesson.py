@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
+from typing import Any
 
 import pytest
+from textual.events import MouseScrollUp
+from textual.pilot import Pilot
 from textual.widgets import Static
 
 from tests.app.app_help import ready, until
@@ -13,7 +17,17 @@ from tuisim.analysis.source import NOTES_FILE, Note, write_notes
 from tuisim.app.analyser.app import Analyser
 from tuisim.app.app import LabApp
 from tuisim.app.panels.lesson import LessonPanel
+from tuisim.lessons import trial
 from tuisim.lessons.progress import load_progress, program_path
+from tuisim.lessons.trial import tried_elsewhere
+
+
+async def wheel_up(pilot: Pilot[Any], panel: LessonPanel) -> None:
+    """Turn the mouse wheel over a panel."""
+    x, y = panel.region.x + 2, panel.region.y + 2
+    panel.screen._forward_event(MouseScrollUp(panel, x, y, 0, 0, 0, False, False, False, x, y))
+    await pilot.pause()
+
 
 PLACED = "question = { ask = 'What?', answer = 5, at_x_mm = [[600, 700]], where = 'the right: → moves it' }"
 
@@ -103,14 +117,16 @@ async def test_program_is_tried_from_another_start(tmp_path: Path) -> None:
     made = opened(tmp_path)
     text = (tmp_path / "lessons" / "try.md").read_text()
     # 20 mm of tolerance, and a start 40 mm farther back.
-    wide = text.replace('run = "far"', "run = { goals = ['far'], also_from = [[460, 500, 0]] }")
+    wide = text.replace(
+        'run = "far"', "run = { goals = ['far'], also = [{ where = 'from farther back', start = { x_mm = 460 } }] }"
+    )
     (tmp_path / "lessons" / "try.md").write_text(wide)
     async with LabApp(made).run_test(size=LARGE) as pilot:
         app = await ready(pilot)
         app.lesson.open("try")
         app.lesson.skip_step()
         await run_over(pilot, app)
-        words = "From another start, x = 460, y = 500 mm, it does not work: At the end the robot was 40 mm left of"
+        words = "Also tried from farther back, it does not work: At the end the robot was 40 mm left of"
         await until(pilot, lambda: words in " ".join(shown(app).split()))
         assert "drive" not in states()
         program = "tank_drive.on(30, 30)\nwhile ultrasonic.distance_centimeters > 156:\n    pass\ntank_drive.off()\n"
@@ -118,4 +134,79 @@ async def test_program_is_tried_from_another_start(tmp_path: Path) -> None:
         program_path(app.lesson.lesson).write_text(program)
         app.check_files()
         await run_over(pilot, app)
+        await until(pilot, lambda: states().get("drive") == "done")
+
+
+@pytest.mark.usefixtures("home")
+async def test_lesson_scrolls_while_one_types_in_a_small_terminal(tmp_path: Path) -> None:
+    async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await pilot.press("d")
+        code, lesson = app.panel_area.code, app.panel_area.lesson
+        await until(pilot, lambda: code is not None and code.typing and "1. Think" in shown(app).split("\n")[1])
+        assert code is not None and lesson is not None
+        cursor = code.cursor_line
+        assert "ctrl+↑ ctrl+↓ read on" in str(lesson.border_subtitle)
+        await pilot.press("ctrl+up")
+        await until(pilot, lambda: "Line 39" in shown(app))
+        await pilot.press("ctrl+down")
+        await until(pilot, lambda: "1. Think" in shown(app).split("\n")[1])
+        await wheel_up(pilot, lesson)
+        await until(pilot, lambda: "1. Think" in shown(app).split("\n")[2])
+        assert code.typing
+        assert code.cursor_line == cursor
+
+
+@pytest.mark.usefixtures("home")
+async def test_way_to_the_next_lesson_is_in_sight_in_a_small_terminal(tmp_path: Path) -> None:
+    made = opened(tmp_path)
+    (tmp_path / "lessons" / "zz.md").write_text((tmp_path / "lessons" / "try.md").read_text().replace("Try it", "Next"))
+    async with LabApp(made).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        app.lesson.skip_step()
+        await pilot.press("c")
+        await until(pilot, lambda: "M, then enter: the next lesson, Next." in " ".join(shown(app).split()))
+
+
+@pytest.mark.usefixtures("home")
+async def test_way_back_to_the_start_is_said_when_the_run_is_over(tmp_path: Path) -> None:
+    made = opened(tmp_path)
+    async with LabApp(made).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        await pilot.press("shift+right")
+        await pilot.press("n")
+        await until(pilot, lambda: "This run began elsewhere." in " ".join(shown(app).split()))
+        assert "then R" not in shown(app)
+        await pilot.press("S")
+        words = "This run began elsewhere: m moves the robot to its start, then R."
+        await until(pilot, lambda: words in " ".join(shown(app).split()))
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("home")
+async def test_run_counts_although_the_next_one_is_over_before_it_was_tried(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = opened(tmp_path)
+    path = tmp_path / "lessons" / "try.md"
+    also = "run = { goals = ['far'], times = 2, also = [{ where = 'a little farther back', start = { x_mm = 495 } }] }"
+    path.write_text(path.read_text().replace('run = "far"', also))
+    tries, both = [], threading.Event()
+
+    def tried_late(*of: Any) -> object:
+        tries.append(of)
+        both.wait(20)
+        return tried_elsewhere(*of)
+
+    monkeypatch.setattr(trial, "tried_elsewhere", tried_late)
+    async with LabApp(made).run_test(size=LARGE) as pilot:
+        app = await ready(pilot)
+        app.lesson.open("try")
+        app.lesson.skip_step()
+        for count in (1, 2):
+            await pilot.press("R")
+            await until(pilot, lambda: len(tries) == count)  # noqa: B023
+        both.set()
         await until(pilot, lambda: states().get("drive") == "done")

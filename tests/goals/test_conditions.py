@@ -403,6 +403,21 @@ READINGS = {
         "met",
         text=LOOKS,
     ),
+    "print all in one line": Case(
+        "print = { lines = ['a', 'b'], once = true }",
+        (says("a b"), says("a b"), wait(1)),
+        "missed",
+        reason="'a b' says several of the lines at once.",
+    ),
+    "print while moving": Case(
+        "print = { lines = ['a'], still = true }",
+        (ahead(100), says("a"), ahead(100)),
+        "missed",
+        reason="the robot still moved, by 176 mm/s: it must have stopped.",
+    ),
+    "print where it stops": Case(
+        "print = { lines = ['a'], still = true }", (ahead(100), says("a"), wait(1), ahead(100)), "met", 0.57
+    ),
     "print once": Case("print = { lines = ['a', 'b'], once = true }", (says("a"), says("b"), wait(1)), "met", 1.0),
     "print twice": Case(
         "print = { lines = ['a', 'b'], once = true }",

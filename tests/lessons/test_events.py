@@ -13,7 +13,7 @@ from tuisim.lessons.events import (
     JudgedRun,
     Noted,
     Shown,
-    TriedFrom,
+    TriedElsewhere,
     Typed,
     Visited,
     Watched,
@@ -21,7 +21,7 @@ from tuisim.lessons.events import (
     note_fault,
     unready,
 )
-from tuisim.lessons.spec import Break, Check, Export, Note, Question, Run, Show, Visit, Watch
+from tuisim.lessons.spec import Break, Check, Export, Note, OtherWorld, Question, Run, Show, Visit, Watch
 
 NUMBER = Question("Q", 50.2, within=0.5)
 CHOICE = Question("Q", "the light", choices=("the tick", "the light"))
@@ -32,8 +32,8 @@ def runs(*seeds: int, met: str = "a b", from_start: bool = True) -> list[Event]:
     return [JudgedRun(f"r{at}", seed, frozenset(met.split()), from_start) for at, seed in enumerate(seeds)]
 
 
-BACK = (460.0, 500.0, 0.0)
-FARTHER = Run(("a",), also_from=(BACK,))
+BACK = "from farther back"
+FARTHER = Run(("a",), also=(OtherWorld(BACK, {"x_mm": 460.0}, ("a",)),))
 HERE = Question("Q", 50.2, within=0.5, at_x_mm=((200.0, 400.0),), where="the band: m")
 SEEN = Question("Q", 50.2, within=0.5, seen=("instrumentation", "chart"))
 RAN = Question("Q", 50.2, within=0.5, run=True, printed="Error")
@@ -45,10 +45,10 @@ CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
     "run, goals met by different runs": (Run(("a", "b")), [*runs(0, met="a"), *runs(0, 0, met="b")[1:]], False),
     "run elsewhere": (Run(("a",)), runs(0, from_start=False), False),
     "run anywhere": (Run(("a",), anywhere=True), runs(0, from_start=False), True),
-    "run whose program passes elsewhere": (FARTHER, [*runs(0), TriedFrom("r0", BACK, frozenset("a"))], True),
+    "run whose program passes elsewhere": (FARTHER, [*runs(0), TriedElsewhere("r0", BACK, frozenset("a"))], True),
     "run whose program is not tried elsewhere": (FARTHER, runs(0), False),
-    "run whose program fails elsewhere": (FARTHER, [*runs(0), TriedFrom("r0", BACK, frozenset())], False),
-    "run of another program than that tried": (FARTHER, [*runs(0), TriedFrom("r9", BACK, frozenset("a"))], False),
+    "run whose program fails elsewhere": (FARTHER, [*runs(0), TriedElsewhere("r0", BACK, frozenset())], False),
+    "run of another program than that tried": (FARTHER, [*runs(0), TriedElsewhere("r9", BACK, frozenset("a"))], False),
     "several runs": (Run(("a",), times=2), runs(0, 0), True),
     "the same run twice": (Run(("a",), times=2), runs(0) * 2, False),
     "several seeds": (Run(("a",), times=2, seeds=True), runs(0, 1), True),

@@ -27,6 +27,11 @@ def step(keys: str) -> str:
     return lesson(f"{HEAD}{GOAL}[[step]]\nname = 'a'\n{keys}\n", "## One\n```python answer\npass\n```\n")
 
 
+def also(worlds: str) -> str:
+    """A lesson whose step also tries its program in other worlds."""
+    return step(f"run = {{ goals = ['end'], also = [{worlds}] }}")
+
+
 BAD = {
     "no front": ("# Text\n", ", line 1: does not begin with +++ (TOML between two lines +++)"),
     "front without end": ("+++\ntitle = 'T'\n", ", line 3: there is no second line +++"),
@@ -80,9 +85,22 @@ BAD = {
         step("question = { ask = 'Q', answer = 5, seen = ['analyzer'] }"),
         "step[1].question.seen[1]: there is no panel 'analyzer' (did you mean analyser",
     ),
-    "too many starts": (
-        step("run = { goals = ['end'], also_from = [[1, 1, 0], [2, 2, 0], [3, 3, 0], [4, 4, 0]] }"),
-        "step[1].run.also_from: has 4 starts (at most 3)",
+    "too many other worlds": (
+        also("{ where = 'x', noise = { light = 1 } }, " * 4),
+        "run.also: has 4 other worlds (at most 3)",
+    ),
+    "other world without words": (also("{ start = { x_mm = 1 } }"), "step[1].run.also[1].where: is missing"),
+    "other world twice": (also("{ where = 'x', noise = { light = 1 } }, " * 2), "run.also[2].where: there are two 'x'"),
+    "other world that is the same": (also("{ where = 'x' }"), "step[1].run.also[1]: is the lesson's world"),
+    "key of no world": (also("{ where = 'x', program = 'a.py' }"), "step[1].run.also[1].program: no such key"),
+    "other world on no mat": (also("{ where = 'x', background = 'None' }"), "no such mat 'None'"),
+    "no goal of another world": (
+        also("{ where = 'x', start = { x_mm = 1 }, goals = ['no'] }"),
+        "step[1].run.also[1].goals[1]: there is no goal 'no' (one of end)",
+    ),
+    "goal of another world and of the lesson": (
+        also("{ where = 'x', start = { x_mm = 1 }, goal = [{ name = 'end', finish = true }] }"),
+        "step[1].run.also[1]: 'end' is a goal of the lesson, too",
     ),
     "no such way": (
         lesson(HEAD + GOAL + RUN, "## A\n```python answer\n```\n```python wrong: no sensors\n```\n"),

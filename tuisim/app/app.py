@@ -18,8 +18,8 @@ from textual.widgets import Input
 from tuisim.app.action import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings
 from tuisim.app.actions import time_travel
 from tuisim.app.actions.app import welcome
-from tuisim.app.actions.keys import ACTIONS, PAGES, footer_actions, working
-from tuisim.app.actions.lesson import takes_pages
+from tuisim.app.actions.keys import ACTIONS, PAGES, TEXT_KEYS, footer_actions, working
+from tuisim.app.actions.lesson import reads_on, takes_pages
 from tuisim.app.background import is_leaving, leave
 from tuisim.app.branch import branch_message
 from tuisim.app.brick_hint import BrickHint
@@ -560,6 +560,8 @@ class LabApp(PanelMessages):
         """Leave the page keys to the widget with the focus, without a lesson."""
         if action == "act" and parameters[0] in PAGES:
             return takes_pages(self.panel_area)
+        if action == "act" and parameters[0] in TEXT_KEYS:
+            return reads_on(self.panel_area)
         return super().check_action(action, parameters)
 
     def action_leave_field(self) -> None:

@@ -26,7 +26,7 @@ from tuisim.lessons.events import (
     JudgedRun,
     Noted,
     Shown,
-    TriedFrom,
+    TriedElsewhere,
     Typed,
     Visited,
     Watched,
@@ -39,7 +39,21 @@ from tuisim.lessons.events import (
 )
 from tuisim.lessons.files import load_lesson
 from tuisim.lessons.progress import LessonProgress, StepState
-from tuisim.lessons.spec import SEEABLE, Break, Check, Export, Lesson, Note, Question, Run, Show, Step, Visit, Watch
+from tuisim.lessons.spec import (
+    SEEABLE,
+    Break,
+    Check,
+    Export,
+    Lesson,
+    Note,
+    OtherWorld,
+    Question,
+    Run,
+    Show,
+    Step,
+    Visit,
+    Watch,
+)
 from tuisim.lessons.story import story
 from tuisim.protocol import PauseReason
 from tuisim.runs.store import load_run
@@ -53,7 +67,6 @@ if TYPE_CHECKING:
     from tuisim.app.render.lesson import LessonView
     from tuisim.app.run_controller import RunController
     from tuisim.app.services import AppServices
-    from tuisim.lessons.trial import Start
     from tuisim.runs.recorded_run import Recording
 
 NOTES_PERIOD_S = 0.5
@@ -114,11 +127,11 @@ class AppLesson:
         self._seen: set[str] = set()
         """What of `SEEABLE` was on the screen since the step began."""
         self._remark = ""
-        """Why the last note, or the last program from another start, does not pass."""
+        """Why the last note, or the last program in another world, does not pass."""
         self._story = ""
         """What the run that has just passed a step did."""
         self._tried = ""
-        """Id of the run whose program was last tried from other starts."""
+        """Id of the run whose program was last tried in other worlds."""
         self._beside: LessonPanel | None = None
         """The panel beside a log that is open above the app."""
 
@@ -319,6 +332,9 @@ class AppLesson:
             except TuisimError as error:
                 self._next_look_s = time.monotonic() + 10
                 self._app.complain(error)
+            if self._is_elsewhere:
+                # What a run from elsewhere needs depends on whether it is over.
+                self.show()
 
     def _observed(self, step: Step) -> Iterator[Event]:
         match step.check:
@@ -361,36 +377,38 @@ class AppLesson:
             self.show()
 
     def _try_elsewhere(self, check: Check, recording: Recording) -> None:
-        """Try the program of a good run from the other starts of the step, in the background."""
+        """Try the program of a good run in the other worlds of the step, in the background."""
         assert isinstance(check, Run)
         lesson, run_id = self.lesson, recording.run_id
         is_good = any(run.run_id == run_id for run in met_by(check, self._events))
         is_over = self._run_controller.state is RunPhase.ENDED
-        if lesson is None or not (is_good and is_over and check.also_from) or self._tried == run_id:
+        if lesson is None or not (is_good and is_over and check.also) or self._tried == run_id:
             return
-        self._tried, self._remark = run_id, "Your program is now tried from another start …"
+        self._tried, self._remark = run_id, f"Your program is now also tried {check.also[0].where} …"
 
-        def work() -> list[tuple[Start, tuple[Judgement, ...]]]:
-            from tuisim.lessons.trial import tried_from
+        def work() -> list[tuple[OtherWorld, tuple[Judgement, ...]]]:
+            from tuisim.lessons.trial import tried_elsewhere
 
-            return tried_from(lesson, check, load_run(recording.folder))
+            return tried_elsewhere(lesson, check, load_run(recording.folder))
 
         then = partial(self._tried_elsewhere, check, run_id)
         background.run(self._panel_area, work, then, self._app.complain, group="lesson")
 
-    def _tried_elsewhere(self, check: Run, run_id: str, found: list[tuple[Start, tuple[Judgement, ...]]]) -> None:
-        """Take in how the program did from other starts, unless the student has gone on meanwhile."""
-        if self.step is None or self.step.check is not check or self._tried != run_id:
+    def _tried_elsewhere(self, check: Run, run_id: str, found: list[tuple[OtherWorld, tuple[Judgement, ...]]]) -> None:
+        """Take in how the program did in other worlds, unless the student has gone on meanwhile."""
+        if self.step is None or self.step.check is not check:
             return
-        self._remark = ""
-        for start, judgements in found:
+        # The student may have begun another run meanwhile: this one counts, but what is told is about that one.
+        is_newest, remark = self._tried == run_id, ""
+        for other, judgements in found:
             met = frozenset(each.goal.name for each in judgements if each.state is GoalState.MET)
-            if self._take(TriedFrom(run_id, start, met)):
+            if self._take(TriedElsewhere(run_id, other.where, met)):
                 return
-            missed = [each for each in judgements if each.goal.name in check.goals and each.goal.name not in met]
-            if missed and not self._remark:
-                where = f"x = {start[0]:g}, y = {start[1]:g} mm"
-                self._remark = f"From another start, {where}, it does not work: {missed[0].reason}"
+            missed = [each for each in judgements if each.goal.name in other.goals and each.goal.name not in met]
+            if missed and not remark:
+                remark = f"Also tried {other.where}, it does not work: {missed[0].reason}"
+        if is_newest:
+            self._remark = remark
         self.show()
 
     def _count_try(self, step: Step, recording: Recording, judgements: tuple[Judgement, ...]) -> None:
@@ -488,10 +506,11 @@ class AppLesson:
             judgements=self._judgements,
             good_runs=good,
             is_elsewhere=self._is_elsewhere,
+            in_run=self._is_elsewhere and self._run_controller.in_run,
             done=self._done,
             story=self._story if self._done else "",
             remark=self._remark,
-            next_title=self._next_title(),
+            next_title="" if step else self._next_title(),
         )
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import re
-from itertools import islice
+from itertools import islice, pairwise
 
 from tuisim.core.profile import NS_PER_S
 from tuisim.errors import counted
@@ -17,6 +18,9 @@ from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.samples import Sample
 
 _MOST_SHOWN = 60
+_STILL_MM_S = 10.0
+_STOP_TICKS = 20
+"""A robot that becomes so slow within so many ticks has stopped: the motors' commands return a little earlier."""
 _MOST_TRIED = 1000
 """Of so many lines that say what is asked for, one must have been printed where and how it must be."""
 
@@ -62,7 +66,10 @@ def find_printed(condition: Print, evidence: Evidence, span: Span) -> Found:
 
 def _not_once(condition: Print, rows: list[tuple[int, OutputRow]], span: Span) -> Found | None:
     """Return what is missing of a condition whose lines come only once; None if nothing is."""
-    fitting = [row for _, row in rows if any(re.search(pattern, row.text) for pattern in condition.lines)]
+    fits = [(row, sum(bool(re.search(pattern, row.text)) for pattern in condition.lines)) for _, row in rows]
+    if several := [row for row, count in fits if count > 1]:
+        return Found(None, f"{_shown(several[0].text)} says several of the lines at once.", several[0].line)
+    fitting = [row for row, count in fits if count]
     if len(fitting) > len(condition.lines):
         return Found(None, _too_many("such lines", len(fitting), len(condition.lines)), fitting[-1].line)
     return None if span.over else Found()
@@ -82,6 +89,8 @@ def _fault(condition: Print, count: int, row: OutputRow, since: int, evidence: E
     when = f"{_shown(row.text)} was printed at {row.time_ns / NS_PER_S:.2f} s"
     if fault := _elsewhere(condition, count, row.tick, evidence):
         return f"{when}, when {fault}"
+    if condition.still and (speed_mm_s := _speed_mm_s(row.tick, evidence)) > _STILL_MM_S:
+        return f"{when}, when the robot still moved, by {speed_mm_s:.0f} mm/s: it must have stopped."
     if condition.reading is None:
         return ""
     noun = NOUNS[condition.reading]
@@ -92,6 +101,17 @@ def _fault(condition: Print, count: int, row: OutputRow, since: int, evidence: E
         ago = "since the line before it" if since >= 0 else "before that"
         return f"{when}, but the program did not read the {noun} {ago}."
     return ""
+
+
+def _speed_mm_s(tick: int, evidence: Evidence) -> float:
+    """Return how fast the robot moves when it is slowest, from a tick on as long as a stop may take."""
+    ticks = range(max(0, tick), min(tick + _STOP_TICKS, len(evidence.records)))
+    return min((_between_mm_s(first, then, evidence) for first, then in pairwise(ticks)), default=0.0)
+
+
+def _between_mm_s(first: int, then: int, evidence: Evidence) -> float:
+    way_mm = math.dist(evidence.place_mm(first), evidence.place_mm(then))
+    return way_mm / float(evidence.times_s[then] - evidence.times_s[first])
 
 
 def _elsewhere(condition: Print | Log, count: int, tick: int, evidence: Evidence) -> str:

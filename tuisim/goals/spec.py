@@ -252,7 +252,9 @@ class Print:
     reading: Reading | None = None
     """A kind of reading that must decide that, or what, each line says, and be taken since the line before it."""
     once: bool = False
-    """Whether the run must end without a further line that matches one of them."""
+    """Whether the run must end without a further line that matches one of them, and no line may match several."""
+    still: bool = False
+    """Whether the robot must stand still when it prints them."""
 
     def __post_init__(self) -> None:
         _check_count(self.lines, "lines")

@@ -23,12 +23,12 @@ class JudgedRun:
 
 
 @dataclass(frozen=True, slots=True)
-class TriedFrom:
-    """The program of a run was tried from another start."""
+class TriedElsewhere:
+    """The program of a run was tried in another world."""
 
     run_id: str
-    start: tuple[float, float, float]
-    """x, y and heading."""
+    where: str
+    """Which of the other worlds of the step, see `OtherWorld.where`."""
     met: frozenset[str]
     """Names of the goals that it has met."""
 
@@ -94,7 +94,7 @@ class Shown:
     """Whether a program was paused at that moment."""
 
 
-Event: TypeAlias = JudgedRun | TriedFrom | Typed | Watched | BreakMet | Exported | Noted | Visited | Shown
+Event: TypeAlias = JudgedRun | TriedElsewhere | Typed | Watched | BreakMet | Exported | Noted | Visited | Shown
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?)\s*[^\d.,]*$")
 
@@ -126,14 +126,18 @@ def is_met(check: Check, events: Sequence[Event]) -> bool:
 
 def good_runs(check: Run, events: Sequence[Event]) -> int:
     """Return how many runs have passed a check so far."""
-    tried = [event for event in events if isinstance(event, TriedFrom) and set(check.goals) <= event.met]
-    passed = {(one.run_id, one.start) for one in tried}
-    good = [run for run in met_by(check, events) if all((run.run_id, start) in passed for start in check.also_from)]
+    passed = {
+        (event.run_id, other.where)
+        for event in events
+        for other in check.also
+        if isinstance(event, TriedElsewhere) and event.where == other.where and set(other.goals) <= event.met
+    }
+    good = [run for run in met_by(check, events) if all((run.run_id, other.where) in passed for other in check.also)]
     return len({run.seed for run in good} if check.seeds else {run.run_id for run in good})
 
 
 def met_by(check: Run, events: Sequence[Event]) -> list[JudgedRun]:
-    """Return the runs that have met the goals of a check, whatever their programs do from other starts."""
+    """Return the runs that have met the goals of a check, whatever their programs do in other worlds."""
     runs = [event for event in events if isinstance(event, JudgedRun)]
     return [run for run in runs if set(check.goals) <= run.met and (run.from_start or check.anywhere)]
 

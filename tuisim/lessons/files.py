@@ -21,6 +21,7 @@ from tuisim.config.worlds import WorldFile, world_from_table
 from tuisim.errors import ConfigError
 from tuisim.goals.files import goals_from_list, line_in_errors
 from tuisim.lessons.events import event_of, is_met, model_event
+from tuisim.lessons.others import others_of
 from tuisim.lessons.spec import CHECKS, MAX_HINTS, MAX_STEPS, Break, Check, Lesson, Note, Run, Step, Way, WrongProgram
 
 SUFFIX = ".md"
@@ -224,7 +225,7 @@ def _step(data: object, section: _Section, at: Location, file: str) -> Step:
     if len(kinds) != 1:
         named = f"has {len(kinds)} checks: {', '.join(kinds)}" if kinds else "has no check"
         raise at.wrong(named, f"exactly one of {', '.join(CHECKS)}")
-    check = _check(CHECKS[kinds[0]], found[kinds[0]], at.at(kinds[0]))
+    check = _check(CHECKS[kinds[0]], found[kinds[0]], at.at(kinds[0]), Path(file))
     if not section.title:
         raise Location(f"{file}, line {section.line}").wrong("the step has no title", "## TITLE")
     answers = section.of(Role.ANSWER)
@@ -258,18 +259,29 @@ def _texts(found: Any, key: str, at: Location, most: int) -> tuple[str, ...]:
     return tuple(files.convert(text, str, place) for text, place in listed)
 
 
-def _check(kind: type[Check], data: object, at: Location) -> Check:
+def _check(kind: type[Check], data: object, at: Location, path: Path) -> Check:
     if not isinstance(data, dict) and kind.SHORT:
         data = {kind.SHORT: [data] if kind is Run and isinstance(data, str) else data}
-    return files.convert(data, kind, at)
+    if kind is not Run or not isinstance(data, dict) or "also" not in data:
+        return files.convert(data, kind, at)
+    run = files.convert({key: value for key, value in data.items() if key != "also"}, Run, at)
+    return replace(run, also=others_of(data["also"], run.goals, at.at("also"), path))
 
 
 def _check_goals(check: Check, goals: set[str], at: Location) -> None:
     if isinstance(check, Run):
-        for number, name in enumerate(check.goals, start=1):
-            if name not in goals:
-                place = at.at(f"run.goals[{number}]")
-                raise place.wrong(f"there is no goal {name!r}", f"one of {', '.join(sorted(goals))}")
+        _check_names(check.goals, goals, at.at("run"))
+        for number, other in enumerate(check.also, start=1):
+            place, own = at.at(f"run.also[{number}]"), {goal.name for goal in other.own_goals}
+            if twice := sorted(own & goals):
+                raise place.wrong(f"{twice[0]!r} is a goal of the lesson, too", "give it another name")
+            _check_names(other.goals, goals | own, place)
+
+
+def _check_names(names: Sequence[str], goals: set[str], at: Location) -> None:
+    for number, name in enumerate(names, start=1):
+        if name not in goals:
+            raise at.at(f"goals[{number}]").wrong(f"there is no goal {name!r}", f"one of {', '.join(sorted(goals))}")
 
 
 def _check_models(step: Step, at: Location) -> None:

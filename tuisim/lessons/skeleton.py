@@ -34,7 +34,8 @@ log = { name = "X", levels = [1000], within = 5, reading = "motor", x_mm = [[995
 
 # One [[step]] for each section ## below, in the same order, with exactly one check:
 #   run = ["GOAL", …]            a run meets goals; also run = { goals = ["GOAL"], times = 3, seeds = true }
-#       also_from = [[300, 600, 0]] tries the program of a good run from other starts, too: x, y and heading
+#       also = [{ where = "from farther back", start = { x_mm = 300 } }] tries the program of a good run in other
+#       worlds, too: background, start, robot, noise, obstacles; with goals or [[step.run.also.goal]] of their own
 #   question = { ask = "…", answer = 50.2, within = 1 }     or answer = "a text", or choices = ["one", "another"]
 #       also what must have happened: at_x_mm = [[230, 411]] and where = "the grey band: m moves it back" say where the
 #       robot must be, seen = ["instrumentation"] what was looked at, run = true that there was a run, printed a REGEX

@@ -15,7 +15,7 @@ from msgspec import Meta
 
 from tuisim.config.options import PANELS
 from tuisim.errors import ConfigError, nearest, require_regex
-from tuisim.goals.spec import Goal, Heading, Range, X, Y
+from tuisim.goals.spec import Goal, Range
 
 SHOWABLE = (*PANELS, "debug", "brick", "obstacles", "goals")
 """Ids of the panels that a step can ask for."""
@@ -23,7 +23,7 @@ SEEABLE = (*SHOWABLE, "analyser")
 """Ids of what a student can look at for the answer to a question."""
 MAX_STEPS = 30
 MAX_HINTS = 10
-MAX_STARTS = 3
+MAX_OTHERS = 3
 
 Count = Annotated[int, Meta(ge=1, le=100)]
 Seconds = Annotated[float, Meta(ge=0, le=1e6)]
@@ -48,6 +48,21 @@ class Way(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
+class OtherWorld:
+    """A world in which the program of a good run is tried, too: one that knows the lesson's world by heart fails."""
+
+    where: str
+    """What is other there, for the student, such as `from 10 cm farther back`."""
+    settings: Mapping[str, Any]
+    """What is other than in the lesson's world, by field of `Settings`."""
+    goals: tuple[str, ...]
+    """Names of the goals to be met there."""
+    # `Goal` is not in the type: msgspec cannot describe a union of conditions.
+    own_goals: tuple[Any, ...] = ()
+    """Those of them that only this world has."""
+
+
+@dataclass(frozen=True, slots=True)
 class Run:
     """Runs of the program meet goals of the lesson."""
 
@@ -64,13 +79,10 @@ class Run:
     """Whether each of these runs needs another seed."""
     anywhere: bool = False
     """Whether a run may begin at another place than the lesson's start."""
-    also_from: tuple[tuple[X, Y, Heading], ...] = ()
-    """Further starts, x, y and heading: the program of a good run is tried from each, and must meet the goals, too.
-    One that knows the way by heart does not."""
+    also: tuple[OtherWorld, ...] = ()
+    """Other worlds in which the program of a good run must do well, too."""
 
     def __post_init__(self) -> None:
-        if len(self.also_from) > MAX_STARTS:
-            raise ConfigError(f"has {len(self.also_from)} starts", f"at most {MAX_STARTS}", key="also_from")
         if not self.goals:
             raise ConfigError("names no goal", "give the names of goals", key="goals")
 

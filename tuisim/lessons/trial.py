@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 from tuisim.batch.pool import run_many
 from tuisim.batch.task import Result, Task
@@ -11,20 +11,16 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import settings_of
 from tuisim.config.program_file import parse_program
 from tuisim.config.program_settings import program_settings
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import RunSpec
 from tuisim.goals.judgement import GoalState, Judgement
-from tuisim.lessons.spec import Lesson, Question, Run, Step, Way
+from tuisim.lessons.spec import Lesson, OtherWorld, Question, Run, Step, Way
 from tuisim.runs.handle import RunOptions
 from tuisim.runs.run_folder import StoredRun
 from tuisim.source import source_lines
 
 TIME_LIMIT_S = 180.0
 """Simulated seconds that a program of a lesson may take."""
-Start = tuple[float, float, float]
-"""x, y and heading of the robot at the beginning."""
-_Key = tuple[str, int, Start | None]
-"""The text of a program, the seed, and the start; None for that of the lesson."""
+_Key = tuple[str, int, str]
+"""The text of a program, the seed, and which other world of the step it is; empty for the lesson's world."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,31 +49,29 @@ def trials(lesson: Lesson) -> list[Trial]:
     return found
 
 
-def task_of(lesson: Lesson, text: str, seed: int, index: int = 0, start: Start | None = None) -> Task:
-    """Return the run of a program in the world of a lesson, with a seed, perhaps from another start.
+def task_of(lesson: Lesson, text: str, seed: int, index: int = 0, other: OtherWorld | None = None) -> Task:
+    """Return the run of a program in the world of a lesson, or in another world of a step, with a seed.
 
     Raises:
         ConfigError: its magic line, or the world, is wrong.
     """
     source = parse_program(text, f"{lesson.name}.py")
     of_lesson = bool(lesson.settings)
-    found = program_settings(source, lesson.settings, {"seed": seed}, in_world=of_lesson, of_task=of_lesson)
-    spec = build_run_spec(found.settings)
-    return Task(index, source.program, _from(spec, start), RunOptions(time_limit_s=TIME_LIMIT_S), lesson.goals)
+    given = {**lesson.settings, **(other.settings if other else {})}
+    found = program_settings(source, given, {"seed": seed}, in_world=of_lesson, of_task=of_lesson)
+    spec, goals = build_run_spec(found.settings), (*lesson.goals, *(other.own_goals if other else ()))
+    return Task(index, source.program, spec, RunOptions(time_limit_s=TIME_LIMIT_S), goals)
 
 
-def _from(spec: RunSpec, start: Start | None) -> RunSpec:
-    return spec if start is None else replace(spec, world=replace(spec.world, start=Pose(*start)))
+def tried_elsewhere(lesson: Lesson, check: Run, run: StoredRun) -> list[tuple[OtherWorld, tuple[Judgement, ...]]]:
+    """Try the program of a run in the other worlds of a check, and judge that; blocks meanwhile.
 
-
-def tried_from(lesson: Lesson, check: Run, run: StoredRun) -> list[tuple[Start, tuple[Judgement, ...]]]:
-    """Try the program of a run from the other starts of a check, and judge that; blocks meanwhile."""
-    options = RunOptions(time_limit_s=TIME_LIMIT_S)
-    tasks = [
-        Task(index, run.program, _from(run.spec, start), options, lesson.goals)
-        for index, start in enumerate(check.also_from)
-    ]
-    return [(check.also_from[result.index], result.judgements) for result in run_many(tasks, jobs=1)]
+    Raises:
+        ConfigError: the program's magic line is wrong there.
+    """
+    text, seed = run.program.text, run.spec.seed
+    tasks = [task_of(lesson, text, seed, index, other) for index, other in enumerate(check.also)]
+    return [(check.also[result.index], result.judgements) for result in run_many(tasks, jobs=1)]
 
 
 def faults(lesson: Lesson) -> list[str]:
@@ -87,15 +81,22 @@ def faults(lesson: Lesson) -> list[str]:
         ConfigError: a program's magic line, or the world, is wrong.
     """
     tried = trials(lesson)
-    keys: list[_Key] = list(dict.fromkeys(key for trial in tried for key in _keys(trial)))
-    tasks = [task_of(lesson, text, seed, index, start) for index, (text, seed, start) in enumerate(keys)]
-    results = {keys[result.index]: result for result in run_many(tasks, jobs=1)}
-    return [fault for trial in tried for fault in _faults_of(lesson, trial, [results[key] for key in _keys(trial)])]
+    tasks: dict[_Key, Task] = {}
+    for trial in tried:
+        for key, other in _worlds(trial):
+            if key not in tasks:
+                tasks[key] = task_of(lesson, trial.text, trial.seed, len(tasks), other)
+    keys = list(tasks)
+    results = {keys[result.index]: result for result in run_many(list(tasks.values()), jobs=1)}
+    return [fault for trial in tried for fault in _faults_of(lesson, trial, results)]
 
 
-def _keys(trial: Trial) -> list[_Key]:
-    assert isinstance(trial.step.check, Run)
-    return [(trial.text, trial.seed, start) for start in (None, *trial.step.check.also_from)]
+def _worlds(trial: Trial) -> list[tuple[_Key, OtherWorld | None]]:
+    """Return the worlds in which a trial runs, each with its key; None for that of the lesson."""
+    check = trial.step.check
+    assert isinstance(check, Run)
+    found = [((trial.text, trial.seed, f"{trial.step.name} {other.where}"), other) for other in check.also]
+    return [((trial.text, trial.seed, ""), None), *found]
 
 
 def warnings(lesson: Lesson) -> list[str]:
@@ -109,23 +110,26 @@ def warnings(lesson: Lesson) -> list[str]:
     return found
 
 
-def _faults_of(lesson: Lesson, trial: Trial, results: Sequence[Result]) -> Iterator[str]:
-    """Yield what is wrong with a trial, of which there is a result for each start."""
-    result = next((one for one in results if _missed(trial.step, one.judgements)), results[0])
-    missed = _missed(trial.step, result.judgements)
-    if trial.passes and missed:
-        reasons = "; ".join(f"{each.goal.name}: {each.reason}" for each in missed)
+def _faults_of(lesson: Lesson, trial: Trial, results: Mapping[_Key, Result]) -> Iterator[str]:
+    """Yield what is wrong with a trial."""
+    check = trial.step.check
+    assert isinstance(check, Run)
+    tried = [(results[key], other) for key, other in _worlds(trial)]
+    missed = [(result, _missed(other.goals if other else check.goals, result), other) for result, other in tried]
+    result, reasons, other = next((one for one in missed if one[1]), missed[0])
+    if trial.passes and reasons:
         error = f"; it ended with: {source_lines(result.error.strip())[-1]}" if result.error.strip() else ""
-        yield f"{lesson.path}, line {trial.step.line}: the model answer does not pass “{trial.step.title}”: " + (
-            f"{reasons}{error}"
+        where = f" {other.where}" if other else ""
+        yield (
+            f"{lesson.path}, line {trial.step.line}: the model answer does not pass “{trial.step.title}”{where}: "
+            f"{'; '.join(reasons)}{error}"
         )
-    elif not trial.passes and not missed:
+    elif not trial.passes and not reasons:
         way = f" ({trial.way})" if trial.way else ""
         yield f"{lesson.path}, line {trial.line}: this wrong program{way} passes “{trial.step.title}”"
 
 
-def _missed(step: Step, judgements: Sequence[Judgement]) -> list[Judgement]:
-    assert isinstance(step.check, Run)
-    met = {each.goal.name for each in judgements if each.state is GoalState.MET}
-    by_name = {each.goal.name: each for each in judgements}
-    return [by_name[name] for name in step.check.goals if name not in met]
+def _missed(goals: Sequence[str], result: Result) -> list[str]:
+    """Return which of some goals a run has missed, each with the reason."""
+    by_name = {each.goal.name: each for each in result.judgements}
+    return [f"{name}: {by_name[name].reason}" for name in goals if by_name[name].state is not GoalState.MET]

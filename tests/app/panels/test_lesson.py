@@ -312,7 +312,7 @@ async def test_page_keys_belong_to_the_editor_while_it_is_typed_in(tmp_path: Pat
         await pilot.press("d")
         await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
         assert app.panel_area.lesson is not None
-        assert app.panel_area.lesson.border_subtitle == ""
+        assert app.panel_area.lesson.border_subtitle == "ctrl+↑ ctrl+↓ read on"
         await pilot.press("pagedown")
         assert "Line 0\n" in shown(app)
 

@@ -169,6 +169,11 @@ def _page(name: str, key: str, way: str, by: int) -> LabAction:
     return Action(name, key, title, LESSON, do, comes_first=True)
 
 
+def _text(name: str, key: str, way: str, by: int) -> LabAction:
+    title, do = f"Text of the lesson, also while you type: {way}", partial(lesson.scroll, by=by)
+    return Action(name, key, title, LESSON, do, comes_first=True)
+
+
 _SCREENSHOT = "Save a screenshot: SVG and PNG (also F12)"
 _SLOWER, _FASTER = (partial(program.change_speed, by=by) for by in (-1, 1))
 
@@ -217,6 +222,8 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("hint", "Y", "Next hint of the lesson", LESSON, lesson.hint),
         _page("lesson-up", "pageup", "up", -8),
         _page("lesson-down", "pagedown", "down", 8),
+        _text("lesson-back", "ctrl+up", "up", -4),
+        _text("lesson-on", "ctrl+down", "down", 4),
         Action("enlarge", "plus", "Enlarge the focused panel, or restore it", PANEL, app.enlarge),
         *_nudges(),
         Action("help", "question_mark", "Guide: keys, pages, search", APP, app.show_help, footer="help"),
@@ -252,6 +259,8 @@ def _next_steps(now: Situation) -> tuple[str, ...]:
 
 PAGES = frozenset({"lesson-up", "lesson-down"})
 """Ids of the actions of the page keys."""
+TEXT_KEYS = frozenset({"lesson-back", "lesson-on"})
+"""Ids of the actions that scroll the lesson whatever has the focus."""
 
 
 def footer_actions(

@@ -44,7 +44,7 @@ def hint(workspace: Workspace) -> None:
 def scroll(workspace: Workspace, by: int) -> None:
     """Scroll the text of the lesson by rows; if all of it is in view, the code if it has the focus."""
     area = workspace.panel_area
-    if area.lesson and _reads_on(area):
+    if area.lesson and reads_on(area):
         area.lesson.action_scroll_text(by)
     elif area.code and area.code.has_focus_within:
         area.code.page(by)
@@ -56,11 +56,12 @@ def takes_pages(area: PanelArea) -> bool:
         return False
     if area.code is not None and area.code.has_focus_within:
         return not area.code.typing
-    return _reads_on(area)
+    return reads_on(area)
 
 
-def _reads_on(area: PanelArea) -> bool:
-    return area.lesson is not None and area.shown("lesson") and area.lesson.reads_on
+def reads_on(area: PanelArea) -> bool:
+    """Return whether the lesson is in sight, with more of its text above or below."""
+    return area.screen.is_current and area.lesson is not None and area.shown("lesson") and area.lesson.reads_on
 
 
 def menu(workspace: Workspace) -> None:

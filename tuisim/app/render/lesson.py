@@ -47,12 +47,14 @@ class LessonView:
     """How many runs have passed the step so far, if it needs several."""
     is_elsewhere: bool = False
     """Whether the last run did not begin at the lesson's start."""
+    in_run: bool = False
+    """Whether a run is going on."""
     done: Step | None = None
     """The step that has just been done."""
     story: str = ""
     """What the run did that has passed it; empty if it was not about a run."""
     remark: str = ""
-    """Why the last note, or the last program from another start, does not pass the step."""
+    """Why the last note, or the last program in another world, does not pass the step."""
     next_title: str = ""
     """Title of the next lesson; empty if this is the last."""
 
@@ -177,7 +179,8 @@ def _result(view: LessonView, step: Step, width: int) -> Iterator[Line]:
     if not isinstance(step.check, Run) or not view.judgements:
         return
     if view.is_elsewhere and not step.check.anywhere:
-        yield from _wrapped("This run began elsewhere: m moves the robot to its start, then R.", width, _BAD)
+        way = "" if view.in_run else ": m moves the robot to its start, then R"
+        yield from _wrapped(f"This run began elsewhere{way}.", width, _BAD)
     by_name = {each.goal.name: each for each in view.judgements}
     # What was missed comes first: in a low terminal, the reason is in view.
     for name in sorted(step.check.goals, key=lambda name: by_name[name].state is not GoalState.MISSED):
@@ -226,17 +229,17 @@ def _end(view: LessonView, width: int, is_away: bool) -> Iterator[Line]:
         yield from _wrapped("The end of the lesson: a model answer appears here when every step is done.", width, _PALE)
         return
     yield from _wrapped("✓ The lesson is done." if not skipped else "The end of the lesson.", width, _GOOD)
-    yield []
-    if view.done:
-        yield from _done(view.done, view.story, width, is_away)
-    yield from _wrapped(f"On a real robot: {view.lesson.why}", width, _PLAIN)
-    yield []
     following = (
         f"{_escape(is_away)}M, then enter: the next lesson, {view.next_title}."
         if view.next_title
         else "This was the last lesson."
     )
+    # Early: in a low terminal, the way on is in view.
     yield from _wrapped(following, width, _HINT)
+    yield []
+    if view.done:
+        yield from _done(view.done, view.story, width, is_away)
+    yield from _wrapped(f"On a real robot: {view.lesson.why}", width, _PLAIN)
     yield []
     if skipped:
         yield from _wrapped("Steps were skipped: the model answer appears when every step is done.", width, _PALE)

@@ -1,0 +1,35 @@
+"""Redraw the mats on which lessons try programs again: `python backgrounds/lesson_mats.py`.
+
+Nobody drives on them by hand, so they are not in the catalogue. One row of pixels is enough: it is stretched.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from mats import BLUE, GREEN, LIGHT_GREY, MID_GREY, RED, VERY_LIGHT_GREY, YELLOW
+from PIL import Image
+from shapes import BLACK, WIDTH, Rgb
+
+FOLDER = Path(__file__).resolve().parent.parent / "tuisim" / "lessons" / "mats"
+WIDTH_OF_BAND = 201
+BANDS: dict[str, dict[int, Rgb]] = {
+    "other_greys": {250: (225, 225, 225), 650: (207, 207, 207), 1050: (124, 124, 124), 1450: BLACK},
+    "pale_again": {250: VERY_LIGHT_GREY, 650: LIGHT_GREY, 1050: (217, 217, 217), 1450: MID_GREY, 1850: BLACK},
+    "yellow_first": {250: YELLOW, 630: RED, 1070: GREEN, 1420: BLUE, 1880: BLACK},
+}
+"""The bands of each mat by their left edges, on white."""
+
+
+def draw(name: str) -> Image.Image:
+    """Draw the row of one mat."""
+    row = np.full((1, WIDTH, 3), 255, np.uint8)
+    for left, rgb in BANDS[name].items():
+        row[:, left : left + WIDTH_OF_BAND] = rgb
+    return Image.fromarray(row)
+
+
+if __name__ == "__main__":
+    for mat in BANDS:
+        draw(mat).save(FOLDER / f"{mat}.png", "PNG", optimize=True)
