@@ -56,6 +56,17 @@ def pytest_collection_finish() -> None:
     gc.enable()
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _no_test_keeps_the_garbage_of_others() -> Iterator[None]:
+    """Let nothing leave what is there out of every search for garbage: an app does that, which is alone in its process.
+
+    Otherwise the apps of earlier tests, and the files that they have mapped, stay until the end.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(gc, "freeze", lambda: None)
+        yield
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_pycollect_makeitem() -> Generator[None, Any, Any]:
     """Mark the slow cases of a table: `quick_cases` names those that are quick, or `slow_cases` those that are not."""

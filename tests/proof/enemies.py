@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
-import signal
+import os
+import re
+import stat
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
-from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -18,13 +20,13 @@ from tests.hosts import HOSTS, Hosted, Stored, hosted, isolated
 from tests.isolated import refusal
 from tests.marking.attackers import DISK, FILES, MEMORY, OWN_RUN, PROC, PROCESSES, SECRET
 from tests.proof.commands import check_said
-from tests.proof.kind import FaultError, Kind, TooLongError, home
-from tests.running import PATIENCE_S
+from tests.proof.kind import FaultError, Kind, home, in_time
 from tuisim.cli import EXIT_OUR_MISTAKE
 from tuisim.protocol import EVENTS, End
+from tuisim.runs.catalogue import RunInfo
 from tuisim.runs.removal import remove_tree
 from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.side_files import SIDE_FILES
+from tuisim.runs.side_files import ACTIONS_FILE, SIDE_FILES, STOP_FILE
 from tuisim.runs.store import RunStore
 
 HONEST = """\
@@ -33,7 +35,8 @@ print('A:', colorLeft.reflected_light_intensity_pc)
 """
 """Both print another line at their ends."""
 _BEFORE = OWN_RUN + "import json, mmap, random, signal, struct\nprint('B: 1')\n"
-_ENDS = ("", "libc._exit(0)", "os.kill(os.getpid(), signal.SIGKILL)", "tank_drive.on_for_rotations(50, 50, 1)", "1 / 0")
+_DRIVE = "tank_drive.on_for_rotations(50, 50, 1)"
+_ENDS = ("", "libc._exit(0)", "os.kill(os.getpid(), signal.SIGKILL)", _DRIVE, "1 / 0")
 _PIPES = """
 for link in links:
     if os.path.exists(link) and stat.S_ISFIFO(os.stat(link).st_mode):
@@ -41,6 +44,8 @@ for link in links:
         except OSError: pass
 """
 _FILES = ("telemetry.bin", "output.bin", "run.json", "lock", "telemetry.bin.packed", "output.bin.packed", *SIDE_FILES)
+_READ = ("telemetry.bin", "output.bin", ACTIONS_FILE, STOP_FILE)
+"""What the host reads of each run at its end."""
 _PLACED = (
     "os.mkfifo(name)", "os.mkdir(name)", "os.symlink('/dev/zero', name)", "os.symlink('/dev/null', name)",
     "os.symlink(name, name)", "os.symlink('/nowhere', name)", "os.symlink('run.json', name)",
@@ -49,6 +54,9 @@ _PLACED = (
     "__import__('socket').socket(1).bind(name)", "os.link(run + '/output.bin', name)", "pass",
 )  # fmt: skip
 """What comes in place of a file."""
+_DAY = len("20260102")
+_TICK_NS = 10_000_000
+"""Of the profile that `hosted` uses."""
 _LARGE, _FAR = 1 << 24, 1e9
 _NUMBERS: tuple[Any, ...] = (0, -1, 1, 10**9, -(10**9), 1 << 52, 1 << 63, 10**40, 0.5, 1e300, None, "x", True, [], {})
 
@@ -73,6 +81,17 @@ def _bytes(random: Random) -> str:
 def _events(random: Random) -> str:
     sent = "".join(f"{_event(random)}\n" for _ in range(random.choice((1, 1, 2, 9))))
     return _PIPES.replace("SENT", repr(sent.encode()))
+
+
+def _ends(random: Random) -> str:
+    """Announce an end that could be one, and end in another way."""
+    tick = random.choice((0, 0, 1, 5, 500))
+    fields: dict[str, Any] = {"kind": "ended", "end": random.choice(list(End)).value, "tick": tick}
+    fields |= {"time_ns": tick * _TICK_NS + random.choice((0, 0, 0, 1, _TICK_NS, -1))}
+    for name in random.sample(("exit_code", "error_line", "summary"), random.choice((0, 1))):
+        fields[name] = "x" if name == "summary" else random.choice((0, 1, 1 << 63, -(10**20)))
+    sent = _PIPES.replace("SENT", repr(f"{json.dumps(fields)}\n".encode()))
+    return "\n".join((random.choice(("", _DRIVE)), sent, random.choice(("libc._exit(0)", "os.kill(os.getpid(), 9)"))))
 
 
 def _recording(random: Random) -> str:
@@ -112,18 +131,70 @@ def _caches(random: Random) -> str:
                       "    os.chmod(name, 0o600)", f"    with open(name, 'r+b') as f: {do}"))  # fmt: skip
 
 
+def _forged(random: Random) -> str:
+    """Change `run.json` into that of another run, which is as sound."""
+    changes = {
+        "another text": "data['program']['text'] = 'print(1)'",
+        "another name": "data['program'] |= {'name': 'ada.py', 'path': '/ada.py'}",
+        "another start": "data['spec']['world']['start']['x_mm'] = 2000.0",
+        "another seed": "data['spec']['seed'] = 12345",
+        "another mat": "data['field'] = None; data['spec']['world']['background'] = 'Grey_bands'",
+        "another id": "data |= {'id': '20200101T000000-abcdef', 'number': 1}",
+        "another day": "data['created'] = '2020-01-01T00:00:00.000Z'",
+        "an end": "data['end'] = {'end': 'finished', 'tick': 7, 'time_ns': 70_000_000}",
+        "answers": "data['options']['answers'] = ['yes']",
+    }
+    lines = [changes[name] for name in random.sample(list(changes), random.randint(1, 3))]
+    load = "with open(run + '/run.json') as f: data = json.load(f)"
+    store = (
+        random.choice(("name = run + '/run.json'", "name = run + '/x'")),
+        "with open(name, 'w') as f: json.dump(data, f)",
+    )
+    return "\n".join((load, *lines, *store, "os.replace(name, run + '/run.json')"))
+
+
+_FD = "descriptor "
+_OWN = re.compile(
+    r"/dev/null$|pipe:|/memfd:output |.*[.](rgb|sums)$|.*/(telemetry[.]bin|output[.]bin|lock|stack[.]txt|log[.]txt)$"
+)
+"""What a program reaches of its own run: its recordings, its mat, and three pipes."""
+_OWN_PIPES = 3
+_OPEN = f"""
+for number in sorted(map(int, os.listdir('/proc/self/fd'))):
+    try: print('{_FD}' + os.readlink('/proc/self/fd/' + str(number)))
+    except OSError: pass
+"""
+
+
+def _descriptors(random: Random) -> str:
+    """Print what is open, by number."""
+    return _OPEN
+
+
 SORTS: Mapping[str, Callable[[Random], str]] = {
     "bytes": _bytes,
     "events": _events,
+    "ends": _ends,
     "recording": _recording,
     "places": _places,
     "folder": _folder,
     "caches": _caches,
+    "forged": _forged,
+    "descriptors": _descriptors,
 }
 
 
-LIMITED: Mapping[str, str] = {**DISK, **MEMORY, **PROCESSES, **PROC, **FILES}
+_FILES_AND_AN_END = {
+    "many files, and an end": OWN_RUN
+    + "for number in range(21000): os.close(os.open(str(number), os.O_CREAT | os.O_WRONLY))\nlibc.usleep(1500000)"
+}
+LIMITED: Mapping[str, str] = {**DISK, **MEMORY, **PROCESSES, **PROC, **FILES, **_FILES_AND_AN_END}
 """Attacks for isolated programs, which a limit ends."""
+LIMITED_ENDS: Mapping[str, tuple[str, ...]] = {
+    **dict.fromkeys((*PROC, *FILES), ("raised",)),
+    **dict.fromkeys(_FILES_AND_AN_END, ("output_limit",)),
+}
+"""How some of them end."""
 _ISOLATED = "isolated"
 
 
@@ -151,32 +222,22 @@ def _hosted(host: str, programs: Mapping[str, str], place: Path) -> Hosted:
     return isolated(programs, place) if host == _ISOLATED else hosted(host, programs, place)
 
 
-def _too_long(_number: int, _frame: FrameType | None) -> None:
-    raise TooLongError(f"has not ended after {PATIENCE_S:g} s")
-
-
 def _check(case: str, folder: Path) -> None:
     host, sort, seed = case.split(":")
     text = LIMITED[sort] if host == _ISOLATED else _drawn(sort, Random(seed))
     (folder / "secret.txt").write_text(SECRET)
     text = text.replace("FIELD", str(folder))
     wanted = _wanted(host)
-    # What blocks uses no processor.
-    before = signal.signal(signal.SIGALRM, _too_long)
-    signal.setitimer(signal.ITIMER_REAL, PATIENCE_S, PATIENCE_S)
     try:
-        found = _hosted(host, _class(text), folder / "place")
-        _check_others(found, wanted, text)
-        _check_secret(folder)
-        if host == _ISOLATED and found.runs["eve"].end not in ("raised", "output_limit", "finished", "crashed"):
-            raise FaultError(f"no limit has ended it: {found.runs['eve']}\n{text}")
-        if host == _ISOLATED and "GiB" in found.said.replace("or 1 GiB", ""):
-            raise FaultError(f"it got too much: {found.said}\n{text}")
-        with home(folder / "place" / "home"):
-            _look_at_runs(text, may_be_gone=sort == "folder")
+        with in_time():
+            found = _hosted(host, _class(text), folder / "place")
+            _check_others(found, wanted, text)
+            _check_secret(folder)
+            if host == _ISOLATED:
+                _check_limited(found, sort, text)
+            with home(folder / "place" / "home"):
+                _look_at_runs(text, is_moved=sort == "folder")
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
         # What is nested too deep for whoever removes the folder of the case.
         remove_tree(folder / "place")
 
@@ -193,6 +254,15 @@ def _check_others(found: Hosted, wanted: Mapping[str, Stored], text: str) -> Non
         raise FaultError(f"exit code {found.code}: {found.said[-2000:]}\n{text}")
 
 
+def _check_limited(found: Hosted, sort: str, text: str) -> None:
+    """Check that a limit has ended an isolated program."""
+    eve = found.runs["eve"]
+    if eve.end not in LIMITED_ENDS.get(sort, ("raised", "output_limit", "finished", "crashed")):
+        raise FaultError(f"no limit has ended it: {eve}\n{text}")
+    if "GiB" in found.said.replace("or 1 GiB", ""):
+        raise FaultError(f"it got too much: {found.said}\n{text}")
+
+
 def _check_secret(folder: Path) -> None:
     """Check that what a link leads to was neither changed nor copied."""
     if (folder / "secret.txt").read_text() != SECRET:
@@ -207,22 +277,56 @@ def _check_secret(folder: Path) -> None:
             raise FaultError(f"what a link leads to was copied into {path}")
 
 
-def _look_at_runs(text: str, may_be_gone: bool) -> None:
+def _look_at_runs(text: str, is_moved: bool) -> None:
     check_said(["runs"])
-    texts = []
-    for info in RunStore().runs():
-        run = RunStore().load_run(info.id)
-        texts.append(run.program.text)
+    runs = [(info, RunStore().load_run(info.id)) for info in RunStore().runs()]
+    texts = [run.program.text for _, run in runs]
+    for info, run in runs:
+        if not is_moved:
+            _check_started(info, run, runs[0][1])
         if run.state != End.FALSIFIED:
             _check_recording(run)
+            _check_descriptors(run)
         for words in (["runs", "show"], ["log", "summary"], ["runs", "rm"]):
             check_said([*words, info.id])
-    if not may_be_gone and not any(one.endswith(f"{text}\n") for one in texts):
+    if not is_moved and not any(one.endswith(f"{text}\n") for one in texts):
         raise FaultError(f"what is stored is not what was started\n{text}")
+
+
+def _check_started(info: RunInfo, run: StoredRun, other: StoredRun) -> None:
+    """Check that what is stored of a run, apart from its recording, is what its host has started."""
+    pairs = {
+        "id": (run.id, run.folder.name),
+        "number": (run.number, info.number),
+        "day": (run.created.replace("-", "")[:_DAY], run.id[:_DAY]),
+        "name": (run.program.name, info.program),
+        "seed": (run.spec.seed, info.seed),
+        "spec": (replace(run.spec, seed=0), replace(other.spec, seed=0)),
+        "mat": (run.field, other.field),
+        "options": (run.options, other.options),
+    }
+    if changed := {name: pair for name, pair in pairs.items() if pair[0] != pair[1]}:
+        raise FaultError(f"what is stored is not what was started: {changed}")
+
+
+def _check_descriptors(run: StoredRun) -> None:
+    """Check that a program that has printed what it can reach reaches nothing of others."""
+    found = [row.text.removeprefix(_FD) for row in run.output.rows() if row.text.startswith(_FD)]
+    pipes = sum(name.startswith("pipe:") for name in found)
+    others = [name for name in found if not _OWN.match(name)]
+    if others or pipes > _OWN_PIPES:
+        raise FaultError(f"a program has descriptors of others: {others}, {pipes} pipes of {found}")
+
+
+def _is_regular(path: Path) -> bool:
+    return stat.S_ISREG(path.lstat().st_mode)
 
 
 def _check_recording(run: StoredRun) -> None:
     """Check that a run that is not falsified has what only the simulation writes."""
+    odd = [path.name for path in map(run.folder.joinpath, _READ) if os.path.lexists(path) and not _is_regular(path)]
+    if odd:
+        raise FaultError(f"a run that is {run.state} has something else in place of {odd}")
     records = run.telemetry.array()
     sizes = [np.abs(records[name]).max(initial=0.0) for name in ("x_mm", "y_mm", "heading_deg", "left_position_deg")]
     if records["tick"].tolist() != list(range(len(records))) or not max(sizes) < _FAR:

@@ -103,6 +103,22 @@ class _Watch:
         raise error
 
 
+def _too_long(_number: int, _frame: FrameType | None) -> None:
+    raise TooLongError(f"has not ended after {PATIENCE_S:g} s")
+
+
+@contextmanager
+def in_time() -> Iterator[None]:
+    """End what blocks, and so uses no processor, by an exception; only in the main thread."""
+    before = signal.signal(signal.SIGALRM, _too_long)
+    signal.setitimer(signal.ITIMER_REAL, PATIENCE_S, PATIENCE_S)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
 def _resident_mb() -> float:
     """Return the memory that this process has in use."""
     return int(Path("/proc/self/statm").read_text().split()[1]) * resource.getpagesize() / (1 << 20)

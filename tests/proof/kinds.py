@@ -8,6 +8,7 @@ from tests.proof.crashes import CRASHES
 from tests.proof.damage import DAMAGE
 from tests.proof.enemies import ENEMIES
 from tests.proof.failures import FAILURES
+from tests.proof.handed_in import HANDED_IN
 from tests.proof.kernel import KERNEL
 from tests.proof.kind import Kind
 from tests.proof.monkey import MONKEY
@@ -22,6 +23,7 @@ KINDS: dict[str, Kind] = {
     "clients": CLIENTS,
     "crashes": CRASHES,
     "enemies": ENEMIES,
+    "class": HANDED_IN,
     "failures": FAILURES,
     "monkey": MONKEY,
     "zoo": ZOO,

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 from dataclasses import dataclass
+from weakref import finalize
 
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import NoiseSpec, RunSpec
@@ -27,6 +29,10 @@ class Recorder:
     telemetry: TelemetryWriter
     output: OutputWriter
     simulation: Simulation
+
+    def __post_init__(self) -> None:
+        # Also of a run that never ends: thousands of tests share one process.
+        self._unlock = finalize(self, os.close, self.run.lock_fd)
 
     def drive(self, left_dps: float, right_dps: float, ticks: int, line: int = 0) -> None:
         """Let the wheels turn for some ticks."""
@@ -55,4 +61,5 @@ class Recorder:
         self.output.close()
         tick = self.simulation.tick
         self.store.finish(self.run, Ended(end, tick, self.simulation.due_ns(tick), summary=summary))
+        self._unlock()
         return self.store.load_run(self.run.id)

@@ -80,6 +80,7 @@ sum(range(10**12))
     "pipes in place of small files": FILES + REPLACED.format(ALL[3:], "os.mkfifo(name)"),
     "links": FILES + REPLACED.format(ALL, "os.symlink('/dev/zero', name)"),
     "deleted": FILES + REPLACED.format(ALL[:2], "pass"),
+    "folders as if packed": FILES + "for name in (telemetry, output): os.makedirs(name + '.packed/deep')",
     "as if packed": FILES + "for name in (telemetry, output): os.link(name, name + '.packed')",
 }
 

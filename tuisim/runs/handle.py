@@ -56,6 +56,7 @@ from tuisim.runs.child.process import (
 )
 from tuisim.runs.child.readable import is_readable
 from tuisim.runs.packed_files import PACKED_MAGIC, PACKED_SUFFIX
+from tuisim.runs.removal import remove_tree
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
 from tuisim.runs.side_files import LOG_FILE, MOST_BYTES, STACK_FILE, copy_modules, read_actions, read_stop_tick
 from tuisim.runs.store import NewRun, RunStore
@@ -371,7 +372,9 @@ class RunHandle:
         end_left_over(self._process.pid, self._mark)
         if final.end is End.FALSIFIED:
             for path in self._packed_files():
-                path.unlink(missing_ok=True)
+                # The program may have put a folder there.
+                with suppress(OSError):
+                    (remove_tree if path.is_dir() and not path.is_symlink() else os.unlink)(path)
         for name in (LOG_FILE, STACK_FILE):
             path = self.folder / name
             # The folder may be about to be deleted.

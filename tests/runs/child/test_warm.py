@@ -165,3 +165,19 @@ def test_a_template_does_not_keep_a_damaged_mat() -> None:
             stream.write(bytes(path.stat().st_size))
     assert _printed(text, True, "preloaded") == [seen]
     assert float(seen) > 0
+
+
+@pytest.mark.parametrize("text", ["print(1)", "1 / 0", "import os; os._exit(3)", "while True: pass"])
+def test_runs_that_are_over_leave_no_descriptor_open(text: str) -> None:
+    def one_run() -> None:
+        handle = _start(text)
+        if "while" in text:
+            handle.stop()
+        over(handle)
+        _ = handle.stored().telemetry.array(), handle.output.all_rows()
+
+    one_run()
+    before = len(os.listdir("/proc/self/fd"))
+    for _ in range(4):
+        one_run()
+    assert len(os.listdir("/proc/self/fd")) == before

@@ -1,0 +1,32 @@
+"""Faults that are planted in a copy of the package are found by the proof, by cases that show nothing without them."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.conftest import ROOT
+from tests.isolated import needs_isolation, refusal
+from tests.proof.planted import PLANTED, Planted, faults, missed
+
+
+@pytest.mark.parametrize("fault", PLANTED, ids=lambda fault: fault.about)
+def test_a_fault_can_be_planted(fault: Planted) -> None:
+    text = (ROOT / "tuisim" / fault.file).read_text()
+    assert (text.count(fault.old), fault.new != fault.old, bool(fault.shows)) == (1, True, True)
+
+
+@pytest.mark.proof
+@pytest.mark.parametrize(
+    "fault",
+    [pytest.param(fault, id=fault.about, marks=[needs_isolation] * fault.is_isolated) for fault in PLANTED],
+)
+def test_a_planted_fault_is_found(fault: Planted) -> None:
+    assert missed(fault) == []
+
+
+@pytest.mark.proof
+@pytest.mark.parametrize("kind", sorted({fault.kind for fault in PLANTED}))
+def test_nothing_is_found_without_a_planted_fault(kind: str) -> None:
+    here = [fault for fault in PLANTED if fault.kind == kind and not (fault.is_isolated and refusal())]
+    cases = {case for fault in here for case in fault.cases}
+    assert [text for text in faults(kind, sorted(cases)) if text] == []
