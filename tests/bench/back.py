@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from random import Random
 from statistics import median
 
-from tests.bench.figures import Effort, Figure
+from tests.bench.figures import Figure
 from tests.bench.references import paints_elapsed
 from tests.bench.running import LOG
+from tests.bench.sampling import Effort
 from tests.bench.terminal import Terminal
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings

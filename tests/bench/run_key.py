@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from statistics import median, quantiles
 
-from tests.bench.figures import Effort, Figure
+from tests.bench.figures import Figure
+from tests.bench.sampling import Effort
 from tests.bench.screen import Screen
 from tests.bench.terminal import Terminal
 

@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterator
 from random import Random
 from statistics import median
 
-from tests.bench.figures import Effort, Figure
-from tests.bench.references import loop_time
+from tests.bench.figures import Figure
+from tests.bench.references import tick_time
 from tests.bench.running import LOG
+from tests.bench.sampling import Effort
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.protocol import Inspect, Inspected, Paused
@@ -79,7 +80,7 @@ def variables(effort: Effort) -> Iterator[Figure]:
         known = [asking.look_s(at) for at in places]
         back = [asking.back_s(at) for at in places]
         asking.replay_debugger.close()
-        ratio = loop_time(median(known), RUN_S)
+        ratio = tick_time(median(known), RUN_S)
         yield Figure(
             f"variables of any instant of 10 minutes, {words}", 1e3 * median(known), "ms", most=40, ratio=ratio
         )
