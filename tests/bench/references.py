@@ -54,11 +54,22 @@ class Ratio:
     reference: str
 
 
-def tick_cpu_s() -> float:
-    """Return the CPU seconds of one of the frozen ticks, in a process of its own."""
+def _tick() -> tuple[float, float]:
+    """Return the CPU seconds and the seconds of one of the frozen ticks, in a process of its own."""
     command = [sys.executable, "-I", str(FROZEN_TICKS), str(TICKS)]
     told = subprocess.run(command, env=plain_environment(), stdout=subprocess.PIPE, check=True).stdout
-    return float(told) / TICKS
+    used_s, took_s = map(float, told.split())
+    return used_s / TICKS, took_s / TICKS
+
+
+def tick_cpu_s() -> float:
+    """Return the CPU seconds of one of the frozen ticks."""
+    return _tick()[0]
+
+
+def tick_wall_s() -> float:
+    """Return the seconds that one of the frozen ticks takes."""
+    return _tick()[1]
 
 
 def start_cpu_s() -> float:
@@ -129,9 +140,14 @@ def tick_speed(speed: float, cpu_s_a_tick: float, tick_hz: float = 100.0) -> Rat
     return Ratio(share, "x frozen ticks")
 
 
-def tick_time(seconds: float, simulated_s: float) -> Ratio:
-    """Return a duration as a multiple of the frozen ticks' for a simulated time, at 100 ticks a second."""
-    return Ratio(seconds / (usual(tick_cpu_s) * 100 * simulated_s), "x frozen ticks")
+def ticks(cpu_seconds: float, simulated_s: float) -> Ratio:
+    """Return CPU time as a multiple of the frozen ticks' for a simulated time, at 100 ticks a second."""
+    return Ratio(cpu_seconds / (usual(tick_cpu_s) * 100 * simulated_s), "x frozen ticks")
+
+
+def ticks_elapsed(seconds: float, simulated_s: float) -> Ratio:
+    """Return elapsed time as a multiple of the frozen ticks' for a simulated time, at 100 ticks a second."""
+    return Ratio(seconds / (usual(tick_wall_s) * 100 * simulated_s), "x frozen ticks")
 
 
 def starts(cpu_seconds: float) -> Ratio:
