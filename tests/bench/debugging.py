@@ -19,7 +19,7 @@ NEVER = 999
 """A line that no program has."""
 BUSY = "n = 0\nwhile True:\n    n += 1\n"
 BUSY_BREAKS: Mapping[str, str] = {"plain condition": "3 if n < 0", "condition with a call": "3 if len(str(n)) > 99"}
-PAUSE_GOALS: Mapping[str, float] = {"plain condition": 0.3, "condition with a call": 0.5}
+PAUSE_GOALS: Mapping[str, float] = {"plain condition": 0.08, "condition with a call": 0.36}
 
 
 def debugging(effort: Effort) -> Iterator[Figure]:
@@ -35,8 +35,8 @@ def debugging(effort: Effort) -> Iterator[Figure]:
             f"pause, busy loop, {name}", taken_s * 1e3, "ms", most=PAUSE_GOALS[name], ratio=starts_elapsed(taken_s)
         )
     steps, looks = _steps_s(10 * effort.stops)
-    yield Figure("step to the next line", median(steps) * 1e3, "ms", most=0.05, ratio=starts_elapsed(median(steps)))
-    yield Figure("look at the variables", median(looks) * 1e3, "ms", most=0.6, ratio=starts_elapsed(median(looks)))
+    yield Figure("step to the next line", median(steps) * 1e3, "ms", most=0.024, ratio=starts_elapsed(median(steps)))
+    yield Figure("look at the variables", median(looks) * 1e3, "ms", most=0.42, ratio=starts_elapsed(median(looks)))
 
 
 def _pause_s(text: str) -> float:
