@@ -13,14 +13,17 @@ from tests.bench.batches import batches
 from tests.bench.cells import cells
 from tests.bench.crowded import crowded
 from tests.bench.debugging import debugging
-from tests.bench.figures import QUICK, THOROUGH, Effort, Figure, as_json, as_table
+from tests.bench.figures import Figure, as_json, as_line, as_table
+from tests.bench.frame_modules import frame_modules
 from tests.bench.frames import chart, frames, pictures
 from tests.bench.listing import listing
 from tests.bench.logs import logs
+from tests.bench.processes import keep_bytecode
 from tests.bench.recording import recording
-from tests.bench.references import forget
+from tests.bench.references import usual
 from tests.bench.run_key import run_key
 from tests.bench.running import EMPTY, begin
+from tests.bench.sampling import QUICK, THOROUGH, Effort, MeasuringError
 from tests.bench.speed import LOADS, speeds
 from tests.bench.starts import first_line, first_paint, help_text, imports
 from tests.bench.stops import stop_latency
@@ -39,6 +42,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "stop": stop_latency,
     "debugger": debugging,
     "frames": frames,
+    "frame-modules": frame_modules,
     "cells": cells,
     "chart": chart,
     "pictures": pictures,
@@ -61,7 +65,10 @@ def warm_up() -> None:
 
 
 def main(words: Sequence[str]) -> int:
-    """Measure what was asked for and print it; a missed goal is a figure, not an error."""
+    """Measure what was asked for and print it; return 1 if something could not be measured.
+
+    A missed goal is a figure, not an error.
+    """
     parser = argparse.ArgumentParser(prog="python -m tests.bench", description="What running and showing costs.")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"some of {', '.join(BENCHES)}; otherwise all")
     parser.add_argument("--quick", action="store_true", help="measure less often")
@@ -70,6 +77,8 @@ def main(words: Sequence[str]) -> int:
     if unknown := [name for name in arguments.names if name not in BENCHES]:
         parser.error(f"no such bench: {', '.join(unknown)}; one of {', '.join(BENCHES)}")
     found: list[Figure] = []
+    failed = False
+    keep_bytecode()
     with tempfile.TemporaryDirectory() as home:
         # A home of its own: the runs are thrown away, and the user's catalogue stays as it is.
         os.environ["TUISIM_HOME"] = home
@@ -77,13 +86,20 @@ def main(words: Sequence[str]) -> int:
         warm_up()
         for name in arguments.names or BENCHES:
             # Close to the figures that are compared with them.
-            forget()
-            for figure in BENCHES[name](QUICK if arguments.quick else THOROUGH):
-                ratio = f" = {figure.ratio.value:.3g} {figure.ratio.reference}" if figure.ratio else ""
-                print(f"{name}: {figure.name} {figure.value:.3f} {figure.unit}{ratio}", file=sys.stderr, flush=True)
-                found.append(figure)
+            usual.cache_clear()
+            try:
+                for figure in BENCHES[name](QUICK if arguments.quick else THOROUGH):
+                    _tell(f"{name}: {as_line(figure)}")
+                    found.append(figure)
+            except MeasuringError as error:
+                _tell(f"{name}: error: {error}")
+                failed = True
     print(as_json(found) if arguments.json else as_table(found))
-    return 0
+    return int(failed)
+
+
+def _tell(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,8 @@ import numpy.typing as npt
 from textual._compositor import LayoutUpdate
 from textual.geometry import Region
 
-from tests.bench.figures import QUICK, Effort, Figure
+from tests.bench.figures import Figure
+from tests.bench.sampling import QUICK, Effort
 from tuisim.app.render.cells import changed_cells, changed_runs
 from tuisim.app.render.mat import Pixels, shrink, whole_field
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
-from statistics import median
+from functools import partial
 
-from tests.bench.figures import Effort, Figure
-from tests.bench.processes import children_cpu_s
-from tests.bench.running import EMPTY, unpacked_store
+from tests.bench.figures import Figure
+from tests.bench.running import simulating_cpu_s
+from tests.bench.sampling import Effort, in_turns
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.spec import Obstacle, RobotSpec, RunSpec, WorldSpec
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.source import Program
+from tuisim.runs.handle import RunOptions
 
-SIMULATED_S = 600.0
+SIMULATED_S = 1500.0
 OBSTACLES = 200
 START = Pose(1180.0, 570.0, 0.0)
 
@@ -46,24 +45,14 @@ def crowd(count: int, free_x_mm: float, free_y_mm: float) -> tuple[Obstacle, ...
 
 def crowded(effort: Effort) -> Iterator[Figure]:
     """Yield the CPU time of a simulated second with obstacles, in times of that without."""
-    empty = median(_cpu_s(ROUNDS, ()) for _ in range(effort.repeats))
-    start_up = median(_cpu_s(EMPTY, ()) for _ in range(effort.repeats))
     around, jammed = crowd(OBSTACLES, 700, 420), crowd(OBSTACLES, 250, 250)
-    for name, boxes, most in (("robot with room to drive", around, 2.0), ("robot jammed among them", jammed, None)):
-        used = median(_cpu_s(ROUNDS, boxes) for _ in range(effort.repeats))
-        ratio = (used - start_up) / max(empty - start_up, 1e-6)
-        yield Figure(f"{OBSTACLES} solid obstacles, {name}", ratio, "x empty", most=most)
+    options = RunOptions(time_limit_s=SIMULATED_S * effort.simulated)
+    empty = _world()
+    for name, boxes, most in (("robot with room to drive", around, 3.3), ("robot jammed among them", jammed, 6.0)):
+        in_it, in_empty = (partial(simulating_cpu_s, ROUNDS, world, options) for world in (_world(boxes), empty))
+        samples = in_turns(in_it, in_empty, effort)
+        yield Figure(f"{OBSTACLES} solid obstacles, {name}", samples.ratio, "x empty", most=most)
 
 
-def _cpu_s(text: str, obstacles: tuple[Obstacle, ...]) -> float:
-    world = WorldSpec(obstacles=obstacles, start=START, solid=True)
-    before = children_cpu_s()
-    run = start_run(
-        Program("bench.py", text, "preloaded"),
-        RunSpec(RobotSpec(), world, ROBOLAB),
-        RunOptions(time_limit_s=SIMULATED_S),
-        unpacked_store(),
-    )
-    ended = run.wait()
-    assert ended is not None and ended.end in ("time_limit", "finished"), ended
-    return children_cpu_s() - before
+def _world(obstacles: tuple[Obstacle, ...] = ()) -> RunSpec:
+    return RunSpec(RobotSpec(), WorldSpec(obstacles=obstacles, start=START, solid=True), ROBOLAB)

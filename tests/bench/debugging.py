@@ -6,43 +6,37 @@ import time
 from collections.abc import Iterator, Mapping
 from statistics import median
 
-from tests.bench.figures import Effort, Figure
-from tests.bench.processes import children_cpu_s
-from tests.bench.references import loop_speed, starts_elapsed
-from tests.bench.running import EMPTY, LINE, begin
+from tests.bench.figures import Figure
+from tests.bench.references import starts_elapsed
+from tests.bench.running import LINE, begin
+from tests.bench.sampling import Effort
+from tests.bench.speed import speed
 from tuisim.protocol import Inspect, Inspected, Message, Pause, Paused, Resume, StepLine
 from tuisim.runs.handle import RunHandle, RunOptions
 
-SIMULATED_S = 600.0
 PATIENCE_S = 5.0
 NEVER = 999
 """A line that no program has."""
 BUSY = "n = 0\nwhile True:\n    n += 1\n"
 BUSY_BREAKS: Mapping[str, str] = {"plain condition": "3 if n < 0", "condition with a call": "3 if len(str(n)) > 99"}
+PAUSE_GOALS: Mapping[str, float] = {"plain condition": 0.08, "condition with a call": 0.36}
 
 
 def debugging(effort: Effort) -> Iterator[Figure]:
     """Yield speeds with tracing off and on, and how soon commands are heard."""
-    start_up = median(_cpu_s(EMPTY, ()) for _ in range(effort.repeats))
-    for name, breaks, goal in (("off", (), 0.073), ("on", (str(NEVER),), 0.01)):
-        used = median(_cpu_s(LINE, breaks) for _ in range(effort.repeats))
-        speed = SIMULATED_S / max(used - start_up, 1e-6)
-        yield Figure(f"line follower, tracing {name}", speed, "sim s / CPU s", goal, ratio=loop_speed(speed))
+    for name, breaks, simulated_s, goal in (("off", (), 1400.0, 0.13), ("on", (str(NEVER),), 350.0, 0.035)):
+        yield speed(
+            f"line follower, tracing {name}", LINE, "Two_shapes", "robolab", simulated_s, breaks,
+            effort=effort, goal=goal,
+        )  # fmt: skip
     for name, text in BUSY_BREAKS.items():
-        taken = [_pause_s(text) for _ in range(effort.stops)]
+        taken_s = median(_pause_s(text) for _ in range(effort.stops))
         yield Figure(
-            f"pause, busy loop, {name}", median(taken) * 1e3, "ms", most=2, ratio=starts_elapsed(median(taken))
+            f"pause, busy loop, {name}", taken_s * 1e3, "ms", most=PAUSE_GOALS[name], ratio=starts_elapsed(taken_s)
         )
     steps, looks = _steps_s(10 * effort.stops)
-    yield Figure("step to the next line", median(steps) * 1e3, "ms", most=0.06, ratio=starts_elapsed(median(steps)))
-    yield Figure("look at the variables", median(looks) * 1e3, "ms", most=2, ratio=starts_elapsed(median(looks)))
-
-
-def _cpu_s(text: str, breaks: tuple[str, ...]) -> float:
-    before = children_cpu_s()
-    ended = begin(text, "Two_shapes", options=RunOptions(time_limit_s=SIMULATED_S, breaks=breaks)).wait()
-    assert ended is not None and ended.end in ("time_limit", "finished"), ended
-    return children_cpu_s() - before
+    yield Figure("step to the next line", median(steps) * 1e3, "ms", most=0.024, ratio=starts_elapsed(median(steps)))
+    yield Figure("look at the variables", median(looks) * 1e3, "ms", most=0.42, ratio=starts_elapsed(median(looks)))
 
 
 def _pause_s(text: str) -> float:

@@ -5,34 +5,24 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
-from math import isnan, nan
+from math import isfinite, isnan, nan
 
 from tests.bench.references import Ratio
+from tests.bench.sampling import MeasuringError
 
-
-@dataclass(frozen=True, slots=True)
-class Effort:
-    """How much is measured."""
-
-    repeats: int
-    """Runs of which the median counts."""
-    stops: int
-    """Stops of each kind."""
-    watch_s: float
-    """How long the app is watched while the robot drives."""
-    parquet_rows: int
-    """Of the longest logs."""
-
-
-THOROUGH = Effort(repeats=7, stops=10, watch_s=6.0, parquet_rows=10_000_000)
-QUICK = Effort(repeats=3, stops=5, watch_s=5.0, parquet_rows=1_000_000)
 NOT_MEASURED = nan
 """In place of the figure of something that is not there."""
+LOOSE = 1.5
+"""A goal that is farther than this factor from what is reached would not see a slow-down."""
 
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """One line of the table."""
+    """One line of the table.
+
+    Raises:
+        MeasuringError: the value or its ratio is negative or infinite, or zero where it may not be.
+    """
 
     name: str
     value: float
@@ -43,6 +33,13 @@ class Figure:
     """The goal, where less is better."""
     ratio: Ratio | None = None
     """The value compared with a reference of the same run, for what depends on the machine."""
+    may_be_zero: bool = False
+
+    def __post_init__(self) -> None:
+        for number in (self.value, *([self.ratio.value] if self.ratio else [])):
+            possible = isnan(number) or (isfinite(number) and (number > 0 or (not number and self.may_be_zero)))
+            if not possible:
+                raise MeasuringError(f"{self.name}: {number:g} {self.unit} is not possible")
 
     @property
     def goal(self) -> str:
@@ -54,13 +51,19 @@ class Figure:
 
     @property
     def verdict(self) -> str:
-        """`met`, `missed`, or empty where there is no goal."""
+        """`met`, `missed`, `loose` if it is met by more than a factor, or empty where there is no goal."""
         value = self.ratio.value if self.ratio else self.value
         if self.least is not None:
-            return "met" if value >= self.least else "missed"
+            return "missed" if value < self.least else "loose" if value > LOOSE * self.least else "met"
         if self.most is not None:
-            return "met" if value <= self.most else "missed"
+            return "missed" if value > self.most else "loose" if LOOSE * value < self.most else "met"
         return ""
+
+
+def as_line(figure: Figure) -> str:
+    """Return a figure as a line that is read while others are measured."""
+    ratio = f" = {figure.ratio.value:.3g} {figure.ratio.reference}" if figure.ratio else ""
+    return f"{figure.name} {figure.value:.3f} {figure.unit}{ratio}"
 
 
 def as_table(figures: Sequence[Figure]) -> str:

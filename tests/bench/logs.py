@@ -10,11 +10,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from statistics import median
 
-from tests.bench.figures import Effort, Figure
+from tests.bench.figures import Figure
 from tests.bench.longlogs import KINDS, MILLION, written
 from tests.bench.others import others
 from tests.bench.processes import app_environment
 from tests.bench.references import paints
+from tests.bench.sampling import Effort
 from tests.bench.viewer import Viewer
 
 CHART = "[⠁-⣿]"

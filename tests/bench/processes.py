@@ -1,4 +1,4 @@
-"""CPU time of other processes."""
+"""CPU time of other processes, and their environments."""
 
 from __future__ import annotations
 
@@ -7,9 +7,21 @@ import resource
 import subprocess
 import sys
 import time
+from collections.abc import Mapping
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
+SEARCH_PATH = [str(ROOT)]
+"""Where processes that are measured look for modules first."""
+_DROPPED = (
+    "COLORTERM",
+    "COLUMNS",
+    "LINES",
+    "NO_COLOR",
+    "PYTHONDONTWRITEBYTECODE",
+    "PYTHONPATH",
+    "TEXTUAL_COLOR_SYSTEM",
+)
 
 
 def cpu_s(pid: int) -> float:
@@ -22,7 +34,10 @@ def cpu_s(pid: int) -> float:
 
 
 def children_cpu_s() -> float:
-    """Return the CPU seconds of all children that have been waited for."""
+    """Return the CPU seconds of all children that have been waited for.
+
+    What a child has forked counts only if the child has waited for it: not a run that the warm process has forked.
+    """
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
@@ -32,17 +47,30 @@ def wait_until_stopped(pid: int) -> None:
     os.waitid(os.P_PID, pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
 
 
+def keep_bytecode() -> None:
+    """Let this process and all that it starts keep the modules they have compiled, as for users."""
+    sys.dont_write_bytecode = False
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+
+def plain_environment(**more: str) -> dict[str, str]:
+    """Return an environment for what tuisim is compared with."""
+    return {**{name: value for name, value in os.environ.items() if name not in _DROPPED}, **more}
+
+
 def app_environment(**more: str) -> dict[str, str]:
     """Return an environment in which `python -m tuisim` is this checkout's."""
-    dropped = ("COLORTERM", "COLUMNS", "LINES", "NO_COLOR", "TEXTUAL_COLOR_SYSTEM")
-    kept = {name: value for name, value in os.environ.items() if name not in dropped}
-    return {**kept, "PYTHONPATH": str(ROOT), **more}
+    return plain_environment(PYTHONPATH=os.pathsep.join(SEARCH_PATH), **more)
 
 
-def command_cpu_s(*words: str) -> float:
-    """Run `python` with some words to its end and return its CPU seconds."""
+def command_cpu_s(*words: str, environment: Mapping[str, str] | None = None) -> float:
+    """Run `python` with some words to its end and return its CPU seconds; the environment is the app's by default."""
     before = children_cpu_s()
     subprocess.run(
-        [sys.executable, *words], env=app_environment(), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, check=True
+        [sys.executable, *words],
+        env=app_environment() if environment is None else environment,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        check=True,
     )
     return children_cpu_s() - before

@@ -7,14 +7,16 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from statistics import median
 from tempfile import TemporaryDirectory
 
-from tests.bench.figures import Effort, Figure
-from tests.bench.processes import children_cpu_s
-from tests.bench.references import loop_speed, loop_time
+from tests.bench.figures import Figure
+from tests.bench.processes import app_environment, children_cpu_s
+from tests.bench.references import Ratio, tick_cpu_s, ticks
 from tests.bench.running import EMPTY, LINE, LOG, MOVES, unpacked_store
+from tests.bench.sampling import Effort, in_turns, measured
 from tests.bench.speed import LOADS
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
@@ -27,8 +29,8 @@ from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
 
 RUN_S = 600.0
-COST_RUN_S = 1800.0
-"""Long enough for the start of a process to be little of it."""
+RECORDED, DROPPED = "tuisim.runtime", "tests.bench.dropping"
+"""Modules that run a program with and without a recording."""
 STRAIGHT = "import time\ntank_drive.on(SpeedPercent(20.3), SpeedPercent(20.3))\nwhile True:\n    time.sleep(1)\n"
 CURVES = """\
 import random, time
@@ -47,6 +49,15 @@ DRIVES = {
 }
 """Name, program and mat of runs that are packed."""
 NOISES = {"": (0, 0), ", light noise 20": (20, 0), ", motor noise 50": (0, 50), ", both": (20, 50)}
+PACKED = {
+    "straight": (0.2, 0.2, 32, 32),
+    "log": (0.45, 0.5, 35, 35),
+    "curves": (18, 18, 36, 36),
+    "line follower": (11, 19, 32, 34),
+    "line follower, printing": (12, 20, 32, 35),
+    "moves": (3, 3, 35, 35),
+}
+"""Bytes a tick that each run may have when it is packed, with each kind of noise."""
 
 
 def recording(effort: Effort) -> Iterator[Figure]:
@@ -56,31 +67,22 @@ def recording(effort: Effort) -> Iterator[Figure]:
 
 
 def _cost(effort: Effort) -> Iterator[Figure]:
-    kept_start, dropped_start = _both_cpu_s(EMPTY, "Grey_bands", effort.repeats)
     for name, load in LOADS.items():
-        kept, dropped = _both_cpu_s(load.text, load.mat, effort.repeats)
-        kept, dropped = kept - kept_start, dropped - dropped_start
-        yield Figure(
-            f"speed, {name}, recorded", COST_RUN_S / kept, "sim s / CPU s", ratio=loop_speed(COST_RUN_S / kept)
-        )
-        yield Figure(
-            f"speed, {name}, dropped", COST_RUN_S / dropped, "sim s / CPU s", ratio=loop_speed(COST_RUN_S / dropped)
-        )
-        yield Figure(f"recording costs, {name}", 100 * (1 - dropped / kept), "%", most=15)
+        spec = build_run_spec(Settings(background=load.mat))
+        run_s = load.simulated_s * effort.simulated
+        kept, dropped = (partial(_simulating_cpu_s, load.text, spec, run_s, module) for module in (RECORDED, DROPPED))
+        samples = in_turns(kept, dropped, effort)
+        yield Figure(f"recorded, {name}", samples.ratio, "x dropped", most=1.3)
 
 
-def _both_cpu_s(text: str, mat: str, repeats: int) -> tuple[float, float]:
-    """Return the CPU seconds of runs that are recorded, and of others that are not; turn by turn."""
-    spec = build_run_spec(Settings(background=mat))
-    pairs = [
-        (_child_cpu_s(text, spec, "tuisim.runtime"), _child_cpu_s(text, spec, "tests.bench.dropping"))
-        for _ in range(repeats)
-    ]
-    return median(kept for kept, _ in pairs), median(dropped for _, dropped in pairs)
+def _simulating_cpu_s(text: str, spec: RunSpec, run_s: float, module: str) -> float:
+    """Return the CPU seconds of a run beyond those of an empty program."""
+    started_s = _child_cpu_s(EMPTY, spec, run_s, module)
+    return measured(_child_cpu_s(text, spec, run_s, module) - started_s, "CPU time beyond the start of a run")
 
 
-def _child_cpu_s(text: str, spec: RunSpec, module: str) -> float:
-    program, options = Program("bench.py", text, "preloaded"), RunOptions(time_limit_s=COST_RUN_S)
+def _child_cpu_s(text: str, spec: RunSpec, run_s: float, module: str) -> float:
+    program, options = Program("bench.py", text, "preloaded"), RunOptions(time_limit_s=run_s)
     with TemporaryDirectory() as home:
         new = RunStore(Path(home)).new_run(program, spec, field_files(spec).to_plain(), options.to_plain())
         pipes = [os.pipe() for _ in range(3)]
@@ -90,7 +92,7 @@ def _child_cpu_s(text: str, spec: RunSpec, module: str) -> float:
         child = subprocess.Popen(
             [sys.executable, "-s", "-m", module, str(new.folder), *map(str, ends)],
             pass_fds=ends,
-            env={**os.environ, "PYTHONHASHSEED": "0"},
+            env=app_environment(PYTHONHASHSEED="0"),
         )
         child.wait()
         for end in (new.lock_fd, *(end for pipe in pipes for end in pipe)):
@@ -101,18 +103,17 @@ def _child_cpu_s(text: str, spec: RunSpec, module: str) -> float:
 
 def _packing(effort: Effort) -> Iterator[Figure]:
     for name, (text, mat) in DRIVES.items():
-        for words, (light, motor) in NOISES.items():
+        for (words, (light, motor)), most in zip(NOISES.items(), PACKED[name], strict=False):
             run = _recorded(text, build_run_spec(Settings(background=mat, light_noise=light, motor_noise=motor)))
-            start = time.perf_counter()
+            start = time.process_time()
             _, size = compact_run(run)
-            took_s = time.perf_counter() - start
-            yield Figure(f"packed, {name}{words}", size / run.telemetry.count, "bytes a tick", most=36)
-            opened_s = median(_opened_s(run) for _ in range(effort.repeats))
-            yield Figure(
-                f"opening 10 minutes, {name}{words}", 1e3 * opened_s, "ms", most=4, ratio=loop_time(opened_s, RUN_S)
-            )
+            used_s = time.process_time() - start
+            yield Figure(f"packed, {name}{words}", size / run.telemetry.count, "bytes a tick", most=most)
+            samples = in_turns(partial(_opened_cpu_s, run), tick_cpu_s, effort)
+            ratio = Ratio(samples.ratio / (100 * RUN_S), "x frozen ticks")
+            yield Figure(f"opening 10 minutes, {name}{words}", 1e3 * samples.value, "ms CPU", most=2, ratio=ratio)
             if not light and not motor:
-                yield Figure(f"packing 10 minutes, {name}", 1e3 * took_s, "ms", ratio=loop_time(took_s, RUN_S))
+                yield Figure(f"packing 10 minutes, {name}", 1e3 * used_s, "ms CPU", ratio=ticks(used_s, RUN_S))
                 again_s = median(_again_s(run) for _ in range(effort.repeats))
                 yield Figure(f"re-run, {name}", RUN_S / again_s, "sim s / s")
 
@@ -125,11 +126,11 @@ def _recorded(text: str, spec: RunSpec) -> StoredRun:
     return store.load_run(handle.run_id)
 
 
-def _opened_s(run: StoredRun) -> float:
-    start = time.perf_counter()
+def _opened_cpu_s(run: StoredRun) -> float:
+    start = time.process_time()
     assert len(TelemetryView(run.folder).array()) == run.telemetry.count
     next(OutputView(run.folder).rows(), None)
-    return time.perf_counter() - start
+    return time.process_time() - start
 
 
 def _again_s(run: StoredRun) -> float:

@@ -5,8 +5,11 @@ from __future__ import annotations
 from contextlib import AbstractContextManager
 from unittest.mock import patch
 
+from tests.bench.processes import children_cpu_s
+from tests.bench.sampling import measured
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
+from tuisim.core.spec import RunSpec
 from tuisim.runs.child import process
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.store import RunStore
@@ -50,14 +53,37 @@ def unpacked_store() -> RunStore:
     return RunStore(RunStore().home)
 
 
+def spec_of(mat: str = "Grey_bands", profile: str = "robolab") -> RunSpec:
+    """Return what a program is run with."""
+    return build_run_spec(Settings(background=mat, profile=profile))
+
+
 def begin(
     text: str, mat: str = "Grey_bands", profile: str = "robolab", prelude: str = "preloaded", *, options: RunOptions
 ) -> RunHandle:
     """Start a program, as the headless command or the app does."""
-    spec = build_run_spec(Settings(background=mat, profile=profile))
-    return start_run(Program("bench.py", text, prelude), spec, options, unpacked_store())
+    return start_run(Program("bench.py", text, prelude), spec_of(mat, profile), options, unpacked_store())
 
 
 def started_by_itself() -> AbstractContextManager[object]:
-    """Start children by themselves in the block, as the first one of a process is started."""
+    """Start children by themselves in the block, as the first one of a process is started.
+
+    Then they are children of this process, and their CPU time is known when they have ended.
+    """
     return patch.object(process, "_fork", lambda *_: None)
+
+
+def run_cpu_s(text: str, spec: RunSpec, options: RunOptions) -> float:
+    """Run a program to its end, or to the limit of simulated time; return the CPU seconds of its process."""
+    with started_by_itself():
+        before = children_cpu_s()
+        handle = start_run(Program("bench.py", text, "preloaded"), spec, options, unpacked_store())
+        ended = handle.wait()
+    assert ended is not None and ended.end in ("time_limit", "finished"), ended
+    return measured(children_cpu_s() - before, "CPU time of a run")
+
+
+def simulating_cpu_s(text: str, spec: RunSpec, options: RunOptions) -> float:
+    """Return the CPU seconds that a run takes beyond those of an empty program, which runs first."""
+    started_s = run_cpu_s(EMPTY, spec, RunOptions())
+    return measured(run_cpu_s(text, spec, options) - started_s, "CPU time beyond the start of a run")

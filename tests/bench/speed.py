@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from statistics import median
 
-from tests.bench.figures import Effort, Figure
-from tests.bench.processes import children_cpu_s
-from tests.bench.references import loop_speed
-from tests.bench.running import EMPTY, LINE, LOG, MOVES, begin
+from tests.bench.figures import Figure
+from tests.bench.references import tick_cpu_s, tick_speed
+from tests.bench.running import LINE, LOG, MOVES, simulating_cpu_s, spec_of
+from tests.bench.sampling import Effort, in_turns
 from tuisim.core.profile import PROFILES
 from tuisim.runs.handle import RunOptions
 
-SIMULATED_S = 600.0
 UNIT = "sim s / CPU s"
 
 
@@ -23,34 +21,44 @@ class Load:
 
     text: str
     mat: str
+    simulated_s: float
+    """Takes about a second of CPU, of which the start of a process is little."""
     goal: float
-    """Share of the bare loop's speed."""
+    """Share of the speed of the frozen ticks."""
 
 
 LOADS: Mapping[str, Load] = {
-    "log": Load(LOG, "Grey_bands", 0.24),
-    "line follower": Load(LINE, "Two_shapes", 0.073),
-    "moves": Load(MOVES, "Grey_bands", 0.24),
+    "log": Load(LOG, "Grey_bands", 4000.0, 0.4),
+    "line follower": Load(LINE, "Two_shapes", 1400.0, 0.13),
+    "moves": Load(MOVES, "Grey_bands", 6000.0, 0.75),
 }
 
 
 def speeds(effort: Effort) -> Iterator[Figure]:
     """Yield the speed of each load under each profile; only the first profile has goals."""
     for profile in ("robolab", "nbev3devsim"):
-        start_up = median(_cpu_s(EMPTY, "Grey_bands", profile) for _ in range(effort.repeats))
         for name, load in LOADS.items():
-            used = median(_cpu_s(load.text, load.mat, profile) for _ in range(effort.repeats))
             goal = load.goal if profile == "robolab" else None
-            # A start-up that happened to cost more than a whole run would make no sense of the figure.
-            net = max(used - start_up, 1e-6)
-            speed = SIMULATED_S / net
-            ratio = loop_speed(speed, PROFILES[profile].tick_hz)
-            yield Figure(f"speed, {name}, {profile}", speed, UNIT, goal, ratio=ratio)
+            yield speed(
+                f"speed, {name}, {profile}", load.text, load.mat, profile, load.simulated_s, effort=effort, goal=goal
+            )
 
 
-def _cpu_s(text: str, mat: str, profile: str) -> float:
-    """Run a program up to the limit of simulated time; return the CPU seconds of its process."""
-    before = children_cpu_s()
-    ended = begin(text, mat, profile, options=RunOptions(time_limit_s=SIMULATED_S)).wait()
-    assert ended is not None and ended.end in ("time_limit", "finished"), ended
-    return children_cpu_s() - before
+def speed(
+    name: str,
+    text: str,
+    mat: str,
+    profile: str,
+    simulated_s: float,
+    breaks: tuple[str, ...] = (),
+    *,
+    effort: Effort,
+    goal: float | None,
+) -> Figure:
+    """Return the figure of the speed of a program, measured beside the frozen ticks."""
+    spec, limit_s = spec_of(mat, profile), simulated_s * effort.simulated
+    options = RunOptions(time_limit_s=limit_s, breaks=breaks)
+    samples = in_turns(lambda: simulating_cpu_s(text, spec, options), tick_cpu_s, effort)
+    speeds_a_tick = limit_s / samples.ratio
+    ratio = tick_speed(speeds_a_tick, 1.0, PROFILES[profile].tick_hz)
+    return Figure(name, limit_s / samples.value, UNIT, goal, ratio=ratio)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Iterator
-from statistics import median
+from functools import partial
 
-from tests.bench.figures import Effort, Figure
-from tests.bench.processes import command_cpu_s, cpu_s, wait_until_stopped
-from tests.bench.references import bare_start, paints, starts
+from tests.bench.figures import Figure
+from tests.bench.processes import app_environment, command_cpu_s, cpu_s, wait_until_stopped
+from tests.bench.references import Ratio, paint_cpu_s, start_cpu_s
 from tests.bench.running import begin, started_by_itself
+from tests.bench.sampling import Effort, Samples, in_turns
 from tests.bench.terminal import Terminal
 from tuisim.protocol import Started
 from tuisim.runs.handle import RunOptions
@@ -20,10 +23,13 @@ HALF_BLOCK = "▀".encode()
 
 def first_line(effort: Effort) -> Iterator[Figure]:
     """Yield the CPU of a program's process until the program's own first line, prelude included."""
-    for prelude, goal in (("preloaded", 7.0), ("none", None)):
-        value = median(_first_line_cpu_s(prelude) for _ in range(effort.repeats))
-        yield Figure(f"to the first line, prelude {prelude}", value * 1e3, "ms CPU", most=goal, ratio=starts(value))
-    yield Figure("bare Python, for comparison", bare_start().cpu_s * 1e3, "ms CPU")
+    for prelude, goal in (("preloaded", 13.0), ("none", None)):
+        samples = in_turns(partial(_first_line_cpu_s, prelude), start_cpu_s, effort)
+        yield _start(f"to the first line, prelude {prelude}", samples, goal)
+
+
+def _start(name: str, samples: Samples, most: float | None) -> Figure:
+    return Figure(name, samples.value * 1e3, "ms CPU", most=most, ratio=Ratio(samples.ratio, "x python -c pass"))
 
 
 def _first_line_cpu_s(prelude: str) -> float:
@@ -43,33 +49,36 @@ def _first_line_cpu_s(prelude: str) -> float:
 
 def help_text(effort: Effort) -> Iterator[Figure]:
     """Yield the CPU of `tuisim --help`."""
-    value = median(command_cpu_s("-m", "tuisim", "--help") for _ in range(effort.repeats))
-    yield Figure("tuisim --help", value * 1e3, "ms CPU", most=12, ratio=starts(value))
+    yield _start("tuisim --help", in_turns(lambda: command_cpu_s("-m", "tuisim", "--help"), start_cpu_s, effort), 7)
 
 
 def first_paint(effort: Effort) -> Iterator[Figure]:
     """Yield the CPU of the app until its panels, and until the mat in the world, are on the screen."""
-    both = [_first_paint_cpu_s() for _ in range(effort.repeats)]
-    panels, world = (median(values) for values in zip(*both, strict=True))
-    yield Figure("first paint, panels", panels * 1e3, "ms CPU", ratio=paints(panels))
-    yield Figure("first paint, world", world * 1e3, "ms CPU", most=3.3, ratio=paints(world))
+    for name, text, most in (("panels", b"World", None), ("world", HALF_BLOCK, 4.2)):
+        samples = in_turns(partial(_first_paint_cpu_s, text), paint_cpu_s, effort)
+        ratio = Ratio(samples.ratio, "x minimal app")
+        yield Figure(f"first paint, {name}", samples.value * 1e3, "ms CPU", most=most, ratio=ratio)
 
 
-def _first_paint_cpu_s() -> tuple[float, float]:
+def _first_paint_cpu_s(text: bytes) -> float:
     with Terminal(["-b", "Grey_bands"]) as terminal:
-        terminal.read_until(lambda: b"World" in terminal.seen)
-        panels = cpu_s(terminal.pid)
-        terminal.read_until(lambda: HALF_BLOCK in terminal.seen)
-        return panels, cpu_s(terminal.pid)
+        terminal.read_until(lambda: text in terminal.seen)
+        return cpu_s(terminal.pid)
 
 
 def imports(effort: Effort) -> Iterator[Figure]:
     """Yield the CPU of `import tuisim`, and of `%load_ext tuisim` beyond pandas and IPython."""
     shell = "from IPython.core.interactiveshell import InteractiveShell as S; import pandas; s = S.instance()"
     for name, before, added, goal in (
-        ("import tuisim", "pass", "import tuisim", 2.5),
-        ("%load_ext tuisim, beyond pandas", shell, "s.run_line_magic('load_ext', 'tuisim')", 7),
+        ("import tuisim", "pass", "import tuisim", 1.0),
+        ("%load_ext tuisim, beyond pandas", shell, "s.run_line_magic('load_ext', 'tuisim')", 3.5),
     ):
-        bare = median(command_cpu_s("-c", before) for _ in range(effort.repeats))
-        whole = median(command_cpu_s("-c", f"{before}; {added}") for _ in range(effort.repeats))
-        yield Figure(name, (whole - bare) * 1e3, "ms CPU", most=goal, ratio=starts(whole - bare))
+        samples = in_turns(partial(_added_cpu_s, before, added), start_cpu_s, effort)
+        yield _start(name, samples, goal)
+
+
+def _added_cpu_s(before: str, added: str) -> float:
+    """Return the CPU seconds of some code after other code, as its process tells them."""
+    script = f"import time; {before}; begun = time.process_time(); {added}; print(time.process_time() - begun)"
+    command = [sys.executable, "-c", script]
+    return float(subprocess.run(command, env=app_environment(), stdout=subprocess.PIPE, check=True).stdout)

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import termios
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from types import TracebackType
 from typing import Self
 
@@ -29,7 +29,9 @@ class Terminal:
     Args:
         words: The command line of the app.
         command: What is started with them, if it is not the app.
-        environment: More variables, such as COLORTERM.
+        size: Columns and rows.
+        environment: What it is started in, if that is not the app's environment.
+        variables: More of that, such as COLORTERM.
     """
 
     def __init__(
@@ -37,7 +39,8 @@ class Terminal:
         words: Sequence[str],
         command: Sequence[str] = (sys.executable, "-m", "tuisim"),
         size: tuple[int, int] = (COLUMNS, ROWS),
-        **environment: str,
+        environment: Mapping[str, str] | None = None,
+        **variables: str,
     ) -> None:
         self._fd, inside = pty.openpty()
         fcntl.ioctl(inside, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
@@ -46,7 +49,12 @@ class Terminal:
             stdin=inside,
             stdout=inside,
             stderr=inside,
-            env=app_environment(TERM="xterm-256color", LANG="C.UTF-8", **environment),
+            env={
+                **(app_environment() if environment is None else environment),
+                "TERM": "xterm-256color",
+                "LANG": "C.UTF-8",
+                **variables,
+            },
             start_new_session=True,
         )
         os.close(inside)

@@ -4,12 +4,25 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
+from math import inf
 
 import pytest
 
 from tests.bench.__main__ import BENCHES, main
-from tests.bench.figures import QUICK, Figure, as_json, as_table
-from tests.bench.references import Cost, Ratio, bare_paint, bare_start, bare_ticks, one_tick
+from tests.bench.figures import Figure, as_json, as_table
+from tests.bench.frozen_ticks import drive
+from tests.bench.references import (
+    Ratio,
+    fork_s,
+    paint_cpu_s,
+    paint_wall_s,
+    start_cpu_s,
+    start_wall_s,
+    tick_cpu_s,
+    tick_speed,
+)  # fmt: skip
+from tests.bench.sampling import QUICK, MeasuringError
 from tests.bench.starts import help_text
 
 
@@ -17,6 +30,8 @@ from tests.bench.starts import help_text
     ("value", "ratio", "least", "most", "goal", "verdict"),
     [
         pytest.param(12.0, None, 10.0, None, ">= 10", "met", id="enough"),
+        pytest.param(16.0, None, 10.0, None, ">= 10", "loose", id="far more than enough"),
+        pytest.param(6.0, None, None, 10.0, "<= 10", "loose", id="far less than allowed"),
         pytest.param(9.0, None, 10.0, None, ">= 10", "missed", id="too little"),
         pytest.param(9.0, None, None, 10.0, "<= 10", "met", id="little enough"),
         pytest.param(12.0, None, None, 10.0, "<= 10", "missed", id="too much"),
@@ -33,16 +48,39 @@ def test_a_figure_or_its_ratio_is_compared_with_the_goal(
     assert (figure.goal, figure.verdict) == (goal, verdict)
 
 
-def test_the_bare_loop_drives_a_left_bend() -> None:
-    x_mm, y_mm, heading = bare_ticks(100)
-    assert 95 < x_mm < 101 and 0 < y_mm < 5 and 0 < heading < 0.1
+@pytest.mark.parametrize("value", [0.0, -1.0, inf])
+def test_a_figure_that_is_not_possible_is_an_error(value: float) -> None:
+    with pytest.raises(MeasuringError):
+        Figure("thing", value, "ms", most=1.0)
+    with pytest.raises(MeasuringError):
+        Figure("thing", 1.0, "ms", most=1.0, ratio=Ratio(value, "x something"))
 
 
-@pytest.mark.quick_cases("bare_start")
-@pytest.mark.parametrize("reference", [one_tick, bare_start, bare_paint], ids=lambda made: made.__name__)
-def test_each_reference_costs_something(reference: Callable[[], Cost]) -> None:
-    cost = reference()
-    assert cost.cpu_s > 0 and cost.wall_s > 0
+def test_nothing_may_be_sent() -> None:
+    assert Figure("at rest", 0.0, "B/s", most=0.0, may_be_zero=True).verdict == "met"
+
+
+def test_a_speed_that_no_program_can_have_is_an_error() -> None:
+    assert tick_speed(4000.0, 1e-6).value == pytest.approx(0.4)
+    with pytest.raises(MeasuringError):
+        tick_speed(600_000_000.0, 1e-6)
+
+
+def test_the_frozen_ticks_drive_along_the_bands() -> None:
+    world = drive(1000)
+    assert world.tick == 1000
+    assert world.drive.x_mm > 1100
+    assert 1000 < world.left.position_deg < 2500
+
+
+@pytest.mark.quick_cases("start_cpu_s", "fork_s")
+@pytest.mark.parametrize(
+    "reference",
+    [tick_cpu_s, start_cpu_s, start_wall_s, paint_cpu_s, paint_wall_s, fork_s],
+    ids=lambda at: at.__name__,
+)
+def test_each_reference_costs_something(reference: Callable[[], float]) -> None:
+    assert 0 < reference() < 60
 
 
 def test_the_table_has_a_line_a_figure_and_json_says_the_same() -> None:
@@ -65,6 +103,6 @@ def test_an_unknown_bench_is_refused_with_those_there_are(capsys: pytest.Capture
 
 
 def test_a_cheap_bench_measures_cpu_time() -> None:
-    (figure,) = help_text(QUICK)
+    (figure,) = help_text(replace(QUICK, least_cpu_s=0.1))
     assert 5 < figure.value < 5000
     assert figure.unit == "ms CPU"

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 import pytest
 
 from tests.bench import wire
-from tests.bench.figures import QUICK
 from tests.bench.link import Line, Link
+from tests.bench.sampling import QUICK
 
 _HALF = 2_000
 

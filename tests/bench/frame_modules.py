@@ -1,0 +1,122 @@
+"""How many modules the app walks through for one frame: `python -m tests.bench.frame_modules FILE [WORD…]`.
+
+The command starts the app with the words and writes what it has counted to the file, as JSON. A frame is everything
+that the app's main thread does from drawing one to drawing the next. A module is entered by a call from another
+module of tuisim, or from outside; each such call is a change of module.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from statistics import median, quantiles
+from types import FrameType
+from unittest.mock import patch
+
+from tests.bench.figures import Figure
+from tests.bench.frames import CIRCLE
+from tests.bench.sampling import Effort
+from tests.bench.terminal import Terminal
+from tuisim.app.terminal.pacer import Pacer
+from tuisim.atomic import replacing
+from tuisim.cli import run_command
+
+SETTLE_S = 5.0
+"""From the first frame, for modules that are imported and caches that are filled."""
+EACH_FRAME = 5
+"""Only one of so many frames is counted: counting slows the app."""
+FRAMES_A_REPEAT = 6
+PACKAGE = "tuisim."
+PATIENCE_S = 120.0
+
+
+class FrameWalks:
+    """Counts for some frames how often each module of tuisim is entered.
+
+    Args:
+        file: Where the counts are written when there are enough.
+        frames: How many are enough.
+    """
+
+    def __init__(self, file: Path, frames: int) -> None:
+        self._file, self._frames = file, frames
+        self._walks: list[Counter[str]] = []
+        self._number = 0
+        self._begun_s = 0.0
+
+    def drawn(self) -> None:
+        """A frame is drawn: the walk for the one before has ended, and another begins, unless it is left out."""
+        if sys.getprofile() is not None:
+            sys.setprofile(None)
+            if len(self._walks) == self._frames:
+                with replacing(self._file) as file:
+                    file.write(json.dumps(self._walks).encode())
+        self._number += 1
+        self._begun_s = self._begun_s or time.monotonic()
+        is_counted = not self._number % EACH_FRAME and time.monotonic() - self._begun_s > SETTLE_S
+        if is_counted and len(self._walks) < self._frames:
+            self._walks.append(Counter())
+            sys.setprofile(self._profile)
+
+    def _profile(self, frame: FrameType, event: str, arg: object) -> None:
+        name = frame.f_globals.get("__name__", "")
+        if event == "call" and name.startswith(PACKAGE) and name != _caller(frame):
+            self._walks[-1][name] += 1
+
+
+def _caller(frame: FrameType) -> str:
+    """Return the module of tuisim that has called a function, itself or through others; empty if none has."""
+    before = frame.f_back
+    while before is not None:
+        name: str = before.f_globals.get("__name__", "")
+        if name.startswith(PACKAGE):
+            return name
+        before = before.f_back
+    return ""
+
+
+def frame_modules(effort: Effort) -> Iterator[Figure]:
+    """Yield the modules that a frame enters and how often, at 120 x 40, with the panels as they are and the chart."""
+    for name, panels, most_modules, most_changes in (
+        ("a frame", (), 70, 340),
+        ("a frame with the chart", ("-c",), 72, 750),
+    ):
+        frames = walked(("-R", *panels), FRAMES_A_REPEAT * effort.repeats)
+        modules = median(len(entered) for entered in frames)
+        # On a busy machine most frames come late, and show more ticks than a frame should.
+        changes = quantiles([sum(entered.values()) for entered in frames], n=4)[0]
+        yield Figure(f"modules entered in {name}", modules, "", most=most_modules)
+        yield Figure(f"changes of module in {name}", changes, "", most=most_changes)
+
+
+def walked(panels: Sequence[str], count: int) -> list[Mapping[str, int]]:
+    """Start the app with a robot that drives, and return for some frames how often each module was entered."""
+    with tempfile.TemporaryDirectory() as folder:
+        program, told = Path(folder) / "circle.py", Path(folder) / "counted.json"
+        program.write_text(CIRCLE, "utf-8")
+        command = (sys.executable, "-m", "tests.bench.frame_modules", str(told), str(count))
+        with Terminal([str(program), *panels], command) as terminal:
+            terminal.read_until(told.exists, PATIENCE_S)
+        frames: list[Mapping[str, int]] = json.loads(told.read_text())
+    return frames
+
+
+def main(file: str, frames: str, *words: str) -> int:
+    """Start the app, and count."""
+    walks, drawn = FrameWalks(Path(file), int(frames)), Pacer.drawn
+
+    def counted(pacer: Pacer) -> None:
+        drawn(pacer)
+        walks.drawn()
+
+    with patch.object(Pacer, "drawn", counted):
+        return run_command(words)
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

@@ -1,0 +1,130 @@
+"""Slow-downs that tests plant in what is measured, to see that the figures get worse."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from unittest.mock import patch
+
+from tests.bench import processes
+from tuisim.runs.child import process
+
+SLOW = """
+import sys, threading
+
+def burn(frame, event, arg, turns=range({turns})):
+    for _ in turns:
+        pass
+
+sys.setprofile(burn)
+threading.setprofile(burn)
+"""
+"""Makes every call and every return of a process cost so many turns of a loop."""
+CROWDED = """
+from tuisim.core.collision import Solids
+boxes_near = Solids._boxes_near
+
+def burn(solids, pose):
+    near = boxes_near(solids, pose)
+    for _ in range({turns} * len(near)):
+        pass
+    return near
+
+Solids._boxes_near = burn
+"""
+"""Makes every obstacle near the robot cost so many turns of a loop."""
+ANSWERS = """
+from tuisim.runtime import wallclock
+from tuisim.runtime.channel import Channel
+send = Channel.send
+
+def burn(channel, event):
+    for _ in range({turns}):
+        pass
+    send(channel, event)
+
+Channel.send = burn
+"""
+"""Makes every event of a run cost so many turns of a loop; a debugger works where calls are not noticed."""
+RECORDED = """
+from tuisim.runtime import wallclock
+from tuisim.runs.records import TelemetryWriter
+publish = TelemetryWriter.publish
+
+def burn(writer, count):
+    for _ in range({turns} * (count - writer.count)):
+        pass
+    publish(writer, count)
+
+TelemetryWriter.publish = burn
+"""
+"""Makes every recorded tick cost so many turns of a loop."""
+DRAWN = """
+from tuisim.app.terminal.frame_buffer import FrameBuffer
+codes = FrameBuffer.codes
+
+def burn(*words):
+    for _ in range({turns}):
+        pass
+    return (codes(*words) or "") + {more!r}
+
+FrameBuffer.codes = burn
+"""
+"""Makes everything that the app draws cost so many turns of a loop and so many bytes more."""
+LARGE = "ballast = bytearray({megabytes} << 20)\n"
+"""Makes a process so much larger."""
+WALKS = """
+from tuisim.app.terminal.frame_buffer import FrameBuffer
+codes = FrameBuffer.codes
+
+def function_of(module):
+    names = dict(__name__=module)
+    exec("def walk(): pass", names)
+    return names["walk"]
+
+walks = [function_of(f"tuisim.planted{{number}}") for number in range({modules})]
+
+def walk(*words):
+    for _ in range({times}):
+        for function in walks:
+            function()
+    return codes(*words)
+
+FrameBuffer.codes = walk
+"""
+"""Makes the app walk so often through so many modules more for everything that it draws."""
+
+
+@contextmanager
+def in_runs(code: str) -> Iterator[None]:
+    """Plant code in the processes of runs that this process starts."""
+    process.cool_down()
+    start = "runpy.run_module"
+    with patch.object(process, "BOOT", process.BOOT.replace(start, f"exec({code!r}); {start}")):
+        yield
+        process.cool_down()
+
+
+@contextmanager
+def in_commands(code: str) -> Iterator[None]:
+    """Plant code in the commands and apps that are started."""
+    with TemporaryDirectory() as folder:
+        Path(folder, "sitecustomize.py").write_text(code)
+        with patch.object(processes, "SEARCH_PATH", [folder, *processes.SEARCH_PATH]):
+            yield
+
+
+@contextmanager
+def here(code: str) -> Iterator[None]:
+    """Plant code in this process."""
+    profile, threads = sys.getprofile(), threading.getprofile()
+    exec(code, {})
+    try:
+        yield
+    finally:
+        sys.setprofile(profile)
+        threading.setprofile(threads)
