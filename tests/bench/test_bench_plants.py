@@ -19,7 +19,6 @@ from tests.bench.plants import ANSWERS, CROWDED, DRAWN, LARGE, RECORDED, SLOW, W
 from tests.bench.references import usual
 from tests.bench.sampling import Effort
 from tuisim.config.preferences import keep
-from tuisim.core.spec import RunSpec
 from tuisim.runs import handle
 from tuisim.runs.packed_files import compact
 
@@ -137,8 +136,8 @@ def test_slow_and_large_recordings_are_seen(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(recording, "NOISES", {"": (0, 0)})
     before = figures_of("recording")
 
-    def compact_badly(folder: Path, spec: RunSpec) -> None:
-        compact(folder, spec)
+    def compact_badly(folder: Path) -> None:
+        compact(folder)
         (folder / "ballast").write_bytes(bytes(100_000))
 
     monkeypatch.setattr("tuisim.runs.store.compact", compact_badly)
