@@ -26,6 +26,7 @@ def test_an_enemy_affects_its_own_run_only(host: str, tmp_path: Path) -> None:
     assert found.code == CODES.get(host, 0)
 
 
+@pytest.mark.usefixtures("home")
 def test_goals_are_checked_for_the_others(here: Command, tmp_path: Path) -> None:
     (tmp_path / "goals.toml").write_text('title = "Done"\n[[goal]]\nname = "finish"\nfinish = true\n')
     for name, text in PROGRAMS.items():

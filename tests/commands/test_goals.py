@@ -75,7 +75,7 @@ def test_one_missed(task: Path, here: Command) -> None:
 
 
 def test_open_while_it_runs(task: Path, here: Command) -> None:
-    record(mm=100)
+    _running = record(mm=100)
     done = here("goals", "check", task)
     assert done.returncode == 1
     assert done.stdout.split("\n")[1:3] == [

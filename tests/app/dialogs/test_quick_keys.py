@@ -54,7 +54,7 @@ async def test_a_key_too_many_leaves_the_lab_as_it_is(keys: str) -> None:
         app = await ready(pilot)
         at_once(pilot, keys.split())
         await pilot.pause(0.1)
-        await until(pilot, lambda: len(app.screen_stack) == 1)
+        await until(pilot, lambda: app._input.is_idle and len(app.screen_stack) == 1)
         at_once(pilot, ["question_mark"])
         await until(pilot, lambda: isinstance(app.screen, GuideScreen))
 
