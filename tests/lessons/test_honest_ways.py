@@ -104,6 +104,13 @@ while d > 20:
     d = ultrasonic.distance_centimeters
 tank_drive.off()
 """,
+    "poll-or-block poll stop-and-go": """\
+import time
+while ultrasonic.distance_centimeters > 20:
+    tank_drive.on(SpeedPercent(30), SpeedPercent(30))
+    time.sleep(0.1)
+    tank_drive.off()
+""",
     "poll-or-block poll function": """\
 def far():
     return ultrasonic.distance_centimeters > 20
@@ -179,6 +186,31 @@ while colorLeft.color_name != "Black":
 print("Black")
 tank_drive.off()
 """,
+    "places-colours all two-equal": """\
+import time
+tank_drive.on(SpeedPercent(50), SpeedPercent(50))
+before = last = "White"
+while last != "Black":
+    name = colorLeft.color_name
+    if name == before and name != last:
+        last = name
+        if name != "White":
+            print(name)
+    before = name
+    time.sleep(0.1)
+tank_drive.off()
+""",
+    "places-colours places seen-list": """\
+seen = []
+tank_drive.on(SpeedPercent(40), SpeedPercent(40))
+while "Black" not in seen:
+    name = colorLeft.color_name
+    if name not in seen and name != "White":
+        seen.append(name)
+        print(name)
+        print("Place: " + str(130 + tank_drive.right_motor.position / 360 * 175.93))
+tank_drive.off()
+""",
     "places-colours places rotations": """\
 tank_drive.on(SpeedPercent(20), SpeedPercent(20))
 for wanted in ["Red", "Green", "Blue", "Black"]:
@@ -237,6 +269,32 @@ while light > 2:
     time.sleep(0.02)
 tank_drive.off()
 print(f"Rows: {rows}")
+""",
+    "log-period faster many-rows": """\
+import time
+tank_drive.on(SpeedPercent(50), SpeedPercent(50))
+light = 100
+rows = 0
+while light > 5:
+    light = colorLeft.reflected_light_intensity_pc
+    print("Colour: " + str(light))
+    rows += 1
+    time.sleep(0.008)
+tank_drive.off()
+print("Rows: " + str(rows))
+""",
+    "log-period faster few-rows": """\
+import time
+tank_drive.on(SpeedPercent(50), SpeedPercent(50))
+light = 100
+rows = 0
+while light > 5:
+    light = colorLeft.reflected_light_intensity_pc
+    print("Colour: " + str(light))
+    rows += 1
+    time.sleep(0.0225)
+tank_drive.off()
+print("Rows: " + str(rows))
 """,
     "band-values log slower": """\
 import time
