@@ -14,7 +14,7 @@ SAID: dict[str, tuple[Condition, str]] = {
     "pass": (Pass(((1150, 500),)), "it was at x = 1153 mm, y = 500 mm at 5.42 s"),
     "print": (Print(("x",)), "line 3 printed it at 5.42 s, at x = 1153 mm, y = 500 mm"),
     "print lines": (Print(("x", "y")), "line 3 printed the last at 5.42 s, at x = 1153 mm, y = 500 mm"),
-    "print once": (Print(("x", "y"), once=True), "it printed 2 such lines, each in its place"),
+    "print once": (Print(("x", "y"), once=True), "it printed every line that was asked for, each in its place"),
     "log": (Log("Grey", (50.2,)), "line 3 logged Grey at 5.42 s, at x = 1153 mm, y = 500 mm"),
     "log levels": (Log("Grey", (50.2, 0)), "line 3 logged the last Grey at 5.42 s, at x = 1153 mm, y = 500 mm"),
     "follow": (Follow(("left",), darker_than=50), "the sensor was on the line for long enough"),

@@ -38,8 +38,8 @@ def _words(condition: Condition, judgement: Judgement) -> str:
         case Print(lines=lines, once=False):
             last = "" if len(lines) == 1 else " the last"
             return f"line {judgement.line} printed{last or ' it'} {when}, {where}"
-        case Print(lines=lines):
-            return f"it printed {len(lines)} such lines, each in its place"
+        case Print():
+            return "it printed every line that was asked for, each in its place"
         case Log(name=name, levels=levels):
             last = "" if len(levels) == 1 else "the last "
             return f"line {judgement.line} logged {last}{name} {when}, {where}"
