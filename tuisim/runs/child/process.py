@@ -9,6 +9,7 @@ import select
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections import OrderedDict
 from collections.abc import Hashable, Sequence
@@ -56,27 +57,31 @@ class _Starts:
     templates: ClassVar[OrderedDict[Hashable, Template]] = OrderedDict()
     """The one used last comes last."""
     count = 0
+    lock: ClassVar = threading.RLock()
+    """Held while they are looked up or changed: threads of an app start runs at the same time."""
 
 
 def warm_up() -> None:
     """Start the warm process, from which all later children are forked, unless it is running. Does not block."""
-    if _Starts.warm is None or not _Starts.warm.is_usable:
-        cool_down()
-        # Imported on demand: it imports what most commands need not.
-        from tuisim.runs.child.warm import WarmProcess
+    with _Starts.lock:
+        if _Starts.warm is None or not _Starts.warm.is_usable:
+            cool_down()
+            # Imported on demand: it imports what most commands need not.
+            from tuisim.runs.child.warm import WarmProcess
 
-        # If it cannot be started, each child is started by itself.
-        with suppress(OSError):
-            _Starts.warm = WarmProcess(_command(), _environment())
+            # If it cannot be started, each child is started by itself.
+            with suppress(OSError):
+                _Starts.warm = WarmProcess(_command(), _environment())
 
 
 def cool_down() -> None:
     """End the warm process and all templates; their children go on."""
-    while _Starts.templates:
-        _Starts.templates.popitem()[1].close()
-    if _Starts.warm is not None:
-        _Starts.warm.close()
-    _Starts.warm = None
+    with _Starts.lock:
+        while _Starts.templates:
+            _Starts.templates.popitem()[1].close()
+        if _Starts.warm is not None:
+            _Starts.warm.close()
+        _Starts.warm = None
 
 
 def start_child(
@@ -118,7 +123,8 @@ def start_child(
             process: ChildProcess
             if isolated_with is None:
                 key = template_key if makes_template or template_key in _Starts.templates else None
-                forked = _fork(folder, cwd, log.fileno(), inherited, key)
+                with _Starts.lock:
+                    forked = _fork(folder, cwd, log.fileno(), inherited, key)
                 process = forked or _spawn(folder, cwd, log, inherited)
             else:
                 command = [*_command(LIMITS), str(folder), *map(str, inherited)]
@@ -145,10 +151,11 @@ def prepare_template(key: Hashable, folder: Path) -> None:
         key: What it is prepared for.
         folder: A run folder with that.
     """
-    if _Starts.warm is not None and _Starts.warm.is_usable:
-        # Without a template, children are forked from the warm process.
-        with suppress(OSError):
-            _template(_Starts.warm, key, folder)
+    with _Starts.lock:
+        if _Starts.warm is not None and _Starts.warm.is_usable:
+            # Without a template, children are forked from the warm process.
+            with suppress(OSError):
+                _template(_Starts.warm, key, folder)
 
 
 def _command(first: str = "") -> list[str]:

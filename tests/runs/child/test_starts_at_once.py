@@ -1,0 +1,42 @@
+"""Threads of one process start runs at the same time."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from threading import Barrier, BrokenBarrierError
+from typing import Any
+
+import pytest
+
+from tests.running import over
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.runs.child import process
+from tuisim.runs.child.warm import WarmProcess
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.source import Program
+
+
+def test_runs_of_many_threads_share_one_warm_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    process.cool_down()
+    begin, started, meeting = WarmProcess.__init__, [], Barrier(2)
+
+    def counted(self: WarmProcess, *args: Any) -> None:
+        started.append(self)
+        # Where two are started, they meet.
+        with suppress(BrokenBarrierError):
+            meeting.wait(0.2)
+        begin(self, *args)
+
+    monkeypatch.setattr(WarmProcess, "__init__", counted)
+
+    def end(_: int) -> str:
+        handle = start_run(Program("p.py", "print('A: 1')"), build_run_spec(Settings()), RunOptions())
+        over(handle)
+        assert handle.ended is not None
+        return handle.ended.end
+
+    with ThreadPoolExecutor(8) as pool:
+        assert set(pool.map(end, range(24))) == {"finished"}
+    assert len(started) == 1
