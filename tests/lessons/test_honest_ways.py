@@ -10,6 +10,20 @@ from tuisim.goals.judgement import GoalState
 from tuisim.lessons.spec import Lesson, OtherWorld, Run
 from tuisim.lessons.trial import task_of
 
+_ROWS = """\
+import time
+tank_drive.on(SpeedPercent(50), SpeedPercent(50))
+light = 100
+rows = 0
+while light > 5:
+    light = colorLeft.reflected_light_intensity_pc
+    print("Colour: " + str(light))
+    rows += 1
+    time.sleep({period_s})
+tank_drive.off()
+print("Rows: " + str(rows))
+"""
+"""The rows of lesson 6, one each period."""
 WAYS: dict[str, str] = {
     "first-run say by-degrees": """\
 tank_drive.on_for_degrees(SpeedPercent(50), SpeedPercent(50), 2050)
@@ -270,32 +284,8 @@ while light > 2:
 tank_drive.off()
 print(f"Rows: {rows}")
 """,
-    "log-period faster many-rows": """\
-import time
-tank_drive.on(SpeedPercent(50), SpeedPercent(50))
-light = 100
-rows = 0
-while light > 5:
-    light = colorLeft.reflected_light_intensity_pc
-    print("Colour: " + str(light))
-    rows += 1
-    time.sleep(0.008)
-tank_drive.off()
-print("Rows: " + str(rows))
-""",
-    "log-period faster few-rows": """\
-import time
-tank_drive.on(SpeedPercent(50), SpeedPercent(50))
-light = 100
-rows = 0
-while light > 5:
-    light = colorLeft.reflected_light_intensity_pc
-    print("Colour: " + str(light))
-    rows += 1
-    time.sleep(0.0225)
-tank_drive.off()
-print("Rows: " + str(rows))
-""",
+    "log-period faster many-rows": _ROWS.format(period_s=0.008),
+    "log-period faster few-rows": _ROWS.format(period_s=0.0225),
     "band-values log slower": """\
 import time
 tank_drive.on(SpeedPercent(20), SpeedPercent(20))

@@ -164,14 +164,8 @@ def _travels() -> list[LabAction]:
     ]
 
 
-def _page(name: str, key: str, way: str, by: int) -> LabAction:
-    title, do = f"Text of the lesson, or the code: {way}", partial(lesson.scroll, by=by)
-    return Action(name, key, title, LESSON, do, comes_first=True)
-
-
-def _text(name: str, key: str, way: str, by: int) -> LabAction:
-    title, do = f"Text of the lesson, also while you type: {way}", partial(lesson.scroll, by=by)
-    return Action(name, key, title, LESSON, do, comes_first=True)
+def _scroll(name: str, key: str, where: str, by: int) -> LabAction:
+    return Action(name, key, f"Text of the lesson, {where}", LESSON, partial(lesson.scroll, by=by), comes_first=True)
 
 
 _SCREENSHOT = "Save a screenshot: SVG and PNG (also F12)"
@@ -220,10 +214,10 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("lesson-menu", "M", "Lessons: open, go back, skip, start over", LESSON, lesson.menu, _can_change_world),
         Action("answer", "Q", "Answer the question of the lesson", LESSON, lesson.answer),
         Action("hint", "Y", "Next hint of the lesson", LESSON, lesson.hint),
-        _page("lesson-up", "pageup", "up", -8),
-        _page("lesson-down", "pagedown", "down", 8),
-        _text("lesson-back", "ctrl+up", "up", -4),
-        _text("lesson-on", "ctrl+down", "down", 4),
+        _scroll("lesson-up", "pageup", "or the code: up", -8),
+        _scroll("lesson-down", "pagedown", "or the code: down", 8),
+        _scroll("lesson-back", "ctrl+up", "also while you type: up", -4),
+        _scroll("lesson-on", "ctrl+down", "also while you type: down", 4),
         Action("enlarge", "plus", "Enlarge the focused panel, or restore it", PANEL, app.enlarge),
         *_nudges(),
         Action("help", "question_mark", "Guide: keys, pages, search", APP, app.show_help, footer="help"),
