@@ -126,7 +126,9 @@ async def test_program_is_tried_from_another_start(tmp_path: Path) -> None:
         app.lesson.open("try")
         app.lesson.skip_step()
         await run_over(pilot, app)
-        words = "Also tried from farther back, it does not work: At the end the robot was 40 mm left of"
+        words = (
+            "Also tried from farther back, it does not work (start x = 460 mm): At the end the robot was 40 mm left of"
+        )
         await until(pilot, lambda: words in " ".join(shown(app).split()))
         assert "drive" not in states()
         program = "tank_drive.on(30, 30)\nwhile ultrasonic.distance_centimeters > 156:\n    pass\ntank_drive.off()\n"

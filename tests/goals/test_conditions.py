@@ -363,6 +363,12 @@ READINGS = {
         text=LOOKS,
     ),
     "log a count": Case("log = { name = 'n', levels = [2], counts = 'a' }", COUNTED, "met", line=4),
+    "log without a colon": Case(
+        "log = { name = 'Edge', levels = [50] }",
+        (says("Grey: 50"), says("Edge 46.67", 3)),
+        "missed",
+        reason="It logged Grey. Line 3 printed 'Edge 46.67': a sample has a colon after its name, Edge: 1.5.",
+    ),
     "log once": Case("log = { name = 'n', levels = [2], once = true }", (*COUNTED, wait(1)), "met"),
     "log more than once": Case(
         "log = { name = 'a', levels = [100], once = true }",
@@ -423,7 +429,7 @@ READINGS = {
         "print = { lines = ['a', 'b'], once = true }",
         (says("a"), says("b"), says("b", 3), wait(1)),
         "missed",
-        reason="3 such lines were printed, 2 are asked for.",
+        reason="3 such lines in all, and each is asked for once.",
         line=3,
     ),
     "read": Case("read = { reading = 'color', times = 2 }", (wait(0.05, 2),), "met", 0.02, line=2, text=LOOKS),

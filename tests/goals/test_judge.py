@@ -113,6 +113,14 @@ def test_points_are_those_of_met_goals(home: Path, tmp_path: Path) -> None:
     assert points(judged(finished(home), tmp_path, GOALS).values()) == 7.5
 
 
+def test_lines_that_come_once_are_told_of_when_they_came(home: Path, tmp_path: Path) -> None:
+    goals = "[[goal]]\nname = 'it'\nprint = { lines = ['one'], once = true }\n"
+    found = judged(finished(home), tmp_path, goals)["it"]
+    # The end decides; the line came where the robot had driven 200 mm.
+    assert found.event is not None
+    assert [found.changes[0].x_mm, found.event.x_mm] == pytest.approx([900, 700], abs=12)
+
+
 def test_state_at_earlier_ticks(home: Path, tmp_path: Path) -> None:
     found = judged(finished(home), tmp_path, GOALS)
     change = found["a"].changes[0]

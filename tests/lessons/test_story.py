@@ -14,7 +14,7 @@ SAID: dict[str, tuple[Condition, str]] = {
     "pass": (Pass(((1150, 500),)), "it was at x = 1153 mm, y = 500 mm at 5.42 s"),
     "print": (Print(("x",)), "line 3 printed it at 5.42 s, at x = 1153 mm, y = 500 mm"),
     "print lines": (Print(("x", "y")), "line 3 printed the last at 5.42 s, at x = 1153 mm, y = 500 mm"),
-    "print once": (Print(("x", "y"), once=True), "it printed every line that was asked for, each in its place"),
+    "print once": (Print(("x", "y"), once=True), "line 3 printed the last at 5.42 s, at x = 1153 mm, y = 500 mm"),
     "log": (Log("Grey", (50.2,)), "line 3 logged Grey at 5.42 s, at x = 1153 mm, y = 500 mm"),
     "log levels": (Log("Grey", (50.2, 0)), "line 3 logged the last Grey at 5.42 s, at x = 1153 mm, y = 500 mm"),
     "follow": (Follow(("left",), darker_than=50), "the sensor was on the line for long enough"),
@@ -27,6 +27,12 @@ SAID: dict[str, tuple[Condition, str]] = {
 def test_story(condition: Condition, words: str) -> None:
     met = Judgement(Goal("a", condition), (Change(542, 5.42, GoalState.MET, 1152.9, 500.0),), line=3)
     assert story([met, met]) == f"Your run: {words}."
+
+
+def test_what_the_end_decides_is_told_of_the_moment_when_it_happened() -> None:
+    said, end = Change(542, 5.42, GoalState.MET, 1120.0, 500.0), Change(900, 9.0, GoalState.MET, 1420.0, 500.0)
+    met = Judgement(Goal("a", Log("Grey", (50.2,), once=True)), (end,), line=3, happened=said)
+    assert story([met]) == "Your run: line 3 logged Grey at 5.42 s, at x = 1120 mm, y = 500 mm."
 
 
 def test_nothing_is_said_of_what_was_not_met() -> None:

@@ -55,7 +55,7 @@ from tuisim.lessons.spec import (
     Watch,
 )
 from tuisim.lessons.story import story
-from tuisim.protocol import PauseReason
+from tuisim.protocol import End, PauseReason
 from tuisim.runs.store import load_run
 
 if TYPE_CHECKING:
@@ -376,6 +376,13 @@ class AppLesson:
             self._try_elsewhere(step.check, recording)
             self.show()
 
+    def _error(self) -> str:
+        """Return how the run has failed that the goals were judged on; empty if it has not."""
+        run, (recording, _) = self._run_controller.run, self._goals.judged
+        if not self._judgements or run is None or recording is None or run.run_id != recording.run_id:
+            return ""
+        return run.ended.summary.rstrip(".") if run.ended is not None and run.ended.end is End.RAISED else ""
+
     def _try_elsewhere(self, check: Check, recording: Recording) -> None:
         """Try the program of a good run in the other worlds of the step, in the background."""
         assert isinstance(check, Run)
@@ -406,7 +413,7 @@ class AppLesson:
                 return
             missed = [each for each in judgements if each.goal.name in other.goals and each.goal.name not in met]
             if missed and not remark:
-                remark = f"Also tried {other.where}, it does not work: {missed[0].reason}"
+                remark = f"Also tried {other.where}, it does not work{_at_start(other)}: {missed[0].reason}"
         if is_newest:
             self._remark = remark
         self.show()
@@ -509,6 +516,7 @@ class AppLesson:
             in_run=self._is_elsewhere and self._run_controller.in_run,
             done=self._done,
             story=self._story if self._done else "",
+            error=self._error(),
             remark=self._remark,
             next_title="" if step else self._next_title(),
         )
@@ -516,6 +524,12 @@ class AppLesson:
 
 def _is_of(event: Event, run_id: str) -> bool:
     return isinstance(event, JudgedRun) and event.run_id == run_id
+
+
+def _at_start(other: OtherWorld) -> str:
+    """Return where the robot starts in another world, for a sentence; empty if it is where the lesson starts."""
+    places = [f"{axis} = {other.settings[f'{axis}_mm']:g} mm" for axis in "xy" if f"{axis}_mm" in other.settings]
+    return f" (start {', '.join(places)})" if places else ""
 
 
 def noted(folder: Path) -> Iterator[Noted]:

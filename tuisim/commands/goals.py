@@ -145,8 +145,8 @@ def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> N
 
 def _details(judgement: Judgement) -> Iterator[str]:
     line = f", line {judgement.line}" if judgement.line else ""
-    for change in judgement.changes:
-        where = f"{change.state} at {change.time_s:.2f} s, x {change.x_mm:.0f} mm, y {change.y_mm:.0f} mm"
+    if (event := judgement.event) is not None:
+        where = f"{event.state} at {event.time_s:.2f} s, x {event.x_mm:.0f} mm, y {event.y_mm:.0f} mm"
         yield f"{where}{'' if judgement.reason else line}"
     if judgement.reason:
         reason = judgement.reason

@@ -17,6 +17,8 @@ class Found:
     """Why it is not reached, or how it was violated, in one sentence; empty where nothing needs to be said."""
     line: int | None = None
     """The program's line that this is about; 0: there is none; None: the line at the moment, none without a moment."""
+    happened: Moment | None = None
+    """When that happened which reaches it, if only a later moment decides: lines may come once up to the end."""
 
 
 def distance_words(distance_mm: float) -> str:

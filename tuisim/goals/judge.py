@@ -63,6 +63,8 @@ class _Outcome:
     reason: str = ""
     line: int | None = 0
     """0: there is none; None: the line at the moment."""
+    happened: Moment | None = None
+    """When that happened which meets it; None: at the moment."""
 
 
 def judge(goals: Sequence[Goal], run: JudgedRun, field: Field | None = None) -> tuple[Judgement, ...]:
@@ -98,10 +100,13 @@ class _Judge:
         outcome = self._outcome(goal.name)
         if outcome.state is GoalState.OPEN:
             return Judgement(goal, (), outcome.reason, self._line(outcome))
-        tick = max(0, outcome.moment.tick)
-        x_mm, y_mm = self._evidence.place_mm(tick)
-        change = Change(tick, self._evidence.time_s(outcome.moment), outcome.state, x_mm, y_mm)
-        return Judgement(goal, (change,), outcome.reason, self._line(outcome))
+        changes = (self._change(outcome.moment, outcome.state),)
+        happened = self._change(outcome.happened, outcome.state) if outcome.happened else None
+        return Judgement(goal, changes, outcome.reason, self._line(outcome), happened)
+
+    def _change(self, moment: Moment, state: GoalState) -> Change:
+        tick = max(0, moment.tick)
+        return Change(tick, self._evidence.time_s(moment), state, *self._evidence.place_mm(tick))
 
     def _line(self, outcome: _Outcome) -> int:
         return self._evidence.line(outcome.moment) if outcome.line is None else outcome.line
@@ -175,7 +180,7 @@ class _Judge:
 
     def _reached(self, goal: Goal, found: Found, stop: Moment | None) -> _Outcome:
         if found.moment is not None:
-            return _Outcome(GoalState.MET, found.moment, line=found.line)
+            return _Outcome(GoalState.MET, found.moment, line=found.line, happened=found.happened)
         if stop is not None:
             return _Outcome(GoalState.MISSED, stop, _too_late(goal, found.reason), found.line or 0)
         if self._evidence.ended:

@@ -40,11 +40,18 @@ class Judgement:
     """Why it is not met, in one sentence; empty if it is met, and possibly while it is open."""
     line: int = 0
     """The program's line that the last change, or the reason, is about; 0 if there is none."""
+    happened: Change | None = None
+    """When and where that happened which meets it, if a later moment has decided; None: at its last change."""
 
     @property
     def state(self) -> GoalState:
         """The state at the end of the recording."""
         return self.changes[-1].state if self.changes else GoalState.OPEN
+
+    @property
+    def event(self) -> Change | None:
+        """When and where it was met or missed, for whoever reads of it; None while it is open."""
+        return self.happened or (self.changes[-1] if self.changes else None)
 
     def at(self, tick: int) -> GoalState:
         """Return the state when a tick was complete."""

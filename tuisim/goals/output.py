@@ -58,25 +58,34 @@ def find_printed(condition: Print, evidence: Evidence, span: Span) -> Found:
             return fault if fault.reason else Found(None, _no_line(condition, pattern, rows, line is not None), about)
         at, line, since = place + 1, row.line, row.tick
         last = max(last, place)
-    if condition.once and (open_or_missed := _not_once(condition, rows, span)):
+    if condition.once and (open_or_missed := _not_once(condition, rows, span, evidence)):
         return open_or_missed
     number, row = rows[last]
-    return Found(evidence.last if condition.once else Moment(row.tick, number), line=row.line)
+    return _printed_at(Moment(row.tick, number), row.line, condition.once, evidence)
 
 
-def _not_once(condition: Print, rows: list[tuple[int, OutputRow]], span: Span) -> Found | None:
+def _not_once(condition: Print, rows: list[tuple[int, OutputRow]], span: Span, evidence: Evidence) -> Found | None:
     """Return what is missing of a condition whose lines come only once; None if nothing is."""
     fits = [(row, sum(bool(re.search(pattern, row.text)) for pattern in condition.lines)) for _, row in rows]
     if several := [row for row, count in fits if count > 1]:
         return Found(None, f"{_shown(several[0].text)} says several of the lines at once.", several[0].line)
     fitting = [row for row, count in fits if count]
     if len(fitting) > len(condition.lines):
-        return Found(None, _too_many("such lines", len(fitting), len(condition.lines)), fitting[-1].line)
+        return _again(condition, fitting, evidence)
     return None if span.over else Found()
 
 
-def _too_many(what: str, count: int, wanted: int) -> str:
-    return f"{count:,} {what} were printed, {wanted} {'is' if wanted == 1 else 'are'} asked for."
+def _again(condition: Print, rows: list[OutputRow], evidence: Evidence) -> Found:
+    """Return which of some rows is the first that says again what one before it says."""
+    said: set[str] = set()
+    for row in rows:
+        pattern = next(pattern for pattern in condition.lines if re.search(pattern, row.text))
+        if pattern in said:
+            break
+        said.add(pattern)
+    x_mm = evidence.place_mm(row.tick)[0]
+    reason = f"{_shown(row.text)} was printed again at {row.time_ns / NS_PER_S:.2f} s, at x = {x_mm:.0f} mm"
+    return Found(None, f"{reason}: {counted(len(rows), 'such line')} in all, and each is asked for once.", row.line)
 
 
 def _fault(condition: Print, count: int, row: OutputRow, since: int, evidence: Evidence) -> str:
@@ -172,11 +181,17 @@ def find_levels(condition: Log, evidence: Evidence, span: Span) -> Found:
         last = max(last, place)
     number, sample = samples[last]
     if condition.once and len(samples) > len(condition.levels):
-        reason = _too_many(f"samples {condition.name}", len(samples), len(condition.levels))
+        wanted = f"{len(condition.levels)} {'is' if len(condition.levels) == 1 else 'are'}"
+        reason = f"{len(samples):,} samples {condition.name} were printed, {wanted} asked for."
         return Found(None, reason, samples[-1][1].line)
     if condition.once and not span.over:
         return Found()
-    return Found(evidence.last if condition.once else Moment(sample.tick, number), line=sample.line)
+    return _printed_at(Moment(sample.tick, number), sample.line, condition.once, evidence)
+
+
+def _printed_at(moment: Moment, line: int, once: bool, evidence: Evidence) -> Found:
+    """Return that what was asked for was printed; that it came only once, the end of the run decides."""
+    return Found(evidence.last, line=line, happened=moment) if once else Found(moment, line=line)
 
 
 def _not_measured(condition: Log, count: int, sample: Sample, evidence: Evidence) -> str:
@@ -232,7 +247,7 @@ def _no_level(condition: Log, count: int, nearest: Sample | None, evidence: Evid
     if not any(sample.name == name for _, sample in evidence.samples):
         others = sorted({sample.name for _, sample in evidence.samples})
         logged = f" It logged {', '.join(others[:5])}." if others else ""
-        return f"The program logged no sample {name}.{logged}"
+        return f"The program logged no sample {name}.{logged}{_no_colon(name, evidence)}"
     level, after = f"{levels[count]:g}", f" after {levels[count - 1]:g}" if count and condition.in_order else ""
     if nearest is not None:
         near = f"the nearest{after} was {nearest.value:.6g} at {nearest.time_ns / 1e9:.2f} s"
@@ -242,6 +257,15 @@ def _no_level(condition: Log, count: int, nearest: Sample | None, evidence: Evid
         return f"{name} did not come near {level}: {near}."
     place = "missing" if not condition.in_order else "next" if count else "the first"
     return f"{name} came near {count or 'none'} of {len(levels)} levels: {level} is {place}, and {near}."
+
+
+def _no_colon(name: str, evidence: Evidence) -> str:
+    """Return that a line with the name and a number lacks the colon, as a further sentence; empty if none does."""
+    like = re.compile(rf"{re.escape(name)}\s*=?\s*-?\d").match
+    row = next((row for row in evidence.rows if row.stream == Stream.STDOUT and like(row.text)), None)
+    return (
+        f" Line {row.line} printed {_shown(row.text)}: a sample has a colon after its name, {name}: 1.5." if row else ""
+    )
 
 
 def find_dialogue(condition: Dialogue, evidence: Evidence, span: Span) -> Found:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from tuisim.goals.judgement import GoalState, Judgement
+from tuisim.goals.judgement import Change, GoalState, Judgement
 from tuisim.goals.spec import Condition, Finish, Follow, Log, Pass, Print, Reach
 
 
@@ -19,30 +19,27 @@ def story(judgements: Iterable[Judgement]) -> str:
 
 
 def _parts(judgement: Judgement) -> Iterator[str]:
-    if judgement.state is not GoalState.MET:
+    if judgement.state is not GoalState.MET or judgement.event is None:
         return
     for condition in judgement.goal.parts:
-        if words := _words(condition, judgement):
+        if words := _words(condition, judgement.event, judgement.line):
             yield words
 
 
-def _words(condition: Condition, judgement: Judgement) -> str:
+def _words(condition: Condition, event: Change, line: int) -> str:
     """Return what met a condition; empty for those that only the program's text meets."""
-    change = judgement.changes[-1]
-    when, where = f"at {change.time_s:.2f} s", f"at x = {change.x_mm:.0f} mm, y = {change.y_mm:.0f} mm"
+    when, where = f"at {event.time_s:.2f} s", f"at x = {event.x_mm:.0f} mm, y = {event.y_mm:.0f} mm"
     match condition:
         case Reach(at_end=True):
             return f"it ended {where}"
         case Reach() | Pass():
             return f"it was {where} {when}"
-        case Print(lines=lines, once=False):
+        case Print(lines=lines):
             last = "" if len(lines) == 1 else " the last"
-            return f"line {judgement.line} printed{last or ' it'} {when}, {where}"
-        case Print():
-            return "it printed every line that was asked for, each in its place"
+            return f"line {line} printed{last or ' it'} {when}, {where}"
         case Log(name=name, levels=levels):
             last = "" if len(levels) == 1 else "the last "
-            return f"line {judgement.line} logged {last}{name} {when}, {where}"
+            return f"line {line} logged {last}{name} {when}, {where}"
         case Follow():
             return "the sensor was on the line for long enough"
         case Finish():

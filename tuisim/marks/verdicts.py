@@ -8,7 +8,7 @@ from tuisim.analysis.pins import Pin
 from tuisim.analysis.report import section, table
 from tuisim.errors import LogError
 from tuisim.goals.judge import judge
-from tuisim.goals.judgement import Judgement
+from tuisim.goals.judgement import Change
 from tuisim.goals.spec import Goal, Kind
 from tuisim.marks.outcome import GoalOutcome, Outcome
 from tuisim.marks.sheet import Column, in_words
@@ -36,17 +36,16 @@ def verdicts(
         result = "met" if goal.met else "missed"
         why = f"{goal.reason} (line {goal.line})" if goal.line else goal.reason
         points = f"{in_words(column.points if goal.met else 0)} of {in_words(column.points)}"
-        if (one := judged.get(column.name)) is not None:
-            (change,) = one.changes
-            result += f" at {change.time_s:.2f} s, x {change.x_mm:.0f}, y {change.y_mm:.0f} mm"
+        if (event := judged.get(column.name)) is not None:
+            result += f" at {event.time_s:.2f} s, x {event.x_mm:.0f}, y {event.y_mm:.0f} mm"
             said = f"{number}. {column.say} {result}"
-            pins.append(Pin(str(number), change.x_mm, change.y_mm, goal.met, f"{said}: {why}" if why else said))
+            pins.append(Pin(str(number), event.x_mm, event.y_mm, goal.met, f"{said}: {why}" if why else said))
         rows.append([str(number), column.say, result, why, points])
     return section("Goals", table(_HEADS, rows, numbers=len(_HEADS) - 1)), pins
 
 
-def _judged(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str, Judgement]:
-    """Return the judgements of goals that were decided at a time and a place."""
+def _judged(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str, Change]:
+    """Return when and where goals were met or missed, of those that were at a time and a place."""
     if outcome.end == End.FALSIFIED:
         return {}
     try:
@@ -54,7 +53,7 @@ def _judged(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str
     except LogError:
         # What is known of the run is in its outcome.
         return {}
-    return {one.goal.name: one for one in judgements if one.changes and not _is_of_the_text(one.goal)}
+    return {one.goal.name: one.event for one in judgements if one.event and not _is_of_the_text(one.goal)}
 
 
 def _is_of_the_text(goal: Goal) -> bool:

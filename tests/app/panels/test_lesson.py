@@ -18,7 +18,7 @@ from tuisim.analysis.source import NOTES_FILE, Note, write_notes
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.panels import PANELS
-from tuisim.app.render.lesson import LessonPicture, LessonView, draw_lesson
+from tuisim.app.render.lesson import Away, LessonPicture, LessonView, draw_lesson
 from tuisim.app.snapshot import RunPhase
 from tuisim.goals.judgement import Change, GoalState, Judgement
 from tuisim.lessons.progress import StepState, load_progress, program_path
@@ -375,7 +375,11 @@ def test_pages_of_a_lesson(tmp_path: Path) -> None:
     assert page(2)[:4] == ["Try it                               ✓–●", "✓ Drive", "Your run: so.", "Far enough."]
     assert page(2)[4:7] == ["M shows the steps before again.", "", "3. Do it"]
     assert "skipped" in page(1)
-    assert "✗ Drive." in page(1, at=1, judgements=(missed,))
+    assert {"✗ Drive.", "  Too short."} <= set(page(1, at=1, judgements=(missed,)))
+    failed = page(1, at=1, judgements=(missed,), error="NameError: no x (line 3)")
+    assert failed[2] == "The program stopped with an error:"
+    assert "✗ Drive." in failed
+    assert "  Too short." not in failed
     assert page(2)[-1] == "Next: open the panel Chart."
     assert page(3)[1].startswith("The end of the lesson: a model answer")
     assert "A model answer:" not in page(3, states=(StepState.SKIPPED,) * 3, at=None)
@@ -458,5 +462,10 @@ def test_keys_that_need_escape_first_are_called_so(at: int, text: str, tmp_path:
     lesson = opened(tmp_path).lesson
     assert lesson is not None
     view = LessonView(lesson, tuple(StepState.OPEN for _ in lesson.steps), at, done=lesson.steps[0])
-    lines = draw_lesson(view, at, 0, 80, 60, is_away=True).lines
+    lines = draw_lesson(view, at, 0, 80, 60, Away.LOG).lines
     assert f"escape, then {text}" in "\n".join("".join(part for part, _ in line) for line in lines)
+
+
+def test_the_editor_has_a_key_of_its_own_that_runs_the_program(tmp_path: Path) -> None:
+    lines = draw_lesson(_lesson_view(tmp_path, at=1), 1, 0, 80, 60, Away.EDITOR).lines
+    assert "ctrl+r runs the program." in ["".join(part for part, _ in line) for line in lines]

@@ -282,9 +282,16 @@ def _row(texts: Sequence[str], widths: Sequence[int], style: Style) -> Line:
 
 
 def _wrapped(texts: Sequence[str], width: int, most: int) -> list[str]:
-    """Return the first lines of wrapped texts; only the visible part of each is wrapped."""
-    seen = (text[: (most + 1) * max(width, 10)] for text in texts)
-    return [line for text in seen for line in wrap(text, max(width, 10), subsequent_indent="  ")][:most]
+    """Return the first lines of wrapped texts, the last one with an ellipsis if there is more.
+
+    Only the visible part of each is wrapped.
+    """
+    wide = max(width, 10)
+    seen = (text[: (most + 1) * wide] for text in texts)
+    lines = [line for text in seen for line in wrap(text, wide, subsequent_indent="  ")]
+    if len(lines) <= most or not most:
+        return lines[:most]
+    return [*lines[: most - 1], f"{lines[most - 1][: wide - 2].rstrip()} …"]
 
 
 def table_lines(model: Model, width: int, height: int) -> list[Line]:

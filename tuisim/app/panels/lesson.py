@@ -8,7 +8,7 @@ from textual.binding import Binding, BindingType
 
 from tuisim.app.action import with_keys_of
 from tuisim.app.panels import PANELS
-from tuisim.app.render.lesson import LessonPicture, LessonView, draw_lesson
+from tuisim.app.render.lesson import Away, LessonPicture, LessonView, draw_lesson
 from tuisim.app.snapshot import Snapshot
 from tuisim.app.terminal.cell_view import LinesPanel
 
@@ -76,9 +76,8 @@ class LessonPanel(LinesPanel, can_focus=True):
                 self.call_after_refresh(self._redraw)
             return
         page = self._content.page if self._page is None else self._page
-        self._picture = draw_lesson(
-            self._content, page, self._first, size.width, size.height, is_away=self._is_brief or self._is_typing
-        )
+        away = Away.LOG if self._is_brief else Away.EDITOR if self._is_typing else Away.NO
+        self._picture = draw_lesson(self._content, page, self._first, size.width, size.height, away)
         if self._first >= 0:
             self._first = self._picture.first
         self._text.set_lines(self._picture.lines)

@@ -158,8 +158,9 @@ def _when(judgement: Judgement) -> str:
     """Return when and where a goal was decided."""
     if all(part.KIND is Kind.FIXED for part in judgement.goal.parts):
         return "by the program's text"
-    change = judgement.changes[-1]
-    return f"at {change.time_s:.2f} s, x {change.x_mm:.0f}, y {change.y_mm:.0f} mm"
+    if (event := judgement.event) is None:
+        return ""
+    return f"at {event.time_s:.2f} s, x {event.x_mm:.0f}, y {event.y_mm:.0f} mm"
 
 
 def _wrapped(text: str, width: int, style: Style) -> Iterator[Line]:

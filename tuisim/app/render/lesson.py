@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
+from enum import StrEnum
 
 from rich.style import Style
 
@@ -25,6 +26,15 @@ _HINT = Style(color="#ffd75f")
 _CODE = Style(color="#ffd75f")
 _MARKS = {StepState.OPEN: ("·", _PALE), StepState.DONE: ("✓", _GOOD), StepState.SKIPPED: ("–", _PALE)}
 _GOAL_MARKS = {GoalState.OPEN: ("· ", _PALE), GoalState.MET: ("✓ ", _GOOD), GoalState.MISSED: ("✗ ", _BAD)}
+
+
+class Away(StrEnum):
+    """Where the keys go that are meant for the app."""
+
+    NO = "no"
+    EDITOR = "editor"
+    LOG = "log"
+
 
 NO_LESSON = "No lesson is open: M opens one"
 
@@ -53,6 +63,8 @@ class LessonView:
     """The step that has just been done."""
     story: str = ""
     """What the run did that has passed it; empty if it was not about a run."""
+    error: str = ""
+    """How the last run has failed; empty if it has not."""
     remark: str = ""
     """Why the last note, or the last program in another world, does not pass the step."""
     next_title: str = ""
@@ -81,7 +93,7 @@ class LessonPicture:
 
 
 def draw_lesson(
-    view: LessonView, page: int, first: int, width: int, height: int, is_away: bool = False
+    view: LessonView, page: int, first: int, width: int, height: int, away: Away = Away.NO
 ) -> LessonPicture:
     """Return the text for a panel of that inner size.
 
@@ -91,11 +103,11 @@ def draw_lesson(
         first: The first row of the text to show, if it has so many; -1: the title of the step.
         width: Columns.
         height: Rows.
-        is_away: Whether the app's keys work only after escape: the user types in the program, or is in a log.
+        away: Where the keys go: in the editor and in a log, the app's keys work only after escape.
     """
     if view.lesson is None:
         return LessonPicture(list(_wrapped(NO_LESSON, width, _PALE)))
-    text = list(_end(view, width, is_away) if page >= view.last_page else _page(view, page, width, is_away))
+    text = list(_end(view, width, away) if page >= view.last_page else _page(view, page, width, away))
     head = [_head(view, page, width)]
     room = max(0, height - len(head))
     if first < 0:
@@ -116,13 +128,13 @@ def _head(view: LessonView, page: int, width: int) -> Line:
     return [(title, _NAME), (" " * (width - len(title) - len(marks)), _PLAIN), *marks]
 
 
-def _page(view: LessonView, page: int, width: int, is_away: bool) -> Iterator[Line]:
+def _page(view: LessonView, page: int, width: int, away: Away) -> Iterator[Line]:
     """Yield a step: first what the last run has shown, then the text, the question, and the hints."""
     assert view.lesson is not None
     lesson, step = view.lesson, view.lesson.steps[page]
     is_current = page == view.at
     if is_current and view.done and not view.judgements:
-        yield from _done(view.done, view.story, width, is_away)
+        yield from _done(view.done, view.story, width, away)
     if page == 0 and not (is_current and view.judgements):
         yield from markdown_lines(lesson.intro, width)
         yield []
@@ -146,25 +158,32 @@ def _page(view: LessonView, page: int, width: int, is_away: bool) -> Iterator[Li
     yield []
     for number, hint in enumerate(step.hints[: view.hints], start=1):
         yield from _wrapped(f"Hint {number}: {hint}", width, _HINT)
-    yield from _wrapped(_to_do(view, step, is_away), width, _PALE)
+    yield from _wrapped(_to_do(view, step, away), width, _PALE)
     if view.hints < len(step.hints):
-        yield from _wrapped(f"{_escape(is_away)}Y shows hint {view.hints + 1} of {len(step.hints)}.", width, _PALE)
+        yield from _wrapped(f"{_escape(away)}Y shows hint {view.hints + 1} of {len(step.hints)}.", width, _PALE)
     if page == 0 and not view.judgements and not view.hints:
         # Last: in a low terminal, the task stays in view.
         yield []
         yield from _wrapped(f"On a real robot: {lesson.why}", width, _PALE)
 
 
-def _escape(is_away: bool) -> str:
-    return "escape, then " if is_away else ""
+_RUN_KEYS = {
+    Away.NO: "d edits the program, R runs it",
+    Away.EDITOR: "ctrl+r runs the program",
+    Away.LOG: "escape, then R runs the program",
+}
 
 
-def _done(step: Step, story: str, width: int, is_away: bool) -> Iterator[Line]:
+def _escape(away: Away) -> str:
+    return "" if away is Away.NO else "escape, then "
+
+
+def _done(step: Step, story: str, width: int, away: Away) -> Iterator[Line]:
     """Yield that a step has just been done, by what, why that was right, and how to read it again."""
     yield from _wrapped(f"✓ {step.title}", width, _GOOD)
     yield from _wrapped(story, width, _PALE)
     yield from _wrapped(step.why, width, _PLAIN)
-    yield from _wrapped(f"{_escape(is_away)}M shows the steps before again.", width, _PALE)
+    yield from _wrapped(f"{_escape(away)}M shows the steps before again.", width, _PALE)
     yield []
 
 
@@ -181,6 +200,8 @@ def _result(view: LessonView, step: Step, width: int) -> Iterator[Line]:
     if view.is_elsewhere and not step.check.anywhere:
         way = "" if view.in_run else ": m moves the robot to its start, then R"
         yield from _wrapped(f"This run began elsewhere{way}.", width, _BAD)
+    if view.error:
+        yield from _wrapped(f"The program stopped with an error: {view.error}.", width, _BAD)
     by_name = {each.goal.name: each for each in view.judgements}
     # What was missed comes first: in a low terminal, the reason is in view.
     for name in sorted(step.check.goals, key=lambda name: by_name[name].state is not GoalState.MISSED):
@@ -188,23 +209,22 @@ def _result(view: LessonView, step: Step, width: int) -> Iterator[Line]:
         mark, style = _GOAL_MARKS[judgement.state]
         for at, row in enumerate(textwrap.wrap(judgement.goal.say or name, max(1, width - 2))):
             yield [(mark if not at else "  ", style), (row, _PLAIN)]
-        if judgement.state is GoalState.MISSED:
+        # After an error, what is missing says nothing: the error is what there is to mend.
+        if judgement.state is GoalState.MISSED and not view.error:
             yield from _wrapped(judgement.reason, width, _BAD, "  ", "  ")
             if judgement.goal.hint:
                 yield from _wrapped(judgement.goal.hint, width, _HINT, "  ", "  ")
     yield []
 
 
-def _to_do(view: LessonView, step: Step, is_away: bool) -> str:
+def _to_do(view: LessonView, step: Step, away: Away) -> str:
     """Return what the step waits for, or the keys that do it."""
     match step.check:
         case Run(times=times, seeds=seeds):
             count = f" {view.good_runs} of {times} runs{' with other seeds' if seeds else ''}." if times > 1 else ""
-            words = (
-                f"{_escape(True)}R runs the program.{count}" if is_away else f"d edits the program, R runs it.{count}"
-            )
+            words = f"{_RUN_KEYS[away]}.{count}"
         case Question(choices=choices):
-            words = f"{_escape(is_away)}Q types {'the number of your choice' if choices else 'your answer'}."
+            words = f"{_escape(away)}Q types {'the number of your choice' if choices else 'your answer'}."
         case Watch(expression=expression):
             words = f"Next: watch {expression}."
         case Break():
@@ -220,7 +240,7 @@ def _to_do(view: LessonView, step: Step, is_away: bool) -> str:
     return words
 
 
-def _end(view: LessonView, width: int, is_away: bool) -> Iterator[Line]:
+def _end(view: LessonView, width: int, away: Away) -> Iterator[Line]:
     """Yield the end of a lesson: what it is good for, and the model answer if every step was done."""
     assert view.lesson is not None
     skipped = sum(state is StepState.SKIPPED for state in view.states)
@@ -230,7 +250,7 @@ def _end(view: LessonView, width: int, is_away: bool) -> Iterator[Line]:
         return
     yield from _wrapped("✓ The lesson is done." if not skipped else "The end of the lesson.", width, _GOOD)
     following = (
-        f"{_escape(is_away)}M, then enter: the next lesson, {view.next_title}."
+        f"{_escape(away)}M, then enter: the next lesson, {view.next_title}."
         if view.next_title
         else "This was the last lesson."
     )
@@ -238,7 +258,7 @@ def _end(view: LessonView, width: int, is_away: bool) -> Iterator[Line]:
     yield from _wrapped(following, width, _HINT)
     yield []
     if view.done:
-        yield from _done(view.done, view.story, width, is_away)
+        yield from _done(view.done, view.story, width, away)
     yield from _wrapped(f"On a real robot: {view.lesson.why}", width, _PLAIN)
     yield []
     if skipped:
