@@ -131,8 +131,8 @@ def test_not_while_it_runs_but_after_it_was_killed(start: Start) -> None:
     with pytest.raises(LogError, match="still running"):
         compact_run(stored)
     os.kill(handle._process.pid, signal.SIGKILL)
-    handle._process.wait()
+    handle.close()
     before = RunStore().load_run(handle.run_id).telemetry.array().tobytes()
-    compact_run(stored)
+    compact_run(RunStore().load_run(handle.run_id))
     assert packed(handle.folder)
     assert RunStore().load_run(handle.run_id).telemetry.array().tobytes() == before

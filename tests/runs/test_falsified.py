@@ -8,7 +8,13 @@ from pathlib import Path
 import pytest
 
 from tests.running import PATIENCE_S, Start
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.errors import LogError
 from tuisim.protocol import End
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.store import RunStore, compact_run
+from tuisim.source import Program
 
 FILES = """
 import os, struct
@@ -131,3 +137,17 @@ def test_a_live_run_is_falsified_while_it_goes_on(start: Start) -> None:
     ended = handle.wait(PATIENCE_S)
     assert ended is not None
     assert (ended.end, ended.tick) == (End.FALSIFIED, 0)
+
+
+@pytest.mark.usefixtures("home")
+def test_nobody_packs_a_run_before_its_end_is_stored() -> None:
+    handle = start_run(Program("a.py", "print(1)", "none"), build_run_spec(Settings()), RunOptions())
+    store = RunStore()
+    # Its process is gone, but what it left has not been looked at.
+    handle._process.wait()
+    with pytest.raises(LogError, match="is still running"):
+        compact_run(store.load_run(handle.run_id))
+    while handle.ended is None:
+        handle.pump()
+    assert handle.ended.end is End.FINISHED
+    compact_run(store.load_run(handle.run_id))

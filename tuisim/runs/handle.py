@@ -207,6 +207,8 @@ class RunHandle:
         self._announced_at = 0.0
         self.unstored = ""
         """Why the run or its end is not stored; empty if it is."""
+        # Held beyond the end of the process: until its end is stored, nobody else may pack the run.
+        self._lock_fd = os.dup(run.lock_fd)
         try:
             self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(
                 run.folder,
@@ -217,6 +219,7 @@ class RunHandle:
                 _needs(program, field) if isolated else None,
             )
         except OSError as error:
+            os.close(self._lock_fd)
             self._store.forget(run.id)
             what = error.strerror or str(error)
             raise HostError(f"the program's process cannot be started: {what}", str(run.folder)) from error
@@ -387,6 +390,8 @@ class RunHandle:
             self.unstored = self._what_is_wrong(error)
             summary = f"{final.summary}; its end" if final.summary else "its end"
             self.ended = replace(final, summary=f"{summary} cannot be stored: {self.unstored}")
+        finally:
+            os.close(self._lock_fd)
 
     def stored(self) -> StoredRun:
         """Return the stored run, including its end even if that could not be written.
