@@ -181,13 +181,7 @@ class RunHandle:
         self._options, self._store = options, store
         self._run = run = store.new_run(program, spec, field.to_plain(), options.to_plain(), options.live)
         self.run_id, self.number, self.folder = run.id, run.number, run.folder
-        if program.modules_from is not None:
-            try:
-                copy_modules(program.modules_from, run.folder)
-            except LogError:
-                os.close(run.lock_fd)
-                store.forget(run.id)
-                raise
+        self._copy_modules()
         self.ended: Ended | None = None
         self.started = False
         """Whether the child has reached the program's first line."""
@@ -230,6 +224,16 @@ class RunHandle:
         self._quota = Quota(self._process.pid, writable) if isolated else None
         self._exceeded = self._falsified = ""
         """Which limit an isolated program has exceeded; why what the child does is not what the simulation does."""
+
+    def _copy_modules(self) -> None:
+        if self.program.modules_from is None:
+            return
+        try:
+            copy_modules(self.program.modules_from, self.folder)
+        except LogError:
+            os.close(self._run.lock_fd)
+            self._store.forget(self.run_id)
+            raise
 
     @property
     def answers(self) -> tuple[str, ...]:
