@@ -18,8 +18,8 @@ from tuisim.breakpoints import (
     moved,
     parse_break,
     parse_breakpoints,
-    quantities,
 )
+from tuisim.core.sensors import columns_of
 from tuisim.core.spec import RobotSpec
 from tuisim.errors import ConfigError
 
@@ -30,15 +30,18 @@ RULES: dict[str, tuple[BreakRule, str]] = {
     "line 12": (LineBreak(12), "12"),
     "12 if x > 3": (LineBreak(12, "x > 3"), "12 if x > 3"),
     "  7   if  a[0] ": (LineBreak(7, "a[0]"), "7 if a[0]"),
-    "left.red% < 10": (ValueBreak("left.red%", "<", 10.0), "left.red% < 10"),
-    "left sensor red % < 10": (ValueBreak("left.red%", "<", 10.0), "left.red% < 10"),
-    "right.color changes": (ValueBreak("right.color", "changes"), "right.color changes"),
-    "left.color = Blue": (ValueBreak("left.color", "==", 2.0), "left.color == Blue"),
-    "left.color == Blue": (ValueBreak("left.color", "==", 2.0), "left.color == Blue"),
-    "ultrasonic<200": (ValueBreak("ultrasonic", "<", 200.0), "ultrasonic < 200"),
-    "ultrasonic sensor <= 2.5e2": (ValueBreak("ultrasonic", "<=", 250.0), "ultrasonic <= 250"),
-    "gyro > 90": (ValueBreak("gyro", ">", 90.0), "gyro > 90"),
-    "gyro.rate != 0": (ValueBreak("gyro.rate", "!=", 0.0), "gyro.rate != 0"),
+    "left_red_pc < 10": (ValueBreak("left_red_pc", "<", 10.0), "left_red_pc < 10"),
+    "left.red% < 10": (ValueBreak("left_red_pc", "<", 10.0), "left_red_pc < 10"),
+    "left red % < 10": (ValueBreak("left_red_pc", "<", 10.0), "left_red_pc < 10"),
+    "left sensor red % < 10": (ValueBreak("left_red_pc", "<", 10.0), "left_red_pc < 10"),
+    "left.red < 10": (ValueBreak("left_red", "<", 10.0), "left_red < 10"),
+    "right.color changes": (ValueBreak("right_color", "changes"), "right_color changes"),
+    "left.color = Blue": (ValueBreak("left_color", "==", 2.0), "left_color == Blue"),
+    "left.color == Blue": (ValueBreak("left_color", "==", 2.0), "left_color == Blue"),
+    "ultrasonic<200": (ValueBreak("ultrasonic_mm", "<", 200.0), "ultrasonic_mm < 200"),
+    "ultrasonic sensor <= 2.5e2": (ValueBreak("ultrasonic_mm", "<=", 250.0), "ultrasonic_mm <= 250"),
+    "gyro > 90": (ValueBreak("gyro_deg", ">", 90.0), "gyro_deg > 90"),
+    "gyro.rate != 0": (ValueBreak("gyro_rate_dps", "!=", 0.0), "gyro_rate_dps != 0"),
     "x_mm > 1000": (ValueBreak("x_mm", ">", 1000.0), "x_mm > 1000"),
     "time 3.5": (TimeBreak(3.5), "time 3.5"),
     "time 3.5 s": (TimeBreak(3.5), "time 3.5"),
@@ -89,9 +92,10 @@ def test_what_is_no_break_says_why_and_what_is_allowed(text: str, why: str) -> N
     assert refused.value.hint
 
 
-def test_every_quantity_of_a_robot_can_be_compared_and_without_one_any_name() -> None:
-    for name in quantities(ROBOT):
-        assert parse_break(f"{name} > 1", ROBOT).rule == ValueBreak(name, ">", 1.0)
+def test_every_column_of_a_robot_can_be_compared_and_without_one_any_name() -> None:
+    for column in columns_of(ROBOT):
+        for name in (column.name, *column.also):
+            assert parse_break(f"{name} > 1.5", ROBOT).rule == ValueBreak(column.name, ">", 1.5)
     assert parse_break("middle.red > 1").rule == ValueBreak("middle.red", ">", 1.0)
 
 

@@ -14,7 +14,6 @@ from tests.runtime.debugging import Driver
 from tuisim.app.setup.fields import find
 from tuisim.app.setup.next_run import plan_of_spec
 from tuisim.app.snapshot import RunPhase, further_readings, snapshot_of
-from tuisim.breakpoints import quantities
 from tuisim.config.robots import load_robot, save_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
@@ -110,8 +109,9 @@ def test_the_settings_have_a_field_for_each_of_its_numbers(mount: Mount) -> None
 def read_out(kind: SensorKind) -> StoredRun:
     """A run that reads all that a sensor has, and was held when its first quantity was met."""
     mount = mount_of(kind)
-    spec = run_of(robot_with(mount, sensor_of(mount)))
-    met = f"{quantities(spec.robot)[0]} > -1000"
+    sensor = sensor_of(mount)
+    spec = run_of(robot_with(mount, sensor))
+    met = f"{kind.names(sensor)[0]} > -1000"
     handle = start_run(Program("reads.py", READS_ALL, "none"), spec, RunOptions(live=True, speed=0.0, breaks=(met,)))
     try:
         driver = Driver(handle)
@@ -134,7 +134,7 @@ def test_a_program_reads_it_in_every_mode(kind: SensorKind) -> None:
 def test_it_is_in_the_telemetry_as_measured(kind: SensorKind) -> None:
     run = read_out(kind)
     (sensor,) = run.spec.robot.sensors
-    names = kind.columns(sensor)
+    names = kind.names(sensor)
     frame = telemetry_frame(run)
     assert set(frame.columns) >= {"time", *MOTION_COLUMNS, *names, "line"}
     assert all(name.startswith(f"{sensor.name}_") for name in names)
@@ -156,7 +156,7 @@ def test_the_panels_show_it(kind: SensorKind) -> None:
         shown: dict[str, object] = {"color": now.colors, "ultrasonic": now.ultrasonic_mm, "gyro": now.spec.robot.gyro}
         assert shown[next(name for name, one in SENSORS.items() if one is kind)]
     else:
-        assert set(further_readings(instant, run.spec, field)) == set(kind.columns(sensor))
+        assert set(further_readings(instant, run.spec, field)) == set(kind.names(sensor))
 
 
 def test_kinds_are_told_apart_by_their_specs() -> None:

@@ -4,9 +4,8 @@
 | --- | --- |
 | `12` | line 12 is about to run (or the next line of code, if 12 is blank or a comment) |
 | `12 if x > 3` | … and the expression is true there |
-| `left.red% < 10`, `ultrasonic <= 200`, `gyro > 90` | this becomes true, checked after each tick |
-| `bumper_pressed > 0`, `x_mm > 1000` | the same for another sensor of the robot, or for its pose |
-| `left.color changes`, `left.color == Blue` | the value changes, or becomes the given colour |
+| `left_red_pc < 10`, `ultrasonic_mm <= 200`, `x_mm > 1000` | this becomes true, checked after each tick |
+| `left_color changes`, `left_color == Blue` | the value changes, or becomes the given colour |
 | `sample Colour < 50`, `sample Colour changes`, `sample Colour` | a printed sample matches |
 | `print matches REGEX` | a printed line matches |
 | `time 3.5` | 3.5 simulated seconds have passed |
@@ -21,32 +20,22 @@ from __future__ import annotations
 import ast
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 
+from tuisim.core.columns import column_name
 from tuisim.core.comparison import COMPARE, comparison_form, comparison_in, finite_number
-from tuisim.core.sensors import mounted
-from tuisim.core.sensors.color import COLOR_NAMES, ColorReading
-from tuisim.core.spec import ColorSensorSpec, GyroSpec, RobotSpec, UltrasonicSpec
-from tuisim.errors import ConfigError, see_page
+from tuisim.core.sensors import columns_of
+from tuisim.core.sensors.color import COLOR_NAMES
+from tuisim.core.spec import RobotSpec
+from tuisim.errors import ConfigError, nearest, see_page
 
 CHANGES, SEEN = "changes", "is seen"
 """Relations without a number: the value has changed; a sample was printed, with any value."""
 
-POSE_NAMES = ("x_mm", "y_mm", "heading_deg")
-WHEEL_NAMES = ("left_position_deg", "right_position_deg", "left_speed_dps", "right_speed_dps")
-COLOR_PARTS: Mapping[str, Callable[[ColorReading], float]] = {
-    "red": lambda seen: seen.red,
-    "green": lambda seen: seen.green,
-    "blue": lambda seen: seen.blue,
-    "red%": lambda seen: seen.red_percent,
-    "mean%": lambda seen: seen.mean_percent,
-    "color": lambda seen: seen.code,
-}
-"""Quantities of a colour sensor, by their name after the sensor's name and a dot."""
 ALLOWED = (
-    f"{comparison_form()}, such as left.red% < 10 · x_mm > 1000 · sample Colour < 50; or 12 · 12 if x > 3 · "
-    "left.color changes · print matches REGEX · time 3.5 · stall"
+    f"{comparison_form()}, such as left_red_pc < 10 · x_mm > 1000 · sample Colour < 50; or 12 · 12 if x > 3 · "
+    "left_color changes · print matches REGEX · time 3.5 · stall"
 )
 
 
@@ -61,10 +50,10 @@ class LineBreak:
 
 @dataclass(frozen=True, slots=True)
 class ValueBreak:
-    """Pauses on a value of a sensor or of the robot's pose."""
+    """Pauses on a value of a sensor or of the robot's motion."""
 
-    quantity: str
-    """One of `quantities(robot)`."""
+    column: str
+    """Name of a column, see `core.columns`."""
     relation: str
     """An `Operator`, or `CHANGES`."""
     number: float = 0.0
@@ -117,7 +106,7 @@ class Breakpoint:
 
 
 _LINE = re.compile(r"(?:line\s+)?(\d+)(?:\s+if\s+(.*))?", re.DOTALL)
-_WORDY = re.compile(r"(?:sensor\s+)?(\w+)\s+sensor(?:\s+(\w+)\s*(%)?)?")
+_NAME = re.compile(r"\w+(?:[. ]\w+)*\s*%?")
 
 
 def parse_break(text: str, robot: RobotSpec | None = None) -> Breakpoint:
@@ -159,22 +148,6 @@ def moved(one: Breakpoint, line: int) -> Breakpoint:
         return one
     rule = LineBreak(line, one.rule.condition)
     return Breakpoint(rule, _common_text(rule, one.text), one.disabled)
-
-
-def quantities(robot: RobotSpec) -> tuple[str, ...]:
-    """Return the names of the values that a breakpoint can compare, for a robot."""
-    names: list[str] = []
-    for kind, sensor in mounted(robot):
-        match sensor:
-            case ColorSensorSpec():
-                names += [f"{sensor.name}.{part}" for part in COLOR_PARTS]
-            case GyroSpec():
-                names += [sensor.name, f"{sensor.name}.rate"]
-            case UltrasonicSpec():
-                names.append(sensor.name)
-            case _:
-                names += kind.columns(sensor)
-    return (*names, *POSE_NAMES, *WHEEL_NAMES)
 
 
 def _refuse(text: str, why: str, hint: str = f"{ALLOWED}; {see_page('breakpoints')}") -> ConfigError:
@@ -255,12 +228,15 @@ def _value_rule(text: str, robot: RobotSpec | None) -> ValueBreak:
     written, relation, value = _relation(text)
     if not relation:
         raise _refuse(text, "is not a breakpoint")
-    name = _quantity(written)
-    if robot is not None and name not in quantities(robot):
-        raise _refuse(text, f"this robot has no {written!r}", f"one of {', '.join(quantities(robot))}")
-    if not re.fullmatch(r"\w+(\.(rate|" + "|".join(map(re.escape, COLOR_PARTS)) + r"))?", name):
+    name = written
+    if robot is not None:
+        columns = columns_of(robot)
+        name = column_name(written, columns) or ""
+        if not name:
+            raise _refuse(text, f"this robot has no {written!r}", nearest(written, (one.name for one in columns)))
+    if not _NAME.fullmatch(name):
         raise _refuse(text, f"there is no {written!r}")
-    if name.endswith(".color") and value in COLOR_NAMES:
+    if is_color(name) and value in COLOR_NAMES:
         return ValueBreak(name, relation, float(COLOR_NAMES.index(value)))
     return ValueBreak(name, relation, _number(text, value) if value else 0.0)
 
@@ -274,12 +250,9 @@ def _relation(text: str) -> tuple[str, str, str]:
     return (found.name, found.operator, found.value) if found and found.operator in COMPARE else (text, "", "")
 
 
-def _quantity(written: str) -> str:
-    """Return the normalized name of a quantity; `left sensor red %` is `left.red%`."""
-    found = _WORDY.fullmatch(written)
-    if not found:
-        return written.replace(" %", "%")
-    return f"{found[1]}.{found[2]}{found[3] or ''}" if found[2] else found[1]
+def is_color(column: str) -> bool:
+    """Return whether the values of a column are codes of colours, which have names."""
+    return column.endswith(("_color", ".color"))
 
 
 def _number(text: str, written: str, least: float = -math.inf) -> float:
@@ -296,7 +269,7 @@ def _common_text(rule: BreakRule, written: str) -> str:
     match rule:
         case LineBreak(line=line, condition=condition):
             return f"{line} if {condition}" if condition else str(line)
-        case ValueBreak(quantity=name, relation=relation) | SampleBreak(name=name, relation=relation):
+        case ValueBreak(column=name, relation=relation) | SampleBreak(name=name, relation=relation):
             head = f"sample {name}" if isinstance(rule, SampleBreak) else name
             if relation in COMPARE:
                 return f"{head} {relation} {_shown_number(rule)}"
@@ -310,6 +283,6 @@ def _common_text(rule: BreakRule, written: str) -> str:
 
 
 def _shown_number(rule: ValueBreak | SampleBreak) -> str:
-    if isinstance(rule, ValueBreak) and rule.quantity.endswith(".color") and rule.number in range(len(COLOR_NAMES)):
+    if isinstance(rule, ValueBreak) and is_color(rule.column) and rule.number in range(len(COLOR_NAMES)):
         return COLOR_NAMES[int(rule.number)]
     return f"{rule.number:.12g}"

@@ -13,11 +13,13 @@ from tuisim.charts.canvas import Curve, TextRun, canvas
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState
 from tuisim.charts.traces import Traces
 
+TELEMETRY = ("left_red_pc", "gyro_deg")
+
 
 def traces(*names: str) -> Traces:
     made = Traces()
     for at, name in enumerate(names):
-        made.append(name, [0.0, 1.0, 2.0, 3.0], [at + 0.0, at + 100.0, at + 50.0, at + 50.0])
+        made.append(name, [0.0, 1.0, 2.0, 3.0], [at + 0.0, at + 100.0, at + 50.0, at + 50.0], name not in TELEMETRY)
     return made
 
 
@@ -32,7 +34,7 @@ SIZES = [(20, 6), (38, 8), (72, 16), (160, 20)]
 @pytest.mark.parametrize("cursor_s", [None, 1.5], ids=["no cursor", "cursor"])
 @pytest.mark.parametrize("grey", [False, True], ids=["colours", "grey"])
 def test_it_fits(width: int, height: int, cursor_s: float | None, grey: bool) -> None:
-    made = traces("Colour", "Light_left", "Ultrasonic", "left red %", "gyro °", "a_very_long_name_of_a_trace")
+    made = traces("Colour", "Light_left", "Ultrasonic", "left_red_pc", "gyro_deg", "a_very_long_name_of_a_trace")
 
     picture = ChartPainter().paint(made, ChartState("Colour", cursor_s, grey=grey), width, height)
 
@@ -58,7 +60,7 @@ def test_an_empty_chart_says_how_to_log(width: int, height: int) -> None:
     [
         ("Colour", [60.0, 98.8], ChartState(), "0"),
         ("Light_left", [180.0, 255.0], ChartState(), "0"),
-        ("left red %", [60.0, 98.8], ChartState(), "0"),
+        ("left_red_pc", [60.0, 98.8], ChartState(), "0"),
         ("right_green #2", [180.0, 200.0], ChartState(), "0"),
         ("Colour", [60.0, 98.8], ChartState(zoomed=True), "60"),
         ("Light", [600.0, 980.0], ChartState(), "600"),
@@ -126,10 +128,18 @@ def test_a_name_that_does_not_fit_ends_in_an_ellipsis() -> None:
     assert rows[0].rstrip() == "[x] a_name_that_i…"
 
 
-def test_telemetry_is_not_ticked_at_first() -> None:
-    rows = text(ChartPainter().paint(traces("gyro °", "Colour"), ChartState(), 80, 16))
+def test_a_variable_with_the_name_of_a_column_is_the_programs() -> None:
+    made = Traces()
+    for logged, value in ((False, 1.0), (True, 2.0), (False, 3.0)):
+        made.append("gyro_deg", [value], [value], logged)
+    (trace,) = made
+    assert (trace.logged, trace.values.tolist()) == (True, [2.0])
 
-    assert rows[0].startswith("[x] Colour  [ ] gyro °")
+
+def test_telemetry_is_not_ticked_at_first() -> None:
+    rows = text(ChartPainter().paint(traces("gyro_deg", "Colour"), ChartState(), 80, 16))
+
+    assert rows[0].startswith("[x] Colour  [ ] gyro_deg")
 
 
 def test_the_selected_box_is_in_sight() -> None:

@@ -52,7 +52,7 @@ def test_a_break_may_end_the_run(program: str, capsys: pytest.CaptureFixture[str
 
 def test_a_break_for_another_robot_is_refused(program: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command(["run", program, "--break", "middle.red < 3"]) == 2
-    assert "this robot has no 'middle.red' (one of left.red," in capsys.readouterr().err
+    assert "this robot has no 'middle.red' (did you mean left_red?)" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

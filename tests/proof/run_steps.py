@@ -90,7 +90,7 @@ print(input('again? '))
 )
 """Each does the same each time."""
 SUFFIXES = (".csv", ".jsonl", ".parquet", ".arrow")
-BREAKS = ("5", "3", "9 if x > 500", "x_mm > 1100", "time 0.5", "sample A < 50", "print matches 1", "left.color changes")
+BREAKS = ("5", "3", "9 if x > 500", "x_mm > 1100", "time 0.5", "sample A < 50", "print matches 1", "left_color changes")
 MOST_LIVE, MOST_TICKS = 2, 3000
 
 

@@ -101,7 +101,7 @@ def sensors_one_by_one(run: StoredRun, field: Field) -> pd.DataFrame:
         rows.append({
             name: value
             for kind, sensor in mounted(run.spec.robot)
-            for name, value in zip(kind.columns(sensor), kind.measure(sensor, instant, run.spec, field), strict=True)
+            for name, value in zip(kind.names(sensor), kind.measure(sensor, instant, run.spec, field), strict=True)
         })  # fmt: skip
     return pd.DataFrame(rows)
 

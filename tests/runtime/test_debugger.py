@@ -116,7 +116,7 @@ def test_running_to_a_line_and_ticks_from_there(debug: Callable[..., Driver]) ->
 
 BREAKS = {
     "ultrasonic < 1500": "ultrasonic",
-    "left.color changes": "Black",
+    "left_color changes": "Black",
     "x_mm > 200": "200",
     "time 0.25": "0.25",
     "sample N >= 3": "N: 3",

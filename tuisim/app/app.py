@@ -401,12 +401,12 @@ class LabApp(PanelMessages):
         self.brick_hint.shown(news.rows)
         if self.panel_area.output:
             self.panel_area.output.add(news.rows)
-        self._append(sample_series(news.rows))
+        self._append(sample_series(news.rows), logged=True)
 
-    def _append(self, series: Series) -> None:
+    def _append(self, series: Series, logged: bool) -> None:
         if chart := self.panel_area.chart:
             for name, (times, values) in series.items():
-                chart.append(name, times, values)
+                chart.append(name, times, values, logged)
 
     def _ask_user(self, prompt: str) -> None:
         self.panel_area.bring("output")
@@ -455,7 +455,7 @@ class LabApp(PanelMessages):
             if xs:
                 world.extend_trace(xs, ys, self.feed.recording.spec.robot.pen)
         if field := self._charted_field():
-            self._append(self.feed.chart_series(field))
+            self._append(self.feed.chart_series(field), logged=False)
 
     def _charted_field(self) -> Field | None:
         """Return the mat that the chart's readings are taken from; None if no chart or no mat."""

@@ -11,7 +11,7 @@ from typing import assert_never
 from tuisim.app.setup.next_run import NextRun
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
-from tuisim.core.sensors import color, gyro, ultrasonic, with_kinds
+from tuisim.core.sensors import color, gyro, sources, ultrasonic, with_kinds
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
@@ -216,19 +216,17 @@ def further_readings(instant: Instant, spec: RunSpec, field: Field) -> dict[str,
     """Return the measurements of sensors that not every robot has, by telemetry column."""
     values: dict[str, float] = {}
     for kind, sensor in with_kinds(spec.robot.further_sensors):
-        values |= zip(kind.columns(sensor), kind.measure(sensor, instant, spec, field), strict=True)
+        values |= zip(kind.names(sensor), kind.measure(sensor, instant, spec, field), strict=True)
     return values
 
 
 def telemetry_traces(instant: Instant, spec: RunSpec, field: Field) -> dict[str, float]:
-    """Return the chart's telemetry of a moment, which needs no prints, by trace name."""
-    values = {f"{s.name} red %": color.reading(s, instant, field).red_percent for s in spec.robot.color_sensors}
-    if spec.robot.ultrasonic:
-        values["ultrasonic mm"] = float(ultrasonic.reading_mm(spec.robot.ultrasonic, instant, spec.world))
-    if spec.robot.gyro:
-        values["gyro °"] = float(gyro.angle_deg(instant))
-    further = further_readings(instant, spec, field)
-    return values | {column.replace("_", " "): value for column, value in further.items()}
+    """Return the chart's telemetry of a moment, which needs no prints, by the name of its column."""
+    values: dict[str, float] = {}
+    for source in sources(spec.robot):
+        if names := {column.name for column in source.columns if column.is_traced}:
+            values |= source.values(names, source.measure(instant, spec, field), spec.robot)
+    return values
 
 
 def speed_label(speed: float) -> str:

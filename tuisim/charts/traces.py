@@ -33,15 +33,14 @@ class Trace:
     """One trace: points in order of time, a colour, and whether it is ticked.
 
     Args:
-        name: As it was logged; telemetry has a unit after a space.
+        name: As it was logged, or the name of a column of telemetry.
         number: Chooses colour and mark.
+        logged: Whether the program has printed it, rather than the app measured it.
     """
 
-    def __init__(self, name: str, number: int) -> None:
+    def __init__(self, name: str, number: int, logged: bool = True) -> None:
         self.name = name
-        self.logged = " " not in name
-        """Printed by the program rather than measured by the app."""
-        self.on = self.logged
+        self.on = self.logged = logged
         self.rgb = TRACE_COLORS[number % len(TRACE_COLORS)]
         self.mark = MARKS[number % len(MARKS)]
         self.other_scale = name.lower().startswith(_OTHER_SCALE)
@@ -112,13 +111,19 @@ class Traces:
     def __len__(self) -> int:
         return len(self._by_name)
 
-    def append(self, name: str, times_s: Sequence[float], values: Sequence[float]) -> None:
-        """Add points to a trace, which is made if it is new."""
+    def append(self, name: str, times_s: Sequence[float], values: Sequence[float], logged: bool = True) -> None:
+        """Add points to a trace, which is made if it is new.
+
+        Where a program logs a variable with the name of a column of telemetry, the trace is the program's.
+        """
         trace = self._by_name.get(name) or self._cleared.pop(name, None)
-        if trace is None:
+        if trace is not None and trace.logged and not logged:
+            self._by_name[name] = trace
+            return
+        if trace is None or trace.logged != logged:
             # Logged traces use colours from the front of the list, telemetry from the back.
-            alike = sum((" " in known) == (" " in name) for known in (*self._by_name, *self._cleared))
-            trace = Trace(name, -1 - alike if " " in name else alike)
+            alike = sum(known.logged == logged for known in (*self._by_name.values(), *self._cleared.values()))
+            trace = Trace(name, alike if logged else -1 - alike, logged)
         self._by_name[name] = trace
         trace.add(times_s, values)
 

@@ -101,7 +101,7 @@ _OPTIONS = (
     option("--json", is_flag=True, group=_REPORTS,
            help="Print one JSON object per program; program output goes to stderr."),
     option("--break", "breaks", multiple=True, metavar="TEXT", group=_BREAKPOINTS,
-           help="Set a breakpoint, reported on stderr: 12, 12 if x > 3, left.red% < 10, left.color changes, "
+           help="Set a breakpoint, reported on stderr: 12, 12 if x > 3, left_red_pc < 10, left_color changes, "
            "ultrasonic < 200, sample Colour < 50, print matches REGEX, time 3.5, stall; may be repeated."),
     option("--watch", "watches", multiple=True, metavar="EXPR", group=_BREAKPOINTS,
            help="Evaluate an expression at each breakpoint; may be repeated."),

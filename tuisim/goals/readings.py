@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from tuisim.core.sensors.color import columns
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
 from tuisim.errors import counted
 from tuisim.goals.evidence import Evidence, Moment, Span
@@ -82,7 +81,7 @@ def _light(records: Array, evidence: Evidence) -> Array:
     rows = []
     for sensor in evidence.spec.robot.color_sensors:
         channels = quiet_color_columns(records, sensor, evidence.mat)
-        red, green, blue = (channels[name].astype("i8") for name in columns(sensor))
+        red, green, blue = (channel.astype("i8") for channel in channels.values())
         rows += [red / 255 * 100, (red + green + blue) / 765 * 100, red]
     return np.array(rows).reshape(len(rows), len(records))
 
@@ -157,7 +156,7 @@ def _light_at_percent(records: Array, x_mm: float, y_mm: float, evidence: Eviden
 
 def _reflected_percent(records: Array, sensor: ColorSensorSpec, evidence: Evidence) -> Array:
     """Return what `reflected_light_intensity_pc` would be without noise, at every tick."""
-    red = quiet_color_columns(records, sensor, evidence.mat)[columns(sensor)[0]]
+    red, *_ = quiet_color_columns(records, sensor, evidence.mat).values()
     percent: Array = red.astype("i8") / 255 * 100
     return percent
 

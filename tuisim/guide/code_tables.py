@@ -11,7 +11,7 @@ from tuisim.config.options import OPTIONS
 from tuisim.config.profiles import SOURCES
 from tuisim.config.user_config import SETTINGS
 from tuisim.core.profile import MS, PROFILES, ProfileSpec
-from tuisim.core.sensors import mounted
+from tuisim.core.sensors import columns_of, mounted
 from tuisim.core.spec import RobotSpec
 from tuisim.guide.tables import Table, code
 from tuisim.logs.export import EXPORTERS
@@ -36,14 +36,19 @@ _MEANINGS = {
     "gyro_rate_dps": "rate of turn that the gyro measures",
     "line": "the source line that printed the sample, or that spent the time of the tick",
 }
-_COLOR = "{part} light that the {sensor} colour sensor sees, 0 to 255"
+_COLOR = {
+    "red_pc": "red light that the {sensor} colour sensor sees: `reflected_light_intensity_pc`",
+    "mean_pc": "mean of red, green and blue that the {sensor} colour sensor sees",
+    "color": "colour that the {sensor} colour sensor sees, in breakpoints by its name, such as Blue",
+}
+_CHANNEL = "{part} light that the {sensor} colour sensor sees, 0 to 255"
 
 
 def _meaning(name: str) -> str:
     if name in _MEANINGS:
         return _MEANINGS[name]
-    sensor, _, part = name.rpartition("_")
-    return _COLOR.format(sensor=sensor, part=part)
+    sensor, _, part = name.partition("_")
+    return _COLOR.get(part, _CHANNEL).format(sensor=sensor, part=part)
 
 
 def _columns(names: tuple[str, ...]) -> Table:
@@ -58,7 +63,7 @@ def samples() -> Table:
 
 def telemetry() -> Table:
     """Return the columns of the telemetry of the default robot."""
-    sensors = [name for kind, sensor in mounted(RobotSpec()) for name in kind.columns(sensor)]
+    sensors = [name for kind, sensor in mounted(RobotSpec()) for name in kind.names(sensor)]
     return _columns(("time", *MOTION_COLUMNS, *sensors, "line"))
 
 
@@ -119,15 +124,6 @@ def breakpoints() -> Table:
     return Table(cells[0], cells[2:])
 
 
-def quantities() -> Table:
-    """Return the values that a breakpoint can compare, for the default robot."""
-    return Table(("value", "of"), [(code(name), _owner(name)) for name in rules.quantities(RobotSpec())])
-
-
-def _owner(name: str) -> str:
-    sensor, dot, part = name.partition(".")
-    if name in _MEANINGS:
-        return _MEANINGS[name]
-    if sensor in ("left", "right"):
-        return f"the {sensor} colour sensor"
-    return f"the sensor {sensor}, {part} of change" if dot else f"the reading of the sensor {sensor}"
+def columns() -> Table:
+    """Return the columns that every run of the default robot has."""
+    return _columns(tuple(column.name for column in columns_of(RobotSpec())))

@@ -25,7 +25,7 @@ TABLES: Mapping[str, str] = {
     "settings": "guide.code_tables:settings",
     "profile-rules": "guide.code_tables:profile_rules",
     "breakpoints": "guide.code_tables:breakpoints",
-    "quantities": "guide.code_tables:quantities",
+    "columns": "guide.code_tables:columns",
     "samples": "guide.code_tables:samples",
     "telemetry": "guide.code_tables:telemetry",
     "formats": "guide.code_tables:formats",

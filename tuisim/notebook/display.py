@@ -99,7 +99,7 @@ def instrumentation(scene: Scene) -> list[Row]:
         ("RightMotor", f"{record.right_position_deg:.0f} counts, {record.right_speed_dps:.0f} °/s"),
     ]
     for kind, sensor in mounted(spec.robot):
-        values = dict(zip(kind.columns(sensor), kind.measure(sensor, instant, spec, field), strict=True))
+        values = dict(zip(kind.names(sensor), kind.measure(sensor, instant, spec, field), strict=True))
         name = getattr(sensor, "name", "gyro")
         shown = f"Sensor{_LEFT_RIGHT.index(name) + 1} ({name})" if name in _LEFT_RIGHT else name.capitalize()
         rows.append((shown, _reading(name, values)))

@@ -193,7 +193,7 @@ def robot_state(
     start, pose, instant = spec.world.start, record.pose, instant_of(record, spec, noise)
     measured: dict[str, float] = {}
     for kind, sensor in mounted(spec.robot):
-        measured.update(zip(kind.columns(sensor), kind.measure(sensor, instant, spec, field), strict=True))
+        measured.update(zip(kind.names(sensor), kind.measure(sensor, instant, spec, field), strict=True))
     seen = {sensor.name: values_text(with_alpha(rgb)) for sensor, rgb in arrays_at(spec, record, noise, field)}
     state: dict[str, Any] = {
         **_place("", pose.x_mm, pose.y_mm, _wrapped(pose.heading_deg, highest_deg)),

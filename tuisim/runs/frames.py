@@ -11,14 +11,14 @@ from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
+from tuisim.core.columns import MOTION, measured_names
 from tuisim.core.field import Field
 from tuisim.core.pen_marks import PenMarks
 from tuisim.core.profile import NS_PER_S
 from tuisim.core.sensors import SENSORS, mounted
-from tuisim.core.sensors.color import columns as color_columns
 from tuisim.core.sensors.color import disc_pixels_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, NoiseSpec, RunSpec
-from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
+from tuisim.core.tick_record import TICK_RECORD
 from tuisim.protocol import SetNoise, UserAction
 from tuisim.runs.records import TELEMETRY_FILE
 from tuisim.runs.run_folder import StoredRun, noise_at, open_mat
@@ -35,7 +35,7 @@ _POSE = ("x_mm", "y_mm", "heading_deg")
 SAMPLE_COLUMNS = ("index", "variable", "value", "time", "run", *_POSE, "line")
 """Columns of the samples frame, in order."""
 
-MOTION_COLUMNS = tuple(name for name, _ in TICK_FIELDS[2:9])
+MOTION_COLUMNS = measured_names(MOTION)
 """Columns of the telemetry frame that are copied from the recording."""
 
 _MOST = 1e15
@@ -169,7 +169,7 @@ def sensor_columns(records: Array, spec: RunSpec, actions: Sequence[UserAction],
         else:
             slow.append((kind, sensor))
     found.update(_measured(records, slow, noises, spec, field))
-    return {name: found[name] for kind, sensor in sensors for name in kind.columns(sensor)}
+    return {name: found[name] for kind, sensor in sensors for name in kind.names(sensor)}
 
 
 def quiet_color_columns(records: Array, sensor: ColorSensorSpec, field: Field) -> dict[str, Array]:
@@ -197,7 +197,7 @@ def quiet_color_columns(records: Array, sensor: ColorSensorSpec, field: Field) -
     table = np.frombuffer(field.sums[diameter], np.uint32).reshape(height, width, 3)
     sums[inside] = table[row[inside], col[inside]]
     means = sums / disc_pixels_of(diameter)
-    return {name: means[:, channel] for channel, name in enumerate(color_columns(sensor))}
+    return {name: means[:, channel] for channel, name in enumerate(SENSORS["color"].names(sensor))}
 
 
 def _noises(records: Array, spec: RunSpec, actions: Sequence[UserAction]) -> list[NoiseSpec]:
@@ -220,7 +220,7 @@ def _measured(
     """Return the columns of sensors that are measured tick by tick."""
     import numpy as np
 
-    names = [name for kind, sensor in sensors for name in kind.columns(sensor)]
+    names = [name for kind, sensor in sensors for name in kind.names(sensor)]
     rows = np.empty((len(records), len(names)))
     measures = [(kind.measure, sensor) for kind, sensor in sensors]
     pen = PenMarks(field, spec) if spec.world.pen_marks else None

@@ -16,7 +16,7 @@ from tuisim.charts.text_chart import ChartPainter, ChartPicture
 def fill(chart: Chart) -> None:
     for at in range(50):
         chart.append("Colour", [at / 10], [100.0 if at < 25 else 20.0])
-        chart.append("gyro °", [at / 10], [float(at)])
+        chart.append("gyro_deg", [at / 10], [float(at)], logged=False)
 
 
 def rows(app: PanelApp[Chart]) -> list[str]:
@@ -64,12 +64,12 @@ async def test_keys_tick_traces() -> None:
             seen.append(rows(app)[0].strip())
 
     assert seen == [
-        "[x] Colour  [ ] gyro °",
-        "[x] Colour  [x] gyro °",
-        "[ ] Colour  [x] gyro °",
-        "[ ] Colour  [x] gyro °",
-        "[ ] Colour  [ ] gyro °",
-        "[ ] Colour  [x] gyro °",
+        "[x] Colour  [ ] gyro_deg",
+        "[x] Colour  [x] gyro_deg",
+        "[ ] Colour  [x] gyro_deg",
+        "[ ] Colour  [x] gyro_deg",
+        "[ ] Colour  [ ] gyro_deg",
+        "[ ] Colour  [x] gyro_deg",
     ]
 
 
@@ -158,13 +158,13 @@ async def test_clearing_keeps_the_ticks() -> None:
         await opened(app, pilot)
         await pilot.press("2", "delete")
         empty = rows(app)
-        app.panel.append("gyro °", [0.0, 1.0], [1.0, 2.0])
+        app.panel.append("gyro_deg", [0.0, 1.0], [1.0, 2.0], logged=False)
         gyro = rows(app)[0]
         app.panel.append("Colour", [0.0, 1.0], [1.0, 2.0])
 
         assert any("print('Colour: ' + str(value))" in row for row in empty)
-        assert gyro.startswith("[x] gyro °")
-        assert rows(app)[0].startswith("[x] Colour  [x] gyro °")
+        assert gyro.startswith("[x] gyro_deg")
+        assert rows(app)[0].startswith("[x] Colour  [x] gyro_deg")
 
 
 async def test_it_is_not_drawn_more_often_than_can_be_seen(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -26,8 +26,8 @@ Entry = TypeVar("Entry")
 FORMS = (
     ("12", "line 12 is about to run"),
     ("12 if x > 3", "line 12 is about to run, and the expression is true"),
-    ("left.red% < 10", "a sensor, ultrasonic < 200, gyro > 90, x_mm > 1000"),
-    ("left.color changes", "the sensor sees another colour"),
+    ("left_red_pc < 10", "a column: ultrasonic_mm < 200, gyro_deg > 90, x_mm > 1000"),
+    ("left_color changes", "the sensor sees another colour"),
     ("sample Colour < 50", "also: sample Colour changes"),
     ("print matches black", "a printed line, by a regular expression"),
     ("time 3.5", "3.5 simulated seconds have passed"),

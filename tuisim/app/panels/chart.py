@@ -64,15 +64,16 @@ class Chart(LinesPanel, can_focus=True):
         self._dragging = False
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
 
-    def append(self, name: str, times_s: Sequence[float], values: Sequence[float]) -> None:
+    def append(self, name: str, times_s: Sequence[float], values: Sequence[float], logged: bool = True) -> None:
         """Add points to a trace.
 
         Args:
-            name: A logged NAME, or for telemetry a name with a unit after a space, which is off at first.
+            name: A logged NAME, or the name of a column of telemetry, which is off at first.
             times_s: Simulated times.
             values: As many values.
+            logged: Whether the program has printed them.
         """
-        self._traces.append(name, times_s, values)
+        self._traces.append(name, times_s, values, logged)
         self._changed()
 
     def clear(self) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import cos, radians, sin
 
+from tuisim.core.columns import Column
 from tuisim.core.field import OUTSIDE_DISC_RGB, Field, disc_pixels, disc_weights, weighted_mean
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.noise import disturb_pixels
@@ -160,12 +161,20 @@ def pixel_array(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
     return bytes(box)
 
 
-def columns(spec: ColorSensorSpec) -> tuple[str, ...]:
-    """Return the telemetry columns of a sensor."""
-    return f"{spec.name}_red", f"{spec.name}_green", f"{spec.name}_blue"
+def columns(spec: ColorSensorSpec) -> tuple[Column, ...]:
+    """Return the columns of a sensor: the channels, and what a program reads of them."""
+    name = spec.name
+    return (
+        Column(f"{name}_red"),
+        Column(f"{name}_green"),
+        Column(f"{name}_blue"),
+        Column(f"{name}_red_pc", lambda seen, _: ColorReading(*seen).red_percent, True, (f"{name}.red%",)),
+        Column(f"{name}_mean_pc", lambda seen, _: ColorReading(*seen).mean_percent, also=(f"{name}.mean%",)),
+        Column(f"{name}_color", lambda seen, _: ColorReading(*seen).code),
+    )
 
 
 def measure(spec: ColorSensorSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
-    """Return the values of `columns`: mean red, green and blue, 0 … 255."""
+    """Return what is measured of `columns`: mean red, green and blue, 0 … 255."""
     seen = reading(spec, instant, field)
     return seen.red, seen.green, seen.blue

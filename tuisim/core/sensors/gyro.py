@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tuisim.core.columns import Column
 from tuisim.core.field import Field
 from tuisim.core.spec import GyroSpec, RunSpec
 from tuisim.core.state import Instant
@@ -17,9 +18,13 @@ def rate_dps(instant: Instant) -> int:
     return round(-instant.turn_rate_dps)
 
 
-def columns(spec: GyroSpec) -> tuple[str, ...]:
-    """Return the telemetry columns of a gyro."""
-    return f"{spec.name}_deg", f"{spec.name}_rate_dps"
+def columns(spec: GyroSpec) -> tuple[Column, ...]:
+    """Return the columns of a gyro."""
+    name = spec.name
+    return (
+        Column(f"{name}_deg", is_traced=True, also=(name, f"{name} °")),
+        Column(f"{name}_rate_dps", also=(f"{name}.rate",)),
+    )
 
 
 def measure(spec: GyroSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:

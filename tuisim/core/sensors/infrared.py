@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from tuisim.core.columns import Column
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.sensors.ultrasonic import first_hit_mm, surfaces
@@ -80,9 +81,9 @@ def remote_bits(time_s: float, world: WorldSpec) -> int:
     return _REM_A_NONE + sum(_REM_A_BUTTONS.get(button, 0) for button in _pressed(1, time_s, world))
 
 
-def columns(spec: InfraredSpec) -> tuple[str, ...]:
-    """Return the telemetry columns of an infrared sensor."""
-    return (f"{spec.name}_proximity",)
+def columns(spec: InfraredSpec) -> tuple[Column, ...]:
+    """Return the column of an infrared sensor."""
+    return (Column(f"{spec.name}_proximity", is_traced=True),)
 
 
 def measure(spec: InfraredSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tuisim.core.columns import Column
 from tuisim.core.end_stops import end_flag
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose, world_point
@@ -29,9 +30,9 @@ def _meets(x_mm: float, y_mm: float, world: WorldSpec) -> bool:
     )
 
 
-def columns(spec: TouchSpec) -> tuple[str, ...]:
-    """Return the telemetry columns of a touch sensor."""
-    return (f"{spec.name}_pressed",)
+def columns(spec: TouchSpec) -> tuple[Column, ...]:
+    """Return the column of a touch sensor."""
+    return (Column(f"{spec.name}_pressed", is_traced=True),)
 
 
 def measure(spec: TouchSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:

@@ -6,6 +6,7 @@ import math
 from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
 
+from tuisim.core.columns import Column
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.noise import stream
@@ -129,9 +130,9 @@ def reading_mm(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> int:
     return max(0, min(round(spec.max_range_mm), round(distance + spec.noise_mm * share)))
 
 
-def columns(spec: UltrasonicSpec) -> tuple[str, ...]:
-    """Return the telemetry columns of an ultrasonic sensor."""
-    return (f"{spec.name}_mm",)
+def columns(spec: UltrasonicSpec) -> tuple[Column, ...]:
+    """Return the column of an ultrasonic sensor."""
+    return (Column(f"{spec.name}_mm", is_traced=True, also=(spec.name,)),)
 
 
 def measure(spec: UltrasonicSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:

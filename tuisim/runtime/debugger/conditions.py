@@ -11,22 +11,20 @@ from typing import Any
 
 from tuisim.breakpoints import (
     CHANGES,
-    COLOR_PARTS,
-    POSE_NAMES,
     SEEN,
-    WHEEL_NAMES,
     Breakpoint,
     PrintBreak,
     SampleBreak,
     StallBreak,
     TimeBreak,
     ValueBreak,
+    is_color,
 )
+from tuisim.core.columns import column_name
 from tuisim.core.comparison import COMPARE
 from tuisim.core.profile import NS_PER_S
-from tuisim.core.sensors import SensorKind, gyro, mounted, ultrasonic
-from tuisim.core.sensors.color import COLOR_NAMES, reading
-from tuisim.core.spec import ColorSensorSpec, GyroSpec, UltrasonicSpec
+from tuisim.core.sensors import columns_of, reader_of
+from tuisim.core.sensors.color import COLOR_NAMES
 from tuisim.runs.records import Stream
 from tuisim.runs.samples import parse_sample
 from tuisim.runtime.debugger.value_text import evaluate_truth
@@ -187,10 +185,10 @@ class Watcher:
             case StallBreak():
                 value, relation = self._stalled, Relation(">", 0.0)
             case ValueBreak():
-                value, relation = self._value_of(rule.quantity), Relation(rule.relation, rule.number)
+                value, relation = self._value_of(rule.column), Relation(rule.relation, rule.number)
         if value is None:
             return None
-        shown = partial(_shown, color=isinstance(rule, ValueBreak) and rule.quantity.endswith(".color"))
+        shown = partial(_shown, color=isinstance(rule, ValueBreak) and is_color(rule.column))
 
         def check() -> str:
             number = value()
@@ -205,43 +203,12 @@ class Watcher:
         sim = self._session.sim
         return float(sum(motor.blocked_ticks >= sim.stall_ticks for motor in (sim.left, sim.right, *sim.others)))
 
-    def _value_of(self, quantity: str) -> Value | None:
-        """Return a function that reads a quantity; None if this robot does not have it."""
-        session = self._session
-        sim = session.sim
-        for kind, sensor in mounted(sim.spec.robot):
-            if quantity in kind.columns(sensor):
-                return partial(self._column, kind, sensor, kind.columns(sensor).index(quantity))
-            name, _, part = quantity.partition(".")
-            if sensor.name != name:
-                continue
-            match sensor:
-                case ColorSensorSpec():
-                    of = COLOR_PARTS.get(part)
-                    if of is None:
-                        return None
-                    seen = of
-                    color = sensor
-                    return lambda: seen(reading(color, sim.instant(), session.field))
-                case UltrasonicSpec():
-                    distance_sensor = sensor
-                    return lambda: float(ultrasonic.reading_mm(distance_sensor, sim.instant(), sim.spec.world))
-                case GyroSpec():
-                    measure = gyro.rate_dps if part == "rate" else gyro.angle_deg
-                    return lambda: float(measure(sim.instant()))
-        return self._motion(quantity)
-
-    def _column(self, kind: SensorKind, sensor: Any, at: int) -> float:
-        sim = self._session.sim
-        return kind.measure(sensor, sim.instant(), sim.spec, self._session.field)[at]
-
-    def _motion(self, quantity: str) -> Value | None:
-        sim = self._session.sim
-        if quantity in POSE_NAMES:
-            return lambda: float(getattr(sim.pose, quantity))
-        if quantity in WHEEL_NAMES:
-            return lambda: float(getattr(sim.instant(), quantity))
-        return None
+    def _value_of(self, column: str) -> Value | None:
+        """Return a function that reads a column; None if this robot does not have it."""
+        session, sim = self._session, self._session.sim
+        robot = sim.spec.robot
+        read = reader_of(column_name(column, columns_of(robot)) or "", robot)
+        return None if read is None else lambda: read(sim.instant(), sim.spec, session.field)
 
 
 def _first(found: Iterator[tuple[str, str]]) -> tuple[str, str] | None:
