@@ -367,7 +367,13 @@ READINGS = {
         "log = { name = 'Edge', levels = [50] }",
         (says("Grey: 50"), says("Edge 46.67", 3)),
         "missed",
-        reason="It logged Grey. Line 3 printed 'Edge 46.67': a sample has a colon after its name, Edge: 1.5.",
+        reason="It logged Grey. Line 3 printed 'Edge 46.67': a sample is the name, a colon, and the number",
+    ),
+    "log with a unit": Case(
+        "log = { name = 'Edge', levels = [50] }",
+        (says("Edge: 46 %", 3),),
+        "missed",
+        reason="Line 3 printed 'Edge: 46 %': a sample is the name, a colon, and the number, and nothing else",
     ),
     "log once": Case("log = { name = 'n', levels = [2], once = true }", (*COUNTED, wait(1)), "met"),
     "log more than once": Case(

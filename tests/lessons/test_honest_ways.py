@@ -25,6 +25,24 @@ print("Rows: " + str(rows))
 """
 """The rows of lesson 6, one each period."""
 WAYS: dict[str, str] = {
+    "band-values names in-a-sentence": """\
+import time
+tank_drive.on(20, 20)
+done = ["white"]
+before = ""
+while "black" not in done:
+    light = colorLeft.reflected_light_intensity_pc
+    band = "dark" if light < 66 else "mid" if light < 84.5 else "pale" if light < 93 else "white"
+    if light < 25:
+        band = "black"
+    if band == before and band != done[-1]:
+        done.append(band)
+        if band != "white":
+            print(f"Band: {band}")
+    before = band
+    time.sleep(0.1)
+tank_drive.off()
+""",
     "first-run say by-degrees": """\
 tank_drive.on_for_degrees(SpeedPercent(50), SpeedPercent(50), 2050)
 print("Now I stand on dark gray.")
@@ -50,6 +68,20 @@ print(f"I am on the {name} band")
     "first-run say coast": """\
 tank_drive.on_for_rotations(SpeedPercent(60), SpeedPercent(60), 5.7, brake=False)
 print("I'm on GREY")
+""",
+    "sensor-eyes alike looks-for-the-edge": """\
+wheel = 56 * 3.1416
+tank_drive.on_for_rotations(50, 50, 795 / wheel)
+print(f"Grey: {colorLeft.reflected_light_intensity_pc:.1f}")
+tank_drive.on(10, 10)
+while colorLeft.reflected_light_intensity_pc < 90:
+    pass
+while True:
+    light = colorLeft.reflected_light_intensity_pc
+    if light < 55:
+        break
+tank_drive.off()
+print(f"Edge: {light:.1f}")
 """,
     "sensor-eyes alike print-at-the-end": """\
 W = 3.14159 * 56
@@ -117,13 +149,6 @@ while d > 20:
     tank_drive.on(SpeedPercent(min(30, d / 2)), SpeedPercent(min(30, d / 2)))
     d = ultrasonic.distance_centimeters
 tank_drive.off()
-""",
-    "poll-or-block poll stop-and-go": """\
-import time
-while ultrasonic.distance_centimeters > 20:
-    tank_drive.on(SpeedPercent(30), SpeedPercent(30))
-    time.sleep(0.1)
-    tank_drive.off()
 """,
     "poll-or-block poll function": """\
 def far():

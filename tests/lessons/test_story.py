@@ -16,7 +16,7 @@ SAID: dict[str, tuple[Condition, str]] = {
     "print lines": (Print(("x", "y")), "line 3 printed the last at 5.42 s, at x = 1153 mm, y = 500 mm"),
     "print once": (Print(("x", "y"), once=True), "line 3 printed the last at 5.42 s, at x = 1153 mm, y = 500 mm"),
     "log": (Log("Grey", (50.2,)), "line 3 logged Grey at 5.42 s, at x = 1153 mm, y = 500 mm"),
-    "log levels": (Log("Grey", (50.2, 0)), "line 3 logged the last Grey at 5.42 s, at x = 1153 mm, y = 500 mm"),
+    "log levels": (Log("Grey", (50.2, 0)), "line 3 logged Grey at 5.42 s, at x = 1153 mm, y = 500 mm"),
     "follow": (Follow(("left",), darker_than=50), "the sensor was on the line for long enough"),
     "finish": (Finish(), "it finished at 5.42 s"),
     "two": (Together((Finish(), Avoid(("f",)))), "it finished at 5.42 s"),
@@ -33,6 +33,14 @@ def test_what_the_end_decides_is_told_of_the_moment_when_it_happened() -> None:
     said, end = Change(542, 5.42, GoalState.MET, 1120.0, 500.0), Change(900, 9.0, GoalState.MET, 1420.0, 500.0)
     met = Judgement(Goal("a", Log("Grey", (50.2,), once=True)), (end,), line=3, happened=said)
     assert story([met]) == "Your run: line 3 logged Grey at 5.42 s, at x = 1120 mm, y = 500 mm."
+
+
+def test_of_several_goals_about_a_variable_the_last_is_told() -> None:
+    goals = [
+        Judgement(Goal(name, Log("Colour", (50,))), (Change(1, time_s, GoalState.MET, 1120.0, 500.0),), line=7)
+        for name, time_s in (("a", 3.79), ("b", 5.35), ("c", 3.91))
+    ]
+    assert story(goals) == "Your run: line 7 logged Colour at 5.35 s, at x = 1120 mm, y = 500 mm."
 
 
 def test_nothing_is_said_of_what_was_not_met() -> None:

@@ -14,9 +14,11 @@ from tuisim.app.panels import PANELS, PanelPlace
 from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import settings_of
+from tuisim.core.spec import RunSpec, WorldSpec
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.goals.files import GoalsFile
 from tuisim.goals.judgement import GoalState, Judgement
+from tuisim.goals.spec import Log, Print
 from tuisim.lessons import progress as stored
 from tuisim.lessons.catalogue import find_lesson, lesson_paths
 from tuisim.lessons.events import (
@@ -119,7 +121,8 @@ class AppLesson:
         self._judgements: tuple[Judgement, ...] = ()
         self._done: Step | None = None
         """The step that has just been done."""
-        self._is_elsewhere = False
+        self._elsewhere: RunSpec | None = None
+        """What a run was that did not begin in the lesson's world; None if the last one did."""
         """Whether the run in view did not begin at the lesson's start."""
         self._counted = ""
         """Id of the last run that was counted as a try."""
@@ -186,13 +189,17 @@ class AppLesson:
     def _begin_step(self) -> None:
         assert self.lesson is not None
         self._at = self.progress.current(self.lesson)
-        self._events, self._judgements, self._is_elsewhere = [], (), False
+        self._events, self._judgements, self._elsewhere = [], (), None
         self._seen, self._remark = set(), ""
         recording = self._run_controller.timeline.recording
         self._before = recording.run_id if recording else ""
-        if self.step is not None and isinstance(self.step.check, Show):
-            # The student is to open it.
-            self._panel_area.request({self.step.check.panel: False})
+        match self.step.check if self.step is not None else None:
+            case Show(panel=panel):
+                # The student is to open it.
+                self._panel_area.request({panel: False})
+            case Question(at_x_mm=(_, *_)):
+                # The arrow keys are to move the robot, not the lines of the program.
+                self._panel_area.leave_code()
         self.show()
         self._app.situation_changed()
 
@@ -332,7 +339,7 @@ class AppLesson:
             except TuisimError as error:
                 self._next_look_s = time.monotonic() + 10
                 self._app.complain(error)
-            if self._is_elsewhere:
+            if self._elsewhere:
                 # What a run from elsewhere needs depends on whether it is over.
                 self.show()
 
@@ -369,8 +376,9 @@ class AppLesson:
             return
         self._judgements = judgements
         met = frozenset(each.goal.name for each in judgements if each.state is GoalState.MET)
-        self._is_elsewhere = not self._is_from_start(recording)
-        yield JudgedRun(recording.run_id, recording.spec.seed, met, not self._is_elsewhere)
+        is_from_start = _world_of(self._wanted_spec()) == _world_of(recording.spec)
+        self._elsewhere = None if is_from_start else recording.spec
+        yield JudgedRun(recording.run_id, recording.spec.seed, met, is_from_start)
         if self.step is step:
             self._count_try(step, recording, judgements)
             self._try_elsewhere(step.check, recording)
@@ -413,7 +421,7 @@ class AppLesson:
                 return
             missed = [each for each in judgements if each.goal.name in other.goals and each.goal.name not in met]
             if missed and not remark:
-                remark = f"Also tried {other.where}, it does not work{_at_start(other)}: {missed[0].reason}"
+                remark = f"Also tried {other.where}, it does not work{_at_start(other)}: {_why_elsewhere(missed[0])}"
         if is_newest:
             self._remark = remark
         self.show()
@@ -427,10 +435,25 @@ class AppLesson:
             self._counted = recording.run_id
             self._keep(self.progress.with_step(step.name, tries=self.progress.of(step.name).tries + 1))
 
-    def _is_from_start(self, recording: Recording) -> bool:
+    def _wanted_spec(self) -> RunSpec:
         assert self.lesson is not None
-        wanted, was = build_run_spec(settings_of(self.lesson.settings)).world, recording.spec.world
-        return (was.background, was.start, was.obstacles) == (wanted.background, wanted.start, wanted.obstacles)
+        return build_run_spec(settings_of(self.lesson.settings))
+
+    def _elsewhere_words(self) -> str:
+        """Return why the last run does not count, in a sentence, and what to do; empty if it does."""
+        if self._elsewhere is None:
+            return ""
+        wanted = self._wanted_spec().world
+        if _place_of(self._elsewhere.world) == _place_of(wanted):
+            noise = wanted.noise
+            return (
+                f"This run had other noise: the lesson's is light {noise.light}, motors {noise.motor} (panel Noise, z)."
+            )
+        if self._run_controller.in_run:
+            return "This run began elsewhere."
+        if self._run_controller.pose == wanted.start:
+            return "This run began elsewhere. The robot is back at its start: R runs the program."
+        return "This run began elsewhere: m moves the robot to its start, then R."
 
     def _notes(self, check: Note) -> Iterator[Event]:
         recording = self._run_controller.timeline.recording
@@ -512,8 +535,7 @@ class AppLesson:
             hints=self.progress.of(step.name).hints if step else 0,
             judgements=self._judgements,
             good_runs=good,
-            is_elsewhere=self._is_elsewhere,
-            in_run=self._is_elsewhere and self._run_controller.in_run,
+            elsewhere=self._elsewhere_words(),
             done=self._done,
             story=self._story if self._done else "",
             error=self._error(),
@@ -524,6 +546,22 @@ class AppLesson:
 
 def _is_of(event: Event, run_id: str) -> bool:
     return isinstance(event, JudgedRun) and event.run_id == run_id
+
+
+def _why_elsewhere(missed: Judgement) -> str:
+    """Return why a goal is missed in another world, without the numbers and words that are asked for there."""
+    if any(isinstance(part, Log | Print) for part in missed.goal.parts):
+        return "what it prints is not what the robot sees there, at the places where it sees it."
+    return missed.reason
+
+
+def _world_of(spec: RunSpec) -> tuple[object, ...]:
+    """Return what must be as the lesson says for a run to count."""
+    return (*_place_of(spec.world), spec.world.noise)
+
+
+def _place_of(world: WorldSpec) -> tuple[object, ...]:
+    return world.background, world.start, world.obstacles
 
 
 def _at_start(other: OtherWorld) -> str:

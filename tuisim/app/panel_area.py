@@ -306,6 +306,11 @@ class PanelArea(Container):
         """Focus the world if it is shown; the focus of a dialog above the panels stays."""
         self.screen.set_focus(self.world if self.shown("world") else None)
 
+    def leave_code(self) -> None:
+        """Focus the world if the code has the focus, unless the user types in it."""
+        if self.code is not None and self.code.has_focus_within and not self.code.typing:
+            self.focus_world()
+
     def bring(self, panel: str) -> None:
         """Show a panel, unless it is shown already."""
         if not self.shown(panel):

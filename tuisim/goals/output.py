@@ -25,6 +25,12 @@ _MOST_TRIED = 1000
 """Of so many lines that say what is asked for, one must have been printed where and how it must be."""
 
 
+def _asked(pattern: str) -> str:
+    """Return a pattern as a reason names it: its words, if it is nothing but words."""
+    words = re.sub(r"\(\?i\)|\\b|[\^$]", "", pattern)
+    return _shown(words if words == re.escape(words).replace("\\ ", " ") else pattern)
+
+
 def _shown(text: str) -> str:
     return repr(text if len(text) <= _MOST_SHOWN else text[: _MOST_SHOWN - 1] + "…")
 
@@ -151,10 +157,10 @@ def _no_line(condition: Print, pattern: str, rows: list[tuple[int, OutputRow]], 
     if not rows:
         return "The program printed nothing."
     if some and condition.in_order and any(re.search(pattern, row.text) for _, row in rows):
-        return f"A line that matches {_shown(pattern)} was printed, but not after the lines before it."
+        return f"A line that matches {_asked(pattern)} was printed, but not after the lines before it."
     last = _shown(rows[-1][1].text)
     printed = "the only one is" if len(rows) == 1 else f"the last of the {len(rows):,} is"
-    return f"No printed line matches {_shown(pattern)}; {printed} {last}."
+    return f"No printed line matches {_asked(pattern)}; {printed} {last}."
 
 
 def find_levels(condition: Log, evidence: Evidence, span: Span) -> Found:
@@ -247,7 +253,7 @@ def _no_level(condition: Log, count: int, nearest: Sample | None, evidence: Evid
     if not any(sample.name == name for _, sample in evidence.samples):
         others = sorted({sample.name for _, sample in evidence.samples})
         logged = f" It logged {', '.join(others[:5])}." if others else ""
-        return f"The program logged no sample {name}.{logged}{_no_colon(name, evidence)}"
+        return f"The program logged no sample {name}.{logged}{_form_fault(name, evidence)}"
     level, after = f"{levels[count]:g}", f" after {levels[count - 1]:g}" if count and condition.in_order else ""
     if nearest is not None:
         near = f"the nearest{after} was {nearest.value:.6g} at {nearest.time_ns / 1e9:.2f} s"
@@ -259,13 +265,14 @@ def _no_level(condition: Log, count: int, nearest: Sample | None, evidence: Evid
     return f"{name} came near {count or 'none'} of {len(levels)} levels: {level} is {place}, and {near}."
 
 
-def _no_colon(name: str, evidence: Evidence) -> str:
-    """Return that a line with the name and a number lacks the colon, as a further sentence; empty if none does."""
-    like = re.compile(rf"{re.escape(name)}\s*=?\s*-?\d").match
+def _form_fault(name: str, evidence: Evidence) -> str:
+    """Return why a line with the name and a number is no sample, as a further sentence; empty if there is none."""
+    like = re.compile(rf"(?:.*\W)?{re.escape(name)}\s*[:=]?\s*[+-]?\.?\d").match
     row = next((row for row in evidence.rows if row.stream == Stream.STDOUT and like(row.text)), None)
-    return (
-        f" Line {row.line} printed {_shown(row.text)}: a sample has a colon after its name, {name}: 1.5." if row else ""
-    )
+    if row is None:
+        return ""
+    form = f"a sample is the name, a colon, and the number, and nothing else: {name}: 1.5."
+    return f" Line {row.line} printed {_shown(row.text)}: {form}"
 
 
 def find_dialogue(condition: Dialogue, evidence: Evidence, span: Span) -> Found:

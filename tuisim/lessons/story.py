@@ -14,8 +14,14 @@ def story(judgements: Iterable[Judgement]) -> str:
     Args:
         judgements: Those of the goals of the step.
     """
-    parts = dict.fromkeys(part for each in judgements for part in _parts(each))
-    return f"Your run: {'; '.join(parts)}." if parts else ""
+    parts = dict.fromkeys(part for each in sorted(judgements, key=_time_s) for part in _parts(each))
+    # Of several goals about one variable, the one that was met last.
+    told = {part.partition(" at ")[0]: part for part in parts}
+    return f"Your run: {'; '.join(told.values())}." if told else ""
+
+
+def _time_s(judgement: Judgement) -> float:
+    return judgement.event.time_s if judgement.event is not None else 0.0
 
 
 def _parts(judgement: Judgement) -> Iterator[str]:
@@ -37,9 +43,8 @@ def _words(condition: Condition, event: Change, line: int) -> str:
         case Print(lines=lines):
             last = "" if len(lines) == 1 else " the last"
             return f"line {line} printed{last or ' it'} {when}, {where}"
-        case Log(name=name, levels=levels):
-            last = "" if len(levels) == 1 else "the last "
-            return f"line {line} logged {last}{name} {when}, {where}"
+        case Log(name=name):
+            return f"line {line} logged {name} {when}, {where}"
         case Follow():
             return "the sensor was on the line for long enough"
         case Finish():

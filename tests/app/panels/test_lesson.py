@@ -378,7 +378,7 @@ def test_pages_of_a_lesson(tmp_path: Path) -> None:
     assert {"✗ Drive.", "  Too short."} <= set(page(1, at=1, judgements=(missed,)))
     failed = page(1, at=1, judgements=(missed,), error="NameError: no x (line 3)")
     assert failed[2] == "The program stopped with an error:"
-    assert "✗ Drive." in failed
+    assert "· Drive." in failed
     assert "  Too short." not in failed
     assert page(2)[-1] == "Next: open the panel Chart."
     assert page(3)[1].startswith("The end of the lesson: a model answer")
@@ -456,7 +456,8 @@ async def test_arrow_keys_move_the_robot_when_another_lesson_begins(tmp_path: Pa
 
 
 @pytest.mark.parametrize(
-    ("at", "text"), [(0, "Q types"), (0, "Y shows hint"), (1, "R runs the program"), (1, "M shows the steps")]
+    ("at", "text"),
+    [(0, "Q types"), (0, "Y shows hint"), (1, "d edits the program, R runs it"), (1, "M shows the steps")],
 )
 def test_keys_that_need_escape_first_are_called_so(at: int, text: str, tmp_path: Path) -> None:
     lesson = opened(tmp_path).lesson

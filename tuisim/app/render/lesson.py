@@ -55,10 +55,8 @@ class LessonView:
     """Of the last run since the step began; empty while there is none."""
     good_runs: int = 0
     """How many runs have passed the step so far, if it needs several."""
-    is_elsewhere: bool = False
-    """Whether the last run did not begin at the lesson's start."""
-    in_run: bool = False
-    """Whether a run is going on."""
+    elsewhere: str = ""
+    """Why the last run does not count, in a sentence: it did not begin in the lesson's world; empty if it did."""
     done: Step | None = None
     """The step that has just been done."""
     story: str = ""
@@ -170,7 +168,7 @@ def _page(view: LessonView, page: int, width: int, away: Away) -> Iterator[Line]
 _RUN_KEYS = {
     Away.NO: "d edits the program, R runs it",
     Away.EDITOR: "ctrl+r runs the program",
-    Away.LOG: "escape, then R runs the program",
+    Away.LOG: "escape, then d edits the program, R runs it",
 }
 
 
@@ -197,20 +195,20 @@ def _result(view: LessonView, step: Step, width: int) -> Iterator[Line]:
     """Yield how the last run did on the goals of a step."""
     if not isinstance(step.check, Run) or not view.judgements:
         return
-    if view.is_elsewhere and not step.check.anywhere:
-        way = "" if view.in_run else ": m moves the robot to its start, then R"
-        yield from _wrapped(f"This run began elsewhere{way}.", width, _BAD)
+    if view.elsewhere and not step.check.anywhere:
+        yield from _wrapped(view.elsewhere, width, _BAD)
     if view.error:
         yield from _wrapped(f"The program stopped with an error: {view.error}.", width, _BAD)
     by_name = {each.goal.name: each for each in view.judgements}
     # What was missed comes first: in a low terminal, the reason is in view.
     for name in sorted(step.check.goals, key=lambda name: by_name[name].state is not GoalState.MISSED):
         judgement = by_name[name]
-        mark, style = _GOAL_MARKS[judgement.state]
+        # After an error, what is missing says nothing: the error is what there is to mend.
+        is_told = judgement.state is not GoalState.MISSED or not view.error
+        mark, style = _GOAL_MARKS[judgement.state if is_told else GoalState.OPEN]
         for at, row in enumerate(textwrap.wrap(judgement.goal.say or name, max(1, width - 2))):
             yield [(mark if not at else "  ", style), (row, _PLAIN)]
-        # After an error, what is missing says nothing: the error is what there is to mend.
-        if judgement.state is GoalState.MISSED and not view.error:
+        if judgement.state is GoalState.MISSED and is_told:
             yield from _wrapped(judgement.reason, width, _BAD, "  ", "  ")
             if judgement.goal.hint:
                 yield from _wrapped(judgement.goal.hint, width, _HINT, "  ", "  ")
