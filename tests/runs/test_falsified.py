@@ -131,6 +131,12 @@ def test_a_link_in_place_of_the_run_file_leads_nowhere(start: Start, tmp_path: P
     assert json.loads((handle.folder / "run.json").read_text())["end"]["end"] == "finished"
 
 
+def test_a_folder_in_place_of_the_run_file_is_replaced(start: Start) -> None:
+    handle = start(FILES + "os.unlink(folder + '/run.json')\nos.makedirs(folder + '/run.json/deep')")
+    assert handle.wait(PATIENCE_S) is not None
+    assert (handle.unstored, handle.stored().state) == ("", End.FINISHED)
+
+
 def test_a_live_run_is_falsified_while_it_goes_on(start: Start) -> None:
     text = FILES + "open(telemetry, 'r+b').write(bytes(range(200)))\nwhile True: pass"
     handle = start(text, live=True)

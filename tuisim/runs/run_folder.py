@@ -18,6 +18,7 @@ from tuisim.core.spec import NoiseSpec, RunSpec, from_plain, to_plain
 from tuisim.errors import ConfigError, LogError, TuisimError, shortened
 from tuisim.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
 from tuisim.regular_file import read_regular
+from tuisim.runs.removal import remove_tree
 from tuisim.runs.side_files import MOST_BYTES, is_held, read_actions
 from tuisim.runs.views import OutputView, TelemetryView, TickRecord, views_of
 from tuisim.source import Program
@@ -137,11 +138,15 @@ def write_run_file(folder: Path, data: Mapping[str, Any]) -> None:
     Raises:
         LogError: it cannot be written.
     """
+    path = folder / RUN_FILE
+    if path.is_dir() and not path.is_symlink():
+        # The program has put it there.
+        remove_tree(path)
     try:
-        with replacing(folder / RUN_FILE, owner_only=True, follow_links=False) as handle:
+        with replacing(path, owner_only=True, follow_links=False) as handle:
             handle.write(run_document(data))
     except OSError as error:
-        raise LogError(f"cannot write: {error.strerror or error}", file=str(folder / RUN_FILE)) from error
+        raise LogError(f"cannot write: {error.strerror or error}", file=str(path)) from error
 
 
 def read_run_file(folder: Path) -> dict[str, Any]:
