@@ -75,10 +75,12 @@ def _without_working_directory(rest: str) -> str:
 
 
 def killed_at(words: Sequence[str], folder: Path, call: str, number: int) -> Ended:
-    """Run a command that is killed as it begins the call of this number among those of its name."""
-    # Not `--seccomp-bpf`, with which strace 6.1 injects no signal.
+    """Run a command that is killed as it begins the call of this number among those of its name.
+
+    Its children are not: a program that is killed is another matter, which its run tells.
+    """
     which = ["-e", f"trace={call}", "-e", f"inject={call}:signal=KILL:when={number}"]
-    return run(words, folder, ["-f", *which, *_NOWHERE])
+    return run(words, folder, [*which, *_NOWHERE])
 
 
 def failing_at(
