@@ -47,8 +47,8 @@ class Planted:
 PLANTED: tuple[Planted, ...] = (
     Planted(
         "the end of a run is written through a link in place of run.json", "runs/run_folder.py",
-        "replacing(folder / RUN_FILE, owner_only=True, follow_links=False)",
-        "replacing(folder / RUN_FILE, owner_only=True)",
+        "replacing(path, owner_only=True, follow_links=False)",
+        "replacing(path, owner_only=True)",
         "enemies", ("run:places:324",), "symbolic links",
     ),
     Planted(

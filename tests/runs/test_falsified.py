@@ -69,6 +69,8 @@ FALSIFIES = {
         }.items()
     },
     "a message without end": TO_PIPES.format(b"x" * 65536) * 200 + "sum(range(10**12))",
+    "an empty start": "print(1)\n" + FILES + "open(telemetry, 'r+b').truncate(16)",
+    "zeros at the start": "print(1)\n" + FILES + "open(telemetry, 'r+b').write(bytes(64))",
     "random telemetry": FILES + "open(telemetry, 'r+b').write(bytes(range(200)))",
     "another position": FILES
     + "with open(telemetry, 'r+b') as f: f.seek(72); f.write(struct.pack('<d', float('nan')))",

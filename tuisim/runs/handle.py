@@ -348,12 +348,14 @@ class RunHandle:
         end = self._announced
         # One that could not begin, or found no room, leaves what it could write.
         is_whole = end is not None and end.end not in (End.CRASHED, End.DISK_FULL)
-        for view in views_of(self.folder, is_checked=True):
+        # As whoever opens the run later finds them: what this host has seen before may be gone.
+        telemetry, output = views_of(self.folder, is_checked=True)
+        for view in (telemetry, output):
             if view.damage or (is_whole and view.note):
                 return view.damage or view.note
             if is_whole and view.is_missing:
                 return "a part of it was deleted"
-        ticks = self.telemetry.count
+        ticks = telemetry.count
         if is_whole and end is not None and end.tick != ticks - 1:
             return f"it ends at tick {end.tick}, and {counted(ticks, 'tick is', 'ticks are')} recorded"
         hz = self.spec.profile.tick_hz
