@@ -25,7 +25,7 @@ from dataclasses import dataclass
 
 from tuisim.core.columns import column_name
 from tuisim.core.comparison import COMPARE, comparison_form, comparison_in, finite_number
-from tuisim.core.sensors import columns_of
+from tuisim.core.sensors import columns_of, number_in
 from tuisim.core.sensors.color import COLOR_NAMES
 from tuisim.core.spec import RobotSpec
 from tuisim.errors import ConfigError, nearest, see_page
@@ -236,9 +236,10 @@ def _value_rule(text: str, robot: RobotSpec | None) -> ValueBreak:
             raise _refuse(text, f"this robot has no {written!r}", nearest(written, (one.name for one in columns)))
     if not _NAME.fullmatch(name):
         raise _refuse(text, f"there is no {written!r}")
-    if is_color(name) and value in COLOR_NAMES:
-        return ValueBreak(name, relation, float(COLOR_NAMES.index(value)))
-    return ValueBreak(name, relation, _number(text, value) if value else 0.0)
+    try:
+        return ValueBreak(name, relation, number_in(value, name) if value else 0.0)
+    except ValueError as error:
+        raise _refuse(text, str(error)) from None
 
 
 def _relation(text: str) -> tuple[str, str, str]:

@@ -115,7 +115,7 @@ BAD = {
         ("bands", "last", "--width", "3"),
         "no such option: --width (see `tuisim log bands --help`)",
     ),
-    "no threshold": (("events", "{log}"), "no threshold given"),
+    "no threshold": (("events", "{log}"), "takes one threshold"),
     "no such variable": (("summary", "{log}", "--variable", "up"), "no variable 'up'"),
     "no such column": (("summary", "{log}", "--time", "clock"), "no column 'clock'"),
     "an expression": (("calc", "{log}", "--expression", "left +"), "cannot read the expression"),

@@ -438,6 +438,22 @@ READINGS = {
         reason="3 such lines in all, and each is asked for once.",
         line=3,
     ),
+    "when": Case("when = 'x_mm > 600'", (ahead(200, 1),), "met", 0.57, line=1),
+    "when by a name of before": Case("when = 'gyro < 1'", (ahead(200, 1),), "met", 0.0),
+    "when several": Case("when = ['x_mm > 600', 'x_mm < 650']", (ahead(200, 1),), "met", 0.57),
+    "when not together": Case(
+        "when = ['x_mm > 600', 'x_mm < 550']", (ahead(200, 1),), "missed", reason="not true at the same time."
+    ),
+    "when never": Case(
+        "when = 'left_red_pc < 10'",
+        (ahead(200, 1),),
+        "missed",
+        reason="left_red_pc < 10 never became true: the nearest was 100 at 0.00 s.",
+    ),
+    "when not at all": Case(
+        "when = 'left_red_p < 10'", (wait(1),), "missed", reason="no column left_red_p (did you mean left_red_pc or"
+    ),
+    "when no number": Case("when = 'x_mm < far'", (wait(1),), "missed", reason="x_mm < far: 'far' is not a number"),
     "read": Case("read = { reading = 'color', times = 2 }", (wait(0.05, 2),), "met", 0.02, line=2, text=LOOKS),
     "read too rarely": Case(
         "read = { reading = 'color', times = 9 }",

@@ -10,9 +10,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tuisim.core.columns import column_name
 from tuisim.core.comparison import COMPARE, Comparison, comparison_form, comparison_in, finite_number, spelled
-from tuisim.errors import ConfigError
+from tuisim.core.field import Field
+from tuisim.core.sensors import columns_of, number_in
+from tuisim.errors import ConfigError, nearest
 from tuisim.runs.brick_state import BrickState, face_after
+from tuisim.runs.frames import column_values, ticks_when
 from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow
 from tuisim.runs.samples import parse_sample
 from tuisim.source import source_lines
@@ -144,6 +148,7 @@ _FORMS = (
     ("line 12", "{which} time that line 12 runs"),
     ("sample Colour", "{which} sample with this name; `sample` alone: with any name"),
     ("sample Colour < 90", f"{{which}} sample that matches; operators: {spelled()}"),
+    ("left_red_pc < 50", "{which} tick at which a column becomes so; also x_mm, ultrasonic_mm, gyro_deg …"),
     ("print REGEX", "{which} printed line that matches the regular expression"),
     ("start, end", "the first and the latest instant"),
     ("… back, … first", "a line, sample or print: searched backwards, or from the start of the run"),
@@ -158,7 +163,7 @@ def forms(timeline: Timeline) -> list[tuple[str, str]]:
     return [(form, meaning.replace("{which}", which)) for form, meaning in _FORMS]
 
 
-_HINT = f"3.5, tick 120, line 12, sample NAME, sample {comparison_form()}, print REGEX, start or end"
+_HINT = f"3.5, tick 120, line 12, sample NAME, sample {comparison_form()}, COLUMN < 50, print REGEX, start or end"
 _SECONDS = re.compile(r"([0-9]+\.?[0-9]*|\.[0-9]+)\s*s?")
 _NAME = r"(?:[^\W\d]\w*)?"
 
@@ -193,12 +198,13 @@ class _Search:
         return ticks[where] if 0 <= where < len(ticks) else None
 
 
-def find(text: str, timeline: Timeline) -> int:
+def find(text: str, timeline: Timeline, mat: Field | None = None) -> int:
     """Return the tick that an expression means, relative to the instant in view.
 
     Args:
         text: One of `forms`.
         timeline: The run, and where one is in it.
+        mat: The run's mat, which readings are taken from; None if there is none yet.
 
     Raises:
         ConfigError: the words are not understood, or there is no such instant.
@@ -227,6 +233,9 @@ def find(text: str, timeline: Timeline) -> int:
         return _sample(search, wanted.name, wanted)
     if word == "print" and rest:
         return _printed(search, rest)
+    words = re.sub(r"\s+(?:back|first)$", "", text.strip())
+    if (condition := comparison_in(words)) and condition.operator in COMPARE:
+        return _becomes(search, condition, mat)
     raise ConfigError(f"{text.strip()!r} is not an instant" if text.strip() else "no instant given", _HINT)
 
 
@@ -271,6 +280,27 @@ def _sample(search: _Search, name: str, wanted: Comparison | None) -> int:
         what = f"sample {wanted or name}".rstrip()
         hint = f"there are {', '.join(sorted(seen))}" if seen and name not in seen and name else ""
         raise ConfigError(f"no {what} {search.words}", hint)
+    return tick
+
+
+def _becomes(search: _Search, condition: Comparison, mat: Field | None) -> int:
+    """Return the tick at which a column begins to meet a condition."""
+    recording = search.recording
+    columns = columns_of(recording.spec.robot)
+    name = column_name(condition.name, columns)
+    if name is None:
+        hint = nearest(condition.name, (column.name for column in columns))
+        raise ConfigError(f"this robot has no {condition.name!r}", hint)
+    if mat is None:
+        raise ConfigError("the mat is still being opened", "a moment later")
+    try:
+        value = number_in(condition.value, name)
+    except ValueError as error:
+        raise ConfigError(str(error), _HINT) from error
+    values = column_values(name, recording.telemetry.array(), recording.spec, recording.actions(), mat)
+    tick = search.nearest(ticks_when(values, condition.operator, value).tolist())
+    if tick is None:
+        raise ConfigError(f"no tick {search.words} at which {name} {condition.operator} {value:g} becomes true")
     return tick
 
 

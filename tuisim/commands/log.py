@@ -26,6 +26,7 @@ COLUMNS = (
 
 OPTIONS: Mapping[str, GroupedOption] = {
     "at": option("--at", type=float, metavar="VALUE", help="Threshold."),
+    "when": option("--when", default="", metavar="TEXT", help="Variable, operator, threshold: 'Colour < 50 +- 2'."),
     "hysteresis": option(
         "--hysteresis", type=float, default=0.0, metavar="VALUE", help="Margin around the threshold (0)."
     ),
@@ -76,7 +77,9 @@ class Subcommand:
 SUBCOMMANDS: Mapping[str, Subcommand] = {
     "summary": Subcommand("Print count, min, max, mean, std and quantiles of each variable", "tables:summary"),
     "bands": Subcommand("Find plateaus: level, name, times, width", "tables:bands"),
-    "events": Subcommand("Find where a variable crosses --at", "tables:events", ("at", "hysteresis", *_TABLE)),
+    "events": Subcommand(
+        "Find where a variable crosses --at, or --when", "tables:events", ("at", "when", "hysteresis", *_TABLE)
+    ),
     "derive": Subcommand("Compute the derivative, in units per second", "tables:derive"),
     "integrate": Subcommand("Compute the integral, in units times seconds", "tables:integrate", ("between", *_TABLE)),
     "average": Subcommand("Compute a centred rolling mean of --width samples", "tables:average", ("width", *_TABLE)),
@@ -121,6 +124,7 @@ log = Group(
     Examples:
       tuisim log bands last
       tuisim log events log.csv --at 50 --hysteresis 5 --json
+      tuisim log events last --when 'left_red_pc < 50'
       tuisim run prog.py | tuisim log summary -
       tuisim log resample last --telemetry --period 0.5 --out half.parquet
       tuisim log plot last --facets --out chart.svg

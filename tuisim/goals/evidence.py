@@ -12,11 +12,12 @@ from tuisim.config.mat_cache import open_field
 from tuisim.core.field import Field
 from tuisim.core.profile import NS_PER_S
 from tuisim.protocol import End, Ended, Unended
-from tuisim.runs.frames import tick_times_s
+from tuisim.runs.frames import column_values, tick_times_s
 from tuisim.runs.handle import RunHandle
 from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun, open_mat
 from tuisim.runs.samples import Sample, parse_sample
+from tuisim.runs.side_files import read_actions
 
 if TYPE_CHECKING:
     import numpy as np
@@ -111,6 +112,20 @@ class Evidence:
                 name, value, time_s = parsed
                 printed_s = row.time_ns / NS_PER_S if time_s is None else time_s
                 found.append((number, Sample(name, value, printed_s, row.time_ns, row.tick, row.line)))
+        return found
+
+    def column(self, name: str) -> Array:
+        """Return a column of `columns_of` the robot at every tick.
+
+        Raises:
+            LogError, ConfigError: the mat no longer exists, or its image has changed.
+        """
+        key = f"column {name}"
+        if key not in self.memo:
+            run = self._run
+            actions = run.actions if isinstance(run, StoredRun) else read_actions(run.folder)[0]
+            self.memo[key] = column_values(name, self.records, self.spec, actions, self.mat)
+        found: Array = self.memo[key]
         return found
 
     @cached_property

@@ -32,6 +32,7 @@ from tuisim.goals.spec import (
     Read,
     TouchNothing,
     Use,
+    When,
 )
 
 Finder = Callable[[Any, Evidence, Span], Found]
@@ -47,6 +48,7 @@ FINDERS: Mapping[type, Finder] = {
     Print: output.find_printed,
     Log: output.find_levels,
     Read: readings.find_read,
+    When: readings.find_when,
     Dialogue: output.find_dialogue,
     Finish: output.find_finish,
     Use: calls.find_used,

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from tuisim.core.columns import column_name
+from tuisim.core.comparison import COMPARE, comparison_in
+from tuisim.core.sensors import columns_of, number_in
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
-from tuisim.errors import counted
+from tuisim.errors import counted, nearest
 from tuisim.goals.evidence import Evidence, Moment, Span
 from tuisim.goals.found import Found, share_words
 from tuisim.goals.places import line_of_motion
 from tuisim.goals.provenance import provenance_of
-from tuisim.goals.spec import Follow, Range, Read, Reading
+from tuisim.goals.spec import Follow, Range, Read, Reading, When
 from tuisim.runs.frames import quiet_color_columns
 
 if TYPE_CHECKING:
@@ -103,6 +106,39 @@ def find_read(condition: Read, evidence: Evidence, span: Span) -> Found:
     times = counted(len(ticks), "time")
     text = f"The program read the {noun} {times}{where}{when}; {condition.times:,} are needed."
     return Found(None, text, int(evidence.records["line"][every[0]]))
+
+
+def find_when(condition: When, evidence: Evidence, span: Span) -> Found:
+    """Find the first tick at which columns have the values that are asked for."""
+    import numpy as np
+
+    columns = columns_of(evidence.spec.robot)
+    ticks = span.ticks
+    met = np.ones(len(evidence.records[ticks]), np.bool_)
+    never: list[str] = []
+    for text in condition.comparisons:
+        wanted = comparison_in(text)
+        assert wanted is not None
+        name = column_name(wanted.name, columns)
+        try:
+            number = number_in(wanted.value, name or "")
+        except ValueError as error:
+            return Found(None, f"{text}: {error}.")
+        if name is None:
+            names = (column.name for column in columns)
+            return Found(None, f"The robot has no column {wanted.name} ({nearest(wanted.name, names)}).")
+        values = evidence.column(name)[ticks]
+        here = COMPARE[wanted.operator](values, number)
+        if len(values) and not here.any():
+            at = int(np.argmin(np.abs(values - number)))
+            when = evidence.time_words(span.first_tick + at)
+            near = f"the nearest was {values[at]:.6g} at {when}"
+            never.append(f"{name} {wanted.sign} {wanted.value} never became true: {near}")
+        met &= here
+    found = np.flatnonzero(met)
+    if len(found):
+        return Found(Moment(span.first_tick + int(found[0])))
+    return Found(None, f"{'; '.join(never)}." if never else "They were not true at the same time.")
 
 
 def find_off_line(condition: Follow, evidence: Evidence, span: Span) -> Found:

@@ -14,6 +14,7 @@ from typing import Annotated, ClassVar, TypeAlias
 
 from msgspec import Meta
 
+from tuisim.core.comparison import COMPARE, comparison_form, comparison_in
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import ConfigError, require_regex
 
@@ -311,6 +312,24 @@ class Read:
 
 
 @dataclass(frozen=True, slots=True)
+class When:
+    """Columns of the recording take values, all in the same tick."""
+
+    KIND: ClassVar[Kind] = Kind.REACHED
+    SHORT: ClassVar[str] = "comparisons"
+
+    comparisons: tuple[str, ...]
+    """Such as `left_red_pc < 10`, see `core.columns`."""
+
+    def __post_init__(self) -> None:
+        _check_count(self.comparisons, "comparisons")
+        for number, text in enumerate(self.comparisons, start=1):
+            if (found := comparison_in(text)) is None or found.operator not in COMPARE:
+                key = f"comparisons[{number}]"
+                raise ConfigError(f"no comparison: {text!r}", f"{comparison_form()}, such as left_red_pc < 10", key=key)
+
+
+@dataclass(frozen=True, slots=True)
 class Finish:
     """The program finishes without an error."""
 
@@ -422,6 +441,7 @@ Condition: TypeAlias = (
     | Print
     | Log
     | Read
+    | When
     | Finish
     | Use
     | Avoid
@@ -442,6 +462,7 @@ CONDITIONS: Mapping[str, type[Condition]] = {
     "print": Print,
     "log": Log,
     "read": Read,
+    "when": When,
     "dialogue": Dialogue,
     "finish": Finish,
     "use": Use,

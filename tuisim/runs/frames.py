@@ -12,10 +12,11 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from tuisim.core.columns import MOTION, measured_names
+from tuisim.core.comparison import COMPARE, Operator
 from tuisim.core.field import Field
 from tuisim.core.pen_marks import PenMarks
 from tuisim.core.profile import NS_PER_S
-from tuisim.core.sensors import SENSORS, mounted
+from tuisim.core.sensors import SENSORS, SensorKind, mounted
 from tuisim.core.sensors.color import disc_pixels_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, NoiseSpec, RunSpec
 from tuisim.core.tick_record import TICK_RECORD
@@ -89,7 +90,7 @@ def _samples_of_run(run: StoredRun, ordinal: int) -> dict[str, Any]:
     return columns
 
 
-def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
+def telemetry_frame(run: StoredRun, field: Field | None = None, also: Iterable[str] = ()) -> pd.DataFrame:
     """Return one row per tick, including tick 0 (the start); damaged records are omitted, see `damage_note`.
 
     Columns: `time` in s, simulated; MOTION_COLUMNS; those of every mounted sensor, such as
@@ -98,6 +99,7 @@ def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
 
     Args:
         field: The mat; by default that of the run.
+        also: Names of further columns of `columns_of`, which come last.
 
     Raises:
         LogError: a recording is damaged, or the mat no longer exists.
@@ -108,9 +110,51 @@ def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
     columns: dict[str, Any] = {"time": tick_times_s(records, run.spec)}
     for name in MOTION_COLUMNS:
         columns[name] = records[name].astype("f8")
-    columns.update(sensor_columns(records, run.spec, run.actions, open_mat(run) if field is None else field))
+    mat = open_mat(run) if field is None else field
+    columns.update(sensor_columns(records, run.spec, run.actions, mat))
     columns["line"] = records["line"].astype("i8")
+    for name in also:
+        columns[name] = column_values(name, records, run.spec, run.actions, mat)
     return pd.DataFrame(columns)
+
+
+def column_values(name: str, records: Array, spec: RunSpec, actions: Sequence[UserAction], field: Field) -> Array:
+    """Return a column at every tick: float64, shape (n,).
+
+    Args:
+        name: One of `columns_of` the robot.
+        records: Telemetry from tick 0 on, structured as `TICK_FIELDS`, shape (n,).
+        spec: The specification of the run.
+        actions: The user's actions, which may have changed the noise.
+        field: The mat.
+    """
+    import numpy as np
+
+    robot = spec.robot
+    owners = [(kind.columns(sensor), [(kind, sensor)]) for kind, sensor in mounted(robot)]
+    columns, owner = next(one for one in [*owners, (MOTION, [])] if any(column.name == name for column in one[0]))
+    if owner:
+        measured = sensor_columns(records, spec, actions, field, owner)
+    else:
+        measured = {moved: records[moved].astype("f8") for moved in MOTION_COLUMNS}
+    compute = next(column.of for column in columns if column.name == name)
+    if compute is None:
+        return measured[name]
+    return np.array([compute(row, robot) for row in zip(*map(_listed, measured.values()), strict=True)], np.float64)
+
+
+def ticks_when(values: Array, operator: Operator, number: float) -> Array:
+    """Return the indices at which a column begins to meet a condition, in ascending order."""
+    import numpy as np
+
+    met = COMPARE[operator](values, number)
+    began: Array = np.flatnonzero(met & ~np.concatenate(([False], met[:-1])))
+    return began
+
+
+def _listed(values: Array) -> list[float]:
+    found: list[float] = values.tolist()
+    return found
 
 
 def damage_note(run: StoredRun) -> str:
@@ -146,21 +190,28 @@ def tick_times_s(records: Array, spec: RunSpec) -> Array:
     return times
 
 
-def sensor_columns(records: Array, spec: RunSpec, actions: Sequence[UserAction], field: Field) -> dict[str, Array]:
-    """Return the columns of every mounted sensor, in the order of the telemetry frame.
+def sensor_columns(
+    records: Array,
+    spec: RunSpec,
+    actions: Sequence[UserAction],
+    field: Field,
+    sensors: Sequence[tuple[SensorKind, Any]] | None = None,
+) -> dict[str, Array]:
+    """Return what sensors have measured, in the order of the telemetry frame.
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
         spec: The specification of the run.
         actions: The user's actions, which may have changed the noise.
         field: The mat.
+        sensors: Some of `mounted`; None for all.
 
     Returns:
         Arrays of float64 with shape (n,), by column name.
     """
     noises = _noises(records, spec, actions)
     lit = any(noise.light for noise in noises)
-    sensors = mounted(spec.robot)
+    sensors = mounted(spec.robot) if sensors is None else sensors
     found: dict[str, Array] = {}
     slow = []
     for kind, sensor in sensors:

@@ -127,7 +127,8 @@ def ask_where(workspace: Workspace) -> None:
     timeline = workspace.run_controller.timeline
 
     def go(text: str) -> None:
-        to_tick(workspace, find(text, timeline))
+        mat = workspace.run_controller.mat
+        to_tick(workspace, find(text, timeline, mat.field if mat is not None else None))
 
     workspace.app.push_screen(
         LinePrompt("Go to", go, forms=forms(timeline), placeholder=f"now at {timeline.time_s:.2f} s")

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
 from tuisim.analysis.source import LogRequest
 from tuisim.commands.echo import echo_error, tell
 from tuisim.config.command_line import Arguments
+from tuisim.core.sensors import columns_of
+from tuisim.core.spec import RobotSpec
 from tuisim.errors import ConfigError, LogError, listed
 from tuisim.logs.columns import choose_columns, time_in_words
 from tuisim.logs.log import Log
 from tuisim.logs.reader import STDIN, log_of_runs, read_pieces, telemetry_log
+from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
 
@@ -80,16 +83,32 @@ def _open_runs(words: Sequence[str], arguments: Arguments) -> Iterator[Log]:
         return
     store = RunStore()
     runs = [store.load_run(word) for word in words]
-    logs = [telemetry_log(run) for run in runs] if arguments.telemetry else [log_of_runs(runs)]
-    for log in logs:
+    for log in _logs_of(runs, arguments):
         if not log.rows:
             damage = "; ".join(log.notes)
-            if arguments.telemetry:
+            if log.metadata.get("table") == "telemetry":
                 raise LogError("no ticks: its recording is empty or truncated", damage, file=log.title)
             hint = "a program logs by printing lines such as `Colour: 50`; --telemetry uses every tick instead"
             raise LogError("no samples", damage or hint, file=log.title)
         layout = choose_columns(log.table, arguments.time, arguments.value, arguments.unit)
         yield _with_notes(log.with_layout(layout))
+
+
+def _logs_of(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
+    """Return the samples of some runs, or the telemetry of each, where that is asked for or has what is asked for."""
+    asked_for: Sequence[str] = getattr(arguments, "variable", None) or ()
+    if not arguments.telemetry:
+        samples = log_of_runs(runs)
+        known = {name.partition(" #")[0] for name in samples.names}
+        columns = [{column.name for column in columns_of(run.spec.robot)} for run in runs]
+        if not asked_for or known & set(asked_for) or not all(set(asked_for) <= names for names in columns):
+            return [samples]
+    return [telemetry_log(run, _derived(asked_for, run.spec.robot)) for run in runs]
+
+
+def _derived(names: Iterable[str], robot: RobotSpec) -> list[str]:
+    """Return those of some names that are columns which telemetry has only if it is asked for them."""
+    return [column.name for column in columns_of(robot) if column.of is not None and column.name in names]
 
 
 def _open_file(word: str, arguments: Arguments) -> Log:

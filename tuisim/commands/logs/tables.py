@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tuisim.analysis.events import crossings
+from tuisim.analysis.events import THRESHOLD_FORM, Threshold, threshold_of
 from tuisim.commands.echo import CsvOut, echo_json, echo_lines, echo_wrapped, echo_written, table
 from tuisim.commands.logs.sources import names_of, open_sources, the_source
 from tuisim.config.command_line import Arguments
+from tuisim.core.comparison import Operator
 from tuisim.errors import ConfigError
 from tuisim.logs import signals
 from tuisim.logs.arrow import numbers_of, unique_names
@@ -71,19 +72,38 @@ def bands(arguments: Arguments) -> int:
 
 def events(arguments: Arguments) -> int:
     """Print where each variable crosses the threshold."""
-    if arguments.at is None:
-        raise ConfigError("no threshold given", "such as --at 50", key="events")
+    threshold = _threshold_of(arguments)
+    if threshold.name:
+        arguments.variable = (threshold.name,)
     rows: list[dict[str, Any]] = []
     for log in open_sources(arguments):
         for name in names_of(log, arguments):
             series = log.series(name)
-            for found in crossings(series.time_s, series.values, arguments.at, arguments.hysteresis):
+            for found in threshold.crossings(series):
                 direction = "rises" if found.rising else "falls"
                 row = int(series.rows[found.at])
                 rows.append({"log": log.title, "variable": name, "time_s": found.time_s, "crossing": direction,
                              "value": found.value, "row": row})  # fmt: skip
     show_rows(rows, arguments, {"variable": "", "time_s": ".3f", "crossing": "", "value": ".4g", "row": ""})
     return 0
+
+
+def _threshold_of(arguments: Arguments) -> Threshold:
+    """Return the threshold that is asked for; its name is empty for every variable.
+
+    Raises:
+        ConfigError: none is given, or two are.
+    """
+    if bool(arguments.when) is (arguments.at is not None):
+        raise ConfigError("takes one threshold", "such as --at 50, or --when 'Colour < 50'", key="events")
+    if not arguments.when:
+        return Threshold("", Operator.EQUAL, arguments.at, arguments.hysteresis)
+    if arguments.variable:
+        raise ConfigError("names the variable already", "leave --variable out", key="--when")
+    threshold = threshold_of(arguments.when)
+    if threshold is None:
+        raise ConfigError(f"no threshold: {arguments.when!r}", THRESHOLD_FORM, key="--when")
+    return replace(threshold, hysteresis=threshold.hysteresis or arguments.hysteresis)
 
 
 def _each(arguments: Arguments, column: str, change: Callable[[Series], FloatArray]) -> int:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import sys
 import threading
 import types
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
+from tuisim.core.sensors import reader_of
 from tuisim.protocol import FrameState, Inspect, Inspected, ThreadState, Variable, Watched
 from tuisim.runtime.debugger.fork import apart
 from tuisim.runtime.debugger.tracer import Tracer
@@ -162,11 +165,18 @@ class Looker:
         plain = _plain(names)
         visible = {**inside, **plain}
         builtin = frame.f_builtins if frame is not None else self._module.get("__builtins__", {})
+        watched = {**self._columns_in(watches), **visible}
         return {
-            "watches": [(text, *evaluate(renderer, text, visible, builtin)) for text in watches],
+            "watches": [(text, *evaluate(renderer, text, watched, builtin)) for text in watches],
             "locals": _texts(renderer, self._own_names(plain) if own_module else plain, whole=not own_module),
             "globals": [] if own_module else _texts(renderer, self._own_names(inside), whole=False),
         }
+
+    def _columns_in(self, watches: tuple[str, ...]) -> dict[str, float]:
+        """Return the values of the recording's columns that watches name."""
+        sim, field = self._session.sim, self._session.field
+        readers = {name: reader_of(name, sim.spec.robot) for text in watches for name in _names_in(text)}
+        return {name: read(sim.instant(), sim.spec, field) for name, read in readers.items() if read is not None}
 
     def _own_names(self, names: Mapping[str, Any]) -> dict[str, Any]:
         prepared = self._prepared
@@ -180,6 +190,12 @@ class Looker:
         return tuple(
             Variable(name, kind, text, before is not None and before.get(name) != text) for name, kind, text in names
         )
+
+
+def _names_in(expression: str) -> set[str]:
+    with suppress(SyntaxError, ValueError, RecursionError, MemoryError):
+        return {node.id for node in ast.walk(ast.parse(expression.strip(), mode="eval")) if isinstance(node, ast.Name)}
+    return set()
 
 
 def _plain(names: Mapping[str, Any]) -> dict[str, Any]:
