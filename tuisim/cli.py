@@ -24,7 +24,7 @@ from tuisim.errors import EXIT_BROKEN_PIPE, EXIT_INTERRUPTED, ConfigError, HostE
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class CommandEntry:
     """One line of `COMMANDS`."""
 
     path: str
@@ -37,28 +37,28 @@ class Entry:
         return cast("click.Command", getattr(import_module(f"tuisim.{module}"), name))
 
 
-COMMANDS: Mapping[str, Entry] = {
-    "open": Entry("commands.app:open_app", "Open the app (the default command)"),
-    "serve": Entry("commands.serve:serve", "Open the app in a browser"),
-    "run": Entry("commands.run:run", "Run programs without the app"),
-    "batch": Entry("commands.batch:batch", "Run programs with many seeds and settings; one row per run"),
-    "runs": Entry("commands.runs:runs", "List, show, export, draw or remove stored runs"),
-    "goals": Entry("commands.goals:goals", "Check whether runs meet the goals of a task"),
-    "mark": Entry("commands.mark:mark", "Mark the programs of a class by the goals of a task"),
-    "learn": Entry("commands.learn:learn", "Learn to program the robot: lessons in the app"),
-    "guide": Entry("commands.guide:guide", "Read the guide: tutorials, how-to pages, reference"),
-    "log": Entry("commands.log:log", "Analyse logs: statistics, bands, events, signals"),
-    "analyse": Entry("commands.app:analyse", "Explore logs in the app: table, chart, bands, notes"),
-    "backgrounds": Entry("commands.listings:backgrounds", "List the mats"),
-    "robots": Entry("commands.listings:robots", "List the robots, or print one as a file"),
-    "obstacles": Entry("commands.listings:obstacles", "List the sets of obstacles, or print one as a file"),
-    "programs": Entry("commands.listings:programs", "List the example programs"),
-    "profiles": Entry("commands.listings:profiles", "List the profiles and the simulated time of each call"),
-    "kernel": Entry("commands.kernel:kernel", "Install the Jupyter kernel for a course's notebooks"),
-    "config": Entry("commands.system.user_config:config", "Show your settings, and where each comes from"),
-    "doctor": Entry("commands.system.doctor:doctor", "Check the terminal and the machine; restore a terminal"),
-    "completion": Entry("cli:completion", "Print a script that completes commands in your shell"),
-    "man": Entry("cli:man", "Print the page for man"),
+COMMANDS: Mapping[str, CommandEntry] = {
+    "open": CommandEntry("commands.app:open_app", "Open the app (the default command)"),
+    "serve": CommandEntry("commands.serve:serve", "Open the app in a browser"),
+    "run": CommandEntry("commands.run:run", "Run programs without the app"),
+    "batch": CommandEntry("commands.batch:batch", "Run programs with many seeds and settings; one row per run"),
+    "runs": CommandEntry("commands.runs:runs", "List, show, export, draw or remove stored runs"),
+    "goals": CommandEntry("commands.goals:goals", "Check whether runs meet the goals of a task"),
+    "mark": CommandEntry("commands.mark:mark", "Mark the programs of a class by the goals of a task"),
+    "learn": CommandEntry("commands.learn:learn", "Learn to program the robot: lessons in the app"),
+    "guide": CommandEntry("commands.guide:guide", "Read the guide: tutorials, how-to pages, reference"),
+    "log": CommandEntry("commands.log:log", "Analyse logs: statistics, bands, events, signals"),
+    "analyse": CommandEntry("commands.app:analyse", "Explore logs in the app: table, chart, bands, notes"),
+    "backgrounds": CommandEntry("commands.listings:backgrounds", "List the mats"),
+    "robots": CommandEntry("commands.listings:robots", "List the robots, or print one as a file"),
+    "obstacles": CommandEntry("commands.listings:obstacles", "List the sets of obstacles, or print one as a file"),
+    "programs": CommandEntry("commands.listings:programs", "List the example programs"),
+    "profiles": CommandEntry("commands.listings:profiles", "List the profiles and the simulated time of each call"),
+    "kernel": CommandEntry("commands.kernel:kernel", "Install the Jupyter kernel for a course's notebooks"),
+    "config": CommandEntry("commands.system.user_config:config", "Show your settings, and where each comes from"),
+    "doctor": CommandEntry("commands.system.doctor:doctor", "Check the terminal and the machine; restore a terminal"),
+    "completion": CommandEntry("cli:completion", "Print a script that completes commands in your shell"),
+    "man": CommandEntry("cli:man", "Print the page for man"),
 }
 
 _COMPLETE = "_TUISIM_COMPLETE"

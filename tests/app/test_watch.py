@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from tuisim.app.loader import Watch
+from tuisim.app.loader import FileWatch
 
 
 def test_what_changes_is_told_once(tmp_path: Path) -> None:
     path, other = tmp_path / "a.py", tmp_path / "b.py"
     path.write_text("1")
-    watch = Watch()
+    watch = FileWatch()
     watch.follow([path, other])
     assert watch.changed() == []
     path.write_text("22")
@@ -25,7 +25,7 @@ def test_a_file_of_the_same_size_and_time_put_in_its_place_is_another(tmp_path: 
     path.write_text("1")
     other.write_text("2")
     os.utime(other, ns=(path.stat().st_atime_ns, path.stat().st_mtime_ns))
-    watch = Watch()
+    watch = FileWatch()
     watch.follow([path])
     other.replace(path)
     assert watch.changed() == [path]
@@ -34,7 +34,7 @@ def test_a_file_of_the_same_size_and_time_put_in_its_place_is_another(tmp_path: 
 def test_a_file_that_is_gone_for_a_while_is_no_change(tmp_path: Path) -> None:
     path = tmp_path / "a.py"
     path.write_text("1")
-    watch = Watch()
+    watch = FileWatch()
     watch.follow([path])
     kept = tmp_path / "kept"
     path.rename(kept)
@@ -46,7 +46,7 @@ def test_a_file_that_is_gone_for_a_while_is_no_change(tmp_path: Path) -> None:
 def test_what_is_written_from_here_is_no_change(tmp_path: Path) -> None:
     path = tmp_path / "a.py"
     path.write_text("1")
-    watch = Watch()
+    watch = FileWatch()
     watch.follow([path])
     path.write_text("22")
     watch.note(path)

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tuisim.batch.batch_file import load_batch, means_batch
-from tuisim.batch.parameters import Draw, Sample
+from tuisim.batch.parameters import RandomDraw, SampleValues
 from tuisim.config.worlds import load_world
 from tuisim.errors import ConfigError
 
@@ -50,7 +50,7 @@ def test_every_key_is_read(write: Any, tmp_path: Path) -> None:
         "noise.motor": (0, 20),
         "robot.wheel_diameter_mm": (54.0, 54.5, 55.0),
         "background": ("Loop", "Lollipop"),
-        "start.x_mm": Sample(Draw.RANDOM, 100, 300, 20),
+        "start.x_mm": SampleValues(RandomDraw.RANDOM, 100, 300, 20),
         "seed": (0, 1, 2, 3),
     }
     assert (found.jobs, found.keep, found.out, found.goals) == (

@@ -10,7 +10,7 @@ import pytest
 
 from tuisim import __version__
 from tuisim.batch import cluster_watch
-from tuisim.batch.cluster_watch import Watch, within
+from tuisim.batch.cluster_watch import ClusterWatch, within
 from tuisim.errors import HostError
 
 NOBODY = ModuleNotFoundError("No module named 'tuisim'")
@@ -47,8 +47,8 @@ class Cluster:
         if len(self._states) > 1:
             del self._states[0]
 
-    def watch(self) -> Watch:
-        return Watch(self, "tcp://lab:8786", lambda: self.now, self.sleep)
+    def watch(self) -> ClusterWatch:
+        return ClusterWatch(self, "tcp://lab:8786", lambda: self.now, self.sleep)
 
 
 CANNOT_WORK = {

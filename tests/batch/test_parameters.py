@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from tuisim.batch.parameters import Draw, Sample, grid_of, parse_seeds, parse_set, parse_values
+from tuisim.batch.parameters import RandomDraw, SampleValues, grid_of, parse_seeds, parse_set, parse_values
 from tuisim.errors import ConfigError
 
 
@@ -26,8 +26,10 @@ from tuisim.errors import ConfigError
         pytest.param("../maze.png", ("../maze.png",), id="the path of a file"),
         pytest.param("'a,b.png',\"7\"", ("a,b.png", "7"), id="words in quotes"),
         pytest.param("true,off,ON", (True, False, True), id="truth values"),
-        pytest.param("random(0, 50, 20)", Sample(Draw.RANDOM, 0.0, 50.0, 20), id="random numbers"),
-        pytest.param("latin(54,58.5,10, seed=3)", Sample(Draw.LATIN, 54.0, 58.5, 10, 3), id="a Latin hypercube"),
+        pytest.param("random(0, 50, 20)", SampleValues(RandomDraw.RANDOM, 0.0, 50.0, 20), id="random numbers"),
+        pytest.param(
+            "latin(54,58.5,10, seed=3)", SampleValues(RandomDraw.LATIN, 54.0, 58.5, 10, 3), id="a Latin hypercube"
+        ),
     ],
 )
 def test_values_are_read(text: str, expected: object) -> None:
@@ -85,20 +87,20 @@ def test_the_last_parameter_varies_fastest() -> None:
 
 
 def test_random_numbers_lie_inside_and_repeat() -> None:
-    sample = Sample(Draw.RANDOM, 54, 58, 200)
+    sample = SampleValues(RandomDraw.RANDOM, 54, 58, 200)
     values = sample.values("a", whole=False)
     assert all(54 <= value <= 58 for value in values)
     assert values == sample.values("a", whole=False)
     assert not set(values) & set(sample.values("b", whole=False))
-    assert not set(values) & set(Sample(Draw.RANDOM, 54, 58, 200, seed=1).values("a", whole=False))
+    assert not set(values) & set(SampleValues(RandomDraw.RANDOM, 54, 58, 200, seed=1).values("a", whole=False))
 
 
 def test_whole_random_numbers_include_both_ends() -> None:
-    assert set(Sample(Draw.RANDOM, 0, 5, 300).values("a", whole=True)) == {0, 1, 2, 3, 4, 5}
+    assert set(SampleValues(RandomDraw.RANDOM, 0, 5, 300).values("a", whole=True)) == {0, 1, 2, 3, 4, 5}
 
 
 def test_a_latin_hypercube_has_one_value_in_each_part_of_each_parameter() -> None:
-    latin = Sample(Draw.LATIN, 0, 10, 10)
+    latin = SampleValues(RandomDraw.LATIN, 0, 10, 10)
     grid = grid_of({"a": latin, "seed": (1, 2), "b": latin})
     assert (len(grid), grid.names) == (20, ("a", "b", "seed"))
     columns = list(zip(*(point.values() for point in grid if point["seed"] == 1), strict=True))
@@ -109,7 +111,7 @@ def test_a_latin_hypercube_has_one_value_in_each_part_of_each_parameter() -> Non
 
 def test_the_parameters_of_a_latin_hypercube_have_the_same_number_of_values() -> None:
     with pytest.raises(ConfigError, match=r"^b: .*same number of values and seed as a .*4, seed=0"):
-        grid_of({"a": Sample(Draw.LATIN, 0, 1, 4), "b": Sample(Draw.LATIN, 0, 1, 5)})
+        grid_of({"a": SampleValues(RandomDraw.LATIN, 0, 1, 4), "b": SampleValues(RandomDraw.LATIN, 0, 1, 5)})
 
 
 def test_too_many_combinations_are_refused() -> None:

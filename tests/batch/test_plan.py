@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tuisim.batch.parameters import Draw, Sample
+from tuisim.batch.parameters import RandomDraw, SampleValues
 from tuisim.batch.plan import Plan, Subject
 from tuisim.config.options import Settings
 from tuisim.errors import ConfigError
@@ -63,7 +63,7 @@ def test_arguments_of_the_program_are_a_parameter() -> None:
     [pytest.param("noise.motor", True, id="whole"), pytest.param("robot.wheel_diameter_mm", False, id="real")],
 )
 def test_samples_are_whole_where_the_key_takes_whole_numbers(name: str, whole: bool) -> None:
-    values = [task.parameters[name] for task in plan({name: Sample(Draw.RANDOM, 50, 60, 4)}).tasks()]
+    values = [task.parameters[name] for task in plan({name: SampleValues(RandomDraw.RANDOM, 50, 60, 4)}).tasks()]
     assert {type(value) for value in values} == {int if whole else float}
 
 
@@ -83,7 +83,9 @@ def test_a_mat_brings_its_start_pose_unless_one_is_chosen() -> None:
         pytest.param({"seed": (-1,)}, (), "seed: .*whole number from 0", id="seed"),
         pytest.param({"noise.motor": (1,)}, ("motor_noise",), "noise.motor varies what an option sets", id="option"),
         pytest.param({"seed": (1,)}, ("seed",), "seed varies what an option sets", id="option for the seed"),
-        pytest.param({"noise.motor": Sample(Draw.RANDOM, 600, 700, 2)}, (), "noise.motor: must be", id="sample"),
+        pytest.param(
+            {"noise.motor": SampleValues(RandomDraw.RANDOM, 600, 700, 2)}, (), "noise.motor: must be", id="sample"
+        ),
     ],
 )  # fmt: skip
 def test_wrong_parameters_are_found_before_anything_is_run(choices: Any, given: tuple[str, ...], words: str) -> None:

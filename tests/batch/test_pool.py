@@ -22,7 +22,7 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.errors import LogError
 from tuisim.goals.judgement import GoalState
-from tuisim.goals.spec import Finish, Goal, Reach
+from tuisim.goals.spec import FinishCondition, Goal, ReachCondition
 from tuisim.runs import store, temporary
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.store import RunStore
@@ -108,7 +108,7 @@ def test_each_end_is_a_result(end: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("text", "kept"), [("x = 1", False), ("1 / 0", True)], ids=["met", "missed"])
 def test_failed_runs_are_kept(text: str, kept: bool, tmp_path: Path) -> None:
-    goals = (Goal(name="end", condition=Finish()),)
+    goals = (Goal(name="end", condition=FinishCondition()),)
     result = execute(task(text, goals=goals, keep=Keep.FAILED), tmp_path)
     assert bool(result.run_id) is kept
     assert (result.judgements[0].state is GoalState.MET) is not kept
@@ -130,7 +130,7 @@ HARM = {
 @pytest.mark.parametrize(("harm", "end", "judged"), HARM.values(), ids=HARM)
 def test_a_program_that_damages_its_recording_gets_a_result(tmp_path: Path, harm: str, end: str, judged: int) -> None:
     text = OWN_FILES.replace("tmp_path", tmp_path.name) + harm
-    result = execute(task(text, goals=(Goal("far", Reach(x_mm=1000, y_mm=100)),)), tmp_path)
+    result = execute(task(text, goals=(Goal("far", ReachCondition(x_mm=1000, y_mm=100)),)), tmp_path)
     assert (result.end, [one.state for one in result.judgements]) == (end, [GoalState.MISSED] * judged)
 
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.commands.run import Press, parse_press, press_actions
+from tuisim.commands.run import ButtonPress, parse_press, press_actions
 from tuisim.errors import ConfigError
 from tuisim.protocol import BUTTONS, SetButtons, UserAction
 
 GIVEN = {
-    "plain": ("enter@1", Press("enter", 1.0, 1.1)),
-    "held": ("up@0.5-2", Press("up", 0.5, 2.0)),
-    "from the start": ("backspace@0-0.01", Press("backspace", 0.0, 0.01)),
+    "plain": ("enter@1", ButtonPress("enter", 1.0, 1.1)),
+    "held": ("up@0.5-2", ButtonPress("up", 0.5, 2.0)),
+    "from the start": ("backspace@0-0.01", ButtonPress("backspace", 0.0, 0.01)),
 }
 
 
 @pytest.mark.parametrize(("text", "press"), GIVEN.values(), ids=GIVEN)
-def test_a_press_is_read(text: str, press: Press) -> None:
+def test_a_press_is_read(text: str, press: ButtonPress) -> None:
     assert parse_press(text) == press
 
 

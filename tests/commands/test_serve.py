@@ -13,7 +13,7 @@ import pytest
 
 from tests.conftest import Command
 from tuisim.web import server as web_server
-from tuisim.web.server import Limits, Server
+from tuisim.web.server import Server, ServerLimits
 
 
 @pytest.fixture
@@ -24,9 +24,9 @@ def program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def served(monkeypatch: pytest.MonkeyPatch) -> list[tuple[list[str], Limits, str, int]]:
+def served(monkeypatch: pytest.MonkeyPatch) -> list[tuple[list[str], ServerLimits, str, int]]:
     """Note what would be served: command of the app, limits, host and port."""
-    found: list[tuple[list[str], Limits, str, int]] = []
+    found: list[tuple[list[str], ServerLimits, str, int]] = []
 
     def note(server: Server, host: str, port: int, announce: Callable[[int], None]) -> int:
         announce(port)
@@ -49,7 +49,7 @@ OPENED = {
 @pytest.mark.parametrize(("words", "opened"), OPENED.values(), ids=OPENED)
 @pytest.mark.usefixtures("program")
 def test_what_to_open_is_passed_on(
-    words: str, opened: str, served: list[tuple[list[str], Limits, str, int]], here: Command
+    words: str, opened: str, served: list[tuple[list[str], ServerLimits, str, int]], here: Command
 ) -> None:
     assert here("serve", *words.split()).returncode == 0
     command = served[0][0]
@@ -57,16 +57,16 @@ def test_what_to_open_is_passed_on(
 
 
 LIMITS = {
-    "usual": ("", (Limits(8), "127.0.0.1", 8000)),
-    "all": ("--max-visitors 2 --idle 1.5 --host 0.0.0.0 --port 81", (Limits(2, 90.0), "0.0.0.0", 81)),
+    "usual": ("", (ServerLimits(8), "127.0.0.1", 8000)),
+    "all": ("--max-visitors 2 --idle 1.5 --host 0.0.0.0 --port 81", (ServerLimits(2, 90.0), "0.0.0.0", 81)),
 }
 
 
 @pytest.mark.parametrize(("words", "limits"), LIMITS.values(), ids=LIMITS)
 def test_the_server_is_limited(
     words: str,
-    limits: tuple[Limits, str, int],
-    served: list[tuple[list[str], Limits, str, int]],
+    limits: tuple[ServerLimits, str, int],
+    served: list[tuple[list[str], ServerLimits, str, int]],
     here: Command,
 ) -> None:
     here("serve", *words.split())

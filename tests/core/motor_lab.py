@@ -30,14 +30,14 @@ from tuisim.core.tick_record import TICK_RECORD
 from tuisim.runs.run_folder import field_files
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.control import RunControl
-from tuisim.runtime.output import Output
+from tuisim.runtime.output import OutputRecorder
 from tuisim.runtime.patches.clock import loop_hook, patch_time
 from tuisim.runtime.patches.replacement import replace as put_in_place
 from tuisim.runtime.patches.threads import patch_threads
-from tuisim.runtime.program import Outcome, ProgramRunner
+from tuisim.runtime.program import ProgramOutcome, ProgramRunner
 from tuisim.runtime.run_config import RunConfig
 from tuisim.runtime.scheduler import Scheduler
-from tuisim.runtime.session import Limits, Session
+from tuisim.runtime.session import RunLimits, Session
 from tuisim.shim.files.open_files import OpenFiles
 from tuisim.shim.install import install
 
@@ -139,12 +139,12 @@ def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict
         trace_from_tick=None, hold_at=None,
     )  # fmt: skip
     sim, lines = Simulation(spec, MemorySink()), Lines()
-    output = Output()
+    output = OutputRecorder()
     output.writer = lines  # type: ignore[assignment]
     channel = Channel(*os.pipe())
     steering = RunControl(channel, Path(), False, 0.0, False, ())
     session = Session(sim, open_field(files), output)
-    session.connect(channel, steering, Limits(60 * NS_PER_S), "program.py")
+    session.connect(channel, steering, RunLimits(60 * NS_PER_S), "program.py")
     output.place = lambda: (sim.tick, session.now, 0)
     turn = loop_hook(session, 500, 5_000_000)
     scheduler = Scheduler(session, lambda parked: None)
@@ -154,7 +154,7 @@ def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict
     patch_threads(scheduler, lambda *ended: runner.hooks.show_end_of_bare_thread(*ended))
     install(session, OpenFiles(), {}, put_in_place, lambda file: False)
 
-    def leave(outcome: Outcome) -> NoReturn:
+    def leave(outcome: ProgramOutcome) -> NoReturn:
         raise SystemExit(outcome.end)
 
     runner = ProgramRunner(session, output, scheduler, turn, leave)

@@ -12,7 +12,7 @@ from tests.conftest import Command
 from tuisim.errors import ConfigError
 from tuisim.goals.files import load_goals
 from tuisim.goals.key_lines import line_of_key
-from tuisim.goals.spec import AllOf, Finish, Print, Together
+from tuisim.goals.spec import AllOf, FinishCondition, PrintCondition, Together
 
 GOOD = "[[goal]]\nname = 'a'\nfinish = true\n\n"
 """A goal of four lines, before others."""
@@ -237,10 +237,10 @@ def test_world_of_another_file_is_overridden(tmp_path: Path) -> None:
 def test_short_forms(tmp_path: Path) -> None:
     (tmp_path / "goals.toml").write_text(goal("print = 'x'", "all = 'a'", "dialogue = [{ answer = '5' }]"))
     file = load_goals(tmp_path / "goals.toml")
-    assert file.goals[0].condition == Finish()
+    assert file.goals[0].condition == FinishCondition()
     together = file.goals[1].condition
     assert isinstance(together, Together)
-    assert together.conditions[0] == Print(("x",))
+    assert together.conditions[0] == PrintCondition(("x",))
     assert together.conditions[2] == AllOf(("a",))
     assert file.answers == ("5",)
 

@@ -11,7 +11,7 @@ from tests.goals.recorded import Run, Step, ahead, drive, goals_of, says, wait, 
 from tests.running import Run as RunProgram
 from tuisim.goals.judge import FINDERS, judge
 from tuisim.goals.judgement import Judgement, points
-from tuisim.goals.spec import CONDITIONS, Kind
+from tuisim.goals.spec import CONDITIONS, ConditionKind
 from tuisim.protocol import End
 from tuisim.runs.run_folder import read_run
 from tuisim.runs.store import RunStore, compact_run
@@ -130,7 +130,7 @@ def test_state_at_earlier_ticks(home: Path, tmp_path: Path) -> None:
 
 
 def test_every_kind_of_condition_has_a_function() -> None:
-    needed = {kind for kind in CONDITIONS.values() if kind.KIND is not Kind.COMBINED}
+    needed = {kind for kind in CONDITIONS.values() if kind.KIND is not ConditionKind.COMBINED}
     assert set(FINDERS) == needed
 
 

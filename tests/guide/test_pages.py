@@ -15,7 +15,7 @@ from tuisim.cli import COMMANDS
 from tuisim.config.options import OPTIONS
 from tuisim.config.user_config import SETTINGS
 from tuisim.core.profile import PROFILES
-from tuisim.guide.catalogue import Part, pages
+from tuisim.guide.catalogue import GuidePart, pages
 from tuisim.guide.tables import TABLES, table, tables_in
 from tuisim.runs.frames import SAMPLE_COLUMNS
 
@@ -34,7 +34,7 @@ WORDS_OF = {
 def test_every_file_is_a_page_of_the_contents() -> None:
     files = {path.stem for path in (ROOT / "tuisim" / "guide" / "pages").iterdir()}
     assert files == set(pages())
-    assert {page.part for page in pages().values()} == set(Part)
+    assert {page.part for page in pages().values()} == set(GuidePart)
 
 
 def test_every_table_is_in_a_page() -> None:

@@ -10,21 +10,32 @@ from tuisim.lessons.events import (
     BreakMet,
     Event,
     Exported,
+    ExpressionWatched,
     JudgedRun,
     Noted,
     Shown,
     TriedElsewhere,
     Typed,
     Visited,
-    Watched,
     is_met,
     note_fault,
     unready,
 )
-from tuisim.lessons.spec import Break, Check, Export, Note, OtherWorld, Question, Run, Show, Visit, Watch
+from tuisim.lessons.spec import (
+    BreakCheck,
+    Check,
+    ExportCheck,
+    NoteCheck,
+    OtherWorld,
+    QuestionCheck,
+    RunCheck,
+    ShowCheck,
+    VisitCheck,
+    WatchCheck,
+)
 
-NUMBER = Question("Q", 50.2, within=0.5)
-CHOICE = Question("Q", "the light", choices=("the tick", "the light"))
+NUMBER = QuestionCheck("Q", 50.2, within=0.5)
+CHOICE = QuestionCheck("Q", "the light", choices=("the tick", "the light"))
 
 
 def runs(*seeds: int, met: str = "a b", from_start: bool = True) -> list[Event]:
@@ -33,26 +44,26 @@ def runs(*seeds: int, met: str = "a b", from_start: bool = True) -> list[Event]:
 
 
 BACK = "from farther back"
-FARTHER = Run(("a",), also=(OtherWorld(BACK, {"x_mm": 460.0}, ("a",)),))
-HERE = Question("Q", 50.2, within=0.5, at_x_mm=((200.0, 400.0),), where="the band: m")
-SEEN = Question("Q", 50.2, within=0.5, seen=("instrumentation", "chart"))
-RAN = Question("Q", 50.2, within=0.5, run=True, printed="Error")
+FARTHER = RunCheck(("a",), also=(OtherWorld(BACK, {"x_mm": 460.0}, ("a",)),))
+HERE = QuestionCheck("Q", 50.2, within=0.5, at_x_mm=((200.0, 400.0),), where="the band: m")
+SEEN = QuestionCheck("Q", 50.2, within=0.5, seen=("instrumentation", "chart"))
+RAN = QuestionCheck("Q", 50.2, within=0.5, run=True, printed="Error")
 
 
 CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
-    "run": (Run(("a", "b")), runs(0), True),
-    "run, one goal missed": (Run(("a", "c")), runs(0), False),
-    "run, goals met by different runs": (Run(("a", "b")), [*runs(0, met="a"), *runs(0, 0, met="b")[1:]], False),
-    "run elsewhere": (Run(("a",)), runs(0, from_start=False), False),
-    "run anywhere": (Run(("a",), anywhere=True), runs(0, from_start=False), True),
+    "run": (RunCheck(("a", "b")), runs(0), True),
+    "run, one goal missed": (RunCheck(("a", "c")), runs(0), False),
+    "run, goals met by different runs": (RunCheck(("a", "b")), [*runs(0, met="a"), *runs(0, 0, met="b")[1:]], False),
+    "run elsewhere": (RunCheck(("a",)), runs(0, from_start=False), False),
+    "run anywhere": (RunCheck(("a",), anywhere=True), runs(0, from_start=False), True),
     "run whose program passes elsewhere": (FARTHER, [*runs(0), TriedElsewhere("r0", BACK, frozenset("a"))], True),
     "run whose program is not tried elsewhere": (FARTHER, runs(0), False),
     "run whose program fails elsewhere": (FARTHER, [*runs(0), TriedElsewhere("r0", BACK, frozenset())], False),
     "run of another program than that tried": (FARTHER, [*runs(0), TriedElsewhere("r9", BACK, frozenset("a"))], False),
-    "several runs": (Run(("a",), times=2), runs(0, 0), True),
-    "the same run twice": (Run(("a",), times=2), runs(0) * 2, False),
-    "several seeds": (Run(("a",), times=2, seeds=True), runs(0, 1), True),
-    "several runs of one seed": (Run(("a",), times=2, seeds=True), runs(0, 0), False),
+    "several runs": (RunCheck(("a",), times=2), runs(0, 0), True),
+    "the same run twice": (RunCheck(("a",), times=2), runs(0) * 2, False),
+    "several seeds": (RunCheck(("a",), times=2, seeds=True), runs(0, 1), True),
+    "several runs of one seed": (RunCheck(("a",), times=2, seeds=True), runs(0, 0), False),
     "number": (NUMBER, [Typed("50.2")], True),
     "number, comma and unit": (NUMBER, [Typed(" 50,6 %")], True),
     "number, at the limit": (NUMBER, [Typed("49.7")], True),
@@ -61,9 +72,9 @@ CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
     "number, two of them": (NUMBER, [Typed("50.2 51")], False),
     "number, none": (NUMBER, [Typed("")], False),
     "a wrong answer, then the right one": (NUMBER, [Typed("1"), Typed("50")], True),
-    "text": (Question("Q", "time.sleep(0.1)"), [Typed("Time.sleep( 0.1 )")], True),
-    "one of several texts": (Question("Q", ("left", "the left one")), [Typed("the left one.")], True),
-    "another text": (Question("Q", "left"), [Typed("right")], False),
+    "text": (QuestionCheck("Q", "time.sleep(0.1)"), [Typed("Time.sleep( 0.1 )")], True),
+    "one of several texts": (QuestionCheck("Q", ("left", "the left one")), [Typed("the left one.")], True),
+    "another text": (QuestionCheck("Q", "left"), [Typed("right")], False),
     "choice by number": (CHOICE, [Typed("2")], True),
     "choice by text": (CHOICE, [Typed("the light")], True),
     "another choice": (CHOICE, [Typed("1")], False),
@@ -75,21 +86,21 @@ CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
     "number of a run": (RAN, [Typed("50.2", printed=("x", "NameError: y"))], True),
     "number of another run": (RAN, [Typed("50.2", printed=("x",))], False),
     "number without a run": (RAN, [Typed("50.2", printed=(), has_run=False)], False),
-    "watch": (Watch("error"), [Watched(" error")], True),
-    "another watch": (Watch("error"), [Watched("error2")], False),
-    "breakpoint": (Break(r"left.*<"), [BreakMet("left.red% < 10")], True),
-    "another breakpoint": (Break(r"left.*<"), [BreakMet("7")], False),
-    "export": (Export(".csv"), [Exported("greys.csv")], True),
-    "export of another format": (Export(".csv"), [Exported("greys.parquet")], False),
-    "note": (Note("grey", 50.2), [Noted("Dark GREY", 50.0)], True),
-    "note on another band": (Note("grey", 50.2), [Noted("grey", 82.7)], False),
-    "note of another text": (Note("grey"), [Noted("white")], False),
-    "visit": (Visit(1, 2), [Visited(1.5)], True),
-    "visit of another instant": (Visit(1, 2), [Visited(2.1)], False),
-    "panel": (Show("chart"), [Shown("world"), Shown("chart")], True),
-    "panel of a paused program": (Show("debug", paused=True), [Shown("debug", paused=True)], True),
-    "panel while it runs": (Show("debug", paused=True), [Shown("debug", paused=False)], False),
-    "nothing": (Show("chart"), [], False),
+    "watch": (WatchCheck("error"), [ExpressionWatched(" error")], True),
+    "another watch": (WatchCheck("error"), [ExpressionWatched("error2")], False),
+    "breakpoint": (BreakCheck(r"left.*<"), [BreakMet("left.red% < 10")], True),
+    "another breakpoint": (BreakCheck(r"left.*<"), [BreakMet("7")], False),
+    "export": (ExportCheck(".csv"), [Exported("greys.csv")], True),
+    "export of another format": (ExportCheck(".csv"), [Exported("greys.parquet")], False),
+    "note": (NoteCheck("grey", 50.2), [Noted("Dark GREY", 50.0)], True),
+    "note on another band": (NoteCheck("grey", 50.2), [Noted("grey", 82.7)], False),
+    "note of another text": (NoteCheck("grey"), [Noted("white")], False),
+    "visit": (VisitCheck(1, 2), [Visited(1.5)], True),
+    "visit of another instant": (VisitCheck(1, 2), [Visited(2.1)], False),
+    "panel": (ShowCheck("chart"), [Shown("world"), Shown("chart")], True),
+    "panel of a paused program": (ShowCheck("debug", paused=True), [Shown("debug", paused=True)], True),
+    "panel while it runs": (ShowCheck("debug", paused=True), [Shown("debug", paused=False)], False),
+    "nothing": (ShowCheck("chart"), [], False),
 }
 
 
@@ -108,13 +119,13 @@ UNREADY = {
 
 
 @pytest.mark.parametrize(("question", "typed", "words"), UNREADY.values(), ids=UNREADY)
-def test_what_a_question_needs_first(question: Question, typed: Typed, words: str) -> None:
+def test_what_a_question_needs_first(question: QuestionCheck, typed: Typed, words: str) -> None:
     found = unready(question, typed)
     assert found.startswith(words)
     assert bool(found) is bool(words)
 
 
-NOTE = Note("grey", 50.2)
+NOTE = NoteCheck("grey", 50.2)
 NOTES = {
     "wrong band": (
         Noted("grey", 86.27),

@@ -9,7 +9,7 @@ import pytest
 from tuisim.errors import ConfigError
 from tuisim.lessons.files import load_lesson, name_of
 from tuisim.lessons.skeleton import SKELETON
-from tuisim.lessons.spec import CHECKS, Question, Run, Way
+from tuisim.lessons.spec import CHECKS, QuestionCheck, RunCheck, Way
 
 HEAD = "title = 'T'\nwhy = 'W'\n"
 GOAL = "[[goal]]\nname = 'end'\nfinish = true\n"
@@ -160,9 +160,9 @@ def test_parts_of_a_lesson(tmp_path: Path) -> None:
     found = load_lesson(path)
     assert (found.intro, found.program, found.settings) == ("Hello", "print(0)\n", {"seed": 3})
     one, two = found.steps
-    assert (one.text, one.check) == ("Do\n```python\n## shown\n```", Question("Q", 5))
+    assert (one.text, one.check) == ("Do\n```python\n## shown\n```", QuestionCheck("Q", 5))
     assert (two.check, two.answer, [wrong.text for wrong in two.wrong_programs]) == (
-        Run(("end",)),
+        RunCheck(("end",)),
         "print(1)\n",
         ["print(2)\n"],
     )

@@ -7,7 +7,7 @@ import pytest
 from tests.lessons.test_lessons import LESSONS
 from tuisim.batch.pool import run_many
 from tuisim.goals.judgement import GoalState
-from tuisim.lessons.spec import Lesson, OtherWorld, Run
+from tuisim.lessons.spec import Lesson, OtherWorld, RunCheck
 from tuisim.lessons.trial import task_of
 
 _ROWS = """\
@@ -429,12 +429,12 @@ def test_honest_way_passes(way: str) -> None:
     name, step_name, _ = way.split()
     lesson = LESSONS[name]
     (check,) = [step.check for step in lesson.steps if step.name == step_name]
-    assert isinstance(check, Run)
+    assert isinstance(check, RunCheck)
     for other in (None, *check.also):
         assert _missed(lesson, check, other, WAYS[way]) == []
 
 
-def _missed(lesson: Lesson, check: Run, other: OtherWorld | None, text: str) -> list[str]:
+def _missed(lesson: Lesson, check: RunCheck, other: OtherWorld | None, text: str) -> list[str]:
     """The reasons of the goals that a program misses in a world."""
     (result,) = run_many([task_of(lesson, text, seed=1, other=other)], jobs=1)
     wanted = other.goals if other else check.goals

@@ -11,10 +11,10 @@ from tuisim.batch.pool import run_many
 from tuisim.cli import COMMANDS
 from tuisim.commands.learn import learn
 from tuisim.config.program_file import programs
-from tuisim.goals.spec import Log
+from tuisim.goals.spec import LogCondition
 from tuisim.lessons.catalogue import shipped_paths
 from tuisim.lessons.files import load_lesson
-from tuisim.lessons.spec import Lesson, Question, Run
+from tuisim.lessons.spec import Lesson, QuestionCheck, RunCheck
 from tuisim.lessons.trial import faults, task_of, warnings
 
 LESSONS = {name: load_lesson(path) for name, path in shipped_paths().items()}
@@ -42,9 +42,9 @@ def test_lesson_is_complete(name: str) -> None:
 def test_names_that_a_goal_needs_are_in_the_task(name: str) -> None:
     lesson, needed = LESSONS[name], {goal.name: goal.condition for goal in LESSONS[name].goals}
     for step in lesson.steps:
-        conditions = [needed[goal] for goal in step.check.goals] if isinstance(step.check, Run) else []
+        conditions = [needed[goal] for goal in step.check.goals] if isinstance(step.check, RunCheck) else []
         for condition in conditions:
-            if isinstance(condition, Log):
+            if isinstance(condition, LogCondition):
                 assert condition.name in f"{step.text} {lesson.program}", f"{step.name}: does not say {condition.name}"
 
 
@@ -85,7 +85,7 @@ def _rows(lesson: Lesson) -> float:
 def test_answer_is_what_a_student_measures(name: str) -> None:
     lesson, _, step_name = name.partition(" ")
     (step,) = [step for step in LESSONS[lesson].steps if step.name == step_name]
-    assert isinstance(step.check, Question)
+    assert isinstance(step.check, QuestionCheck)
     assert isinstance(step.check.answer, int | float)
     assert MEASURED[name](LESSONS[lesson]) == pytest.approx(step.check.answer, abs=step.check.within)
 

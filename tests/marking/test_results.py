@@ -11,7 +11,7 @@ from ev3dev2 import motor
 
 from tuisim.batch.task import Result
 from tuisim.goals.judgement import Change, GoalState, Judgement
-from tuisim.goals.spec import AllOf, Finish, Goal, Reach
+from tuisim.goals.spec import AllOf, FinishCondition, Goal, ReachCondition
 from tuisim.marks.outcome import GoalOutcome
 from tuisim.marks.results import outcome_of
 
@@ -66,7 +66,7 @@ def test_a_path_of_the_students_own_stays() -> None:
 
 
 def test_a_goal_made_of_others_is_missed_for_the_reason_of_the_first_that_is() -> None:
-    near, finish = Goal("near", Reach(x_mm=5)), Goal("finish", Finish())
+    near, finish = Goal("near", ReachCondition(x_mm=5)), Goal("finish", FinishCondition())
     both = Goal("both", AllOf(("near", "finish")))
     every = Goal("every", AllOf(("both",)))
     judgements = (

@@ -20,13 +20,13 @@ from tuisim.marks.feedback import feedback_of, file_stems, write_feedback
 from tuisim.marks.frame import export_marks, frame_of
 from tuisim.marks.outcome import GoalOutcome, Outcome, outcome_from_plain
 from tuisim.marks.page import page_of
-from tuisim.marks.sheet import Column, Sheet, lines_of, sheet_of, summary_of
+from tuisim.marks.sheet import Sheet, SheetColumn, lines_of, sheet_of, summary_of
 from tuisim.marks.students import Student
 from tuisim.source import Program
 
 COLUMNS = (
-    Column("place", "Stop at the place.", 7.0, "Measure the distance."),
-    Column("wall", "Do not touch the wall.", 3.0, ""),
+    SheetColumn("place", "Stop at the place.", 7.0, "Measure the distance."),
+    SheetColumn("wall", "Do not touch the wall.", 3.0, ""),
 )
 TEXT = "drive()\nstop()  # <b>too late</b>\n"
 

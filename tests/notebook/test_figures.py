@@ -18,7 +18,7 @@ from tuisim.analysis.chart import View
 from tuisim.analysis.chart import chart_of as plotted
 from tuisim.app.render.mat import whole_field
 from tuisim.charts.files import svg_of
-from tuisim.charts.layout import Chart, Stroke, Words, laid_out
+from tuisim.charts.layout import ChartData, Stroke, Words, laid_out
 from tuisim.charts.sample_chart import sample_chart
 from tuisim.charts.world_image import (
     COLORED,
@@ -45,7 +45,7 @@ def samples(count: int, peak: float) -> list[Sample]:
     return [Sample("Grey", peak if at == count // 3 else at % 7, at / count, at, at, 1) for at in range(count)]
 
 
-def drawn(chart: Chart, kind: type[Kind]) -> list[Kind]:
+def drawn(chart: ChartData, kind: type[Kind]) -> list[Kind]:
     return [shape for shape in laid_out(chart, *CHART_SIZE, titled=False).shapes if isinstance(shape, kind)]
 
 

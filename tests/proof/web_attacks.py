@@ -12,7 +12,7 @@ from tests.proof.kind import FaultError
 from tests.running import PATIENCE_S
 from tests.web.stand_in import stand_in
 from tuisim.web.gate import Gate
-from tuisim.web.server import Limits, Server, listening
+from tuisim.web.server import Server, ServerLimits, listening
 
 TOKEN = "the-token"
 _VISITORS = 3
@@ -184,7 +184,7 @@ ATTACKS: Mapping[str, Callable[[Target], Awaitable[None]]] = {
 async def _attack(name: str) -> None:
     reports: list[str] = []
     async with AsyncExitStack() as stack:
-        limits = Limits(_VISITORS, PATIENCE_S, 0.01)
+        limits = ServerLimits(_VISITORS, PATIENCE_S, 0.01)
         server = Server(stand_in(), Gate("127.0.0.1", TOKEN), limits, reports.append)
         port = await stack.enter_async_context(listening(server, "127.0.0.1", 0))
         target = Target(await stack.enter_async_context(ClientSession()), port)

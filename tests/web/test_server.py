@@ -24,7 +24,7 @@ from tests.running import PATIENCE_S
 from tests.web.stand_in import stand_in
 from tuisim.web import session
 from tuisim.web.gate import Gate
-from tuisim.web.server import Limits, Server, listening
+from tuisim.web.server import Server, ServerLimits, listening
 
 TOKEN = "the-token"
 """The secret part of the address of every server here."""
@@ -87,7 +87,7 @@ async def visited() -> AsyncIterator[Visited]:
             patience_s: float = 0.01,
             report: Callable[[str], None] = lambda _: None,
         ) -> Visitor:
-            limits = Limits(visitors, idle_s, patience_s)
+            limits = ServerLimits(visitors, idle_s, patience_s)
             server = Server(command or stand_in(), Gate("127.0.0.1", TOKEN), limits, report)
             port = await stack.enter_async_context(listening(server, "127.0.0.1", 0))
             visitor = Visitor(await stack.enter_async_context(ClientSession()), port)
@@ -128,7 +128,7 @@ async def test_a_stranger_gets_no_app(
     path: str, headers: Mapping[str, str], visited: Visited, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     started: list[AppService] = []
-    monkeypatch.setattr(session.Session, "start", lambda self, *_: started.append(self))
+    monkeypatch.setattr(session.WebSession, "start", lambda self, *_: started.append(self))
     visitor = await visited()
     url = visitor.origin + path.format(place="ws")
     with pytest.raises(WSServerHandshakeError) as refused:
@@ -321,7 +321,7 @@ async def test_a_closed_tab_ends_its_app(
 
 
 async def test_the_end_of_the_server_ends_all_apps() -> None:
-    server = Server(stand_in(), Gate("127.0.0.1", TOKEN), Limits(2))
+    server = Server(stand_in(), Gate("127.0.0.1", TOKEN), ServerLimits(2))
     async with ClientSession() as client:
         async with listening(server, "127.0.0.1", 0) as port:
             started = [await Visitor(client, port).started() for _ in range(2)]

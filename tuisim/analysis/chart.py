@@ -10,7 +10,7 @@ from tuisim.analysis.model import Model
 from tuisim.analysis.traces import DISTANCE, LogTrace, sample_and_hold
 from tuisim.charts.axes import Limits, column_of, value_limits
 from tuisim.charts.canvas import DOTS_X, DOTS_Y, seen_points
-from tuisim.charts.layout import Chart, Line, with_unit
+from tuisim.charts.layout import ChartData, Line, with_unit
 from tuisim.charts.traces import LARGEST, min_max
 from tuisim.errors import LogError, printable
 from tuisim.runs.arrays import FloatArray
@@ -30,7 +30,7 @@ class View:
     """Pair of x and y to draw against each other, instead of all variables over time."""
 
 
-def chart_of(model: Model, view: View, columns: int, rows: int) -> Chart:
+def chart_of(model: Model, view: View, columns: int, rows: int) -> ChartData:
     """Return the chart of a model: its visible variables within its limits.
 
     What a picture of `columns` by `rows` pixels, or parts of characters, could not tell apart is left out.
@@ -48,7 +48,7 @@ def chart_of(model: Model, view: View, columns: int, rows: int) -> Chart:
     x_label = "time (s)" if model.log.layout.time else "row"
     if model.alignment == DISTANCE:
         x_label = "distance driven (mm)"
-    return Chart(
+    return ChartData(
         printable(model.log.title),
         tuple(lines),
         x_limits,
@@ -75,7 +75,7 @@ def _clipped(xs: FloatArray, ys: FloatArray, limits: Limits) -> tuple[FloatArray
     return np.insert(xs[inside], at, crossed), np.insert(ys[inside], at, np.interp(crossed, xs, ys))
 
 
-def _path(model: Model, names: tuple[str, str], marks: bool, columns: int, rows: int) -> Chart:
+def _path(model: Model, names: tuple[str, str], marks: bool, columns: int, rows: int) -> ChartData:
     xs, ys = (model.along(name) for name in names)
     places = model.trace.places
     with np.errstate(invalid="ignore"):
@@ -88,7 +88,7 @@ def _path(model: Model, names: tuple[str, str], marks: bool, columns: int, rows:
     cells = max(columns // DOTS_X, 1), max(rows // DOTS_Y, 1)
     xs, ys = seen_points(xs[good], ys[good], limits, *cells)
     title, x_label = printable(model.log.title), with_unit(names[0])
-    return Chart(title, (Line(names[1], xs, ys, 0),), limits[0], x_label, marks=marks, path=True)
+    return ChartData(title, (Line(names[1], xs, ys, 0),), limits[0], x_label, marks=marks, path=True)
 
 
 def event_marks(model: Model, limits: Limits, columns: int) -> str:

@@ -23,13 +23,13 @@ from tuisim.app.actions.lesson import reads_on, takes_pages
 from tuisim.app.background import is_leaving, leave
 from tuisim.app.branch import branch_message
 from tuisim.app.brick_hint import BrickHint
-from tuisim.app.debugger import AppDebugger
+from tuisim.app.debugger import DebugController
 from tuisim.app.editor.document import Document
 from tuisim.app.feed import Feed, PastView, Series, sample_series
 from tuisim.app.form import NumberInput
-from tuisim.app.goals import AppGoals
+from tuisim.app.goals import GoalsController
 from tuisim.app.keymap import check_theme, with_keys
-from tuisim.app.lesson import AppLesson
+from tuisim.app.lesson import LessonController
 from tuisim.app.loader import PERIOD_S, Loader
 from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages
@@ -149,7 +149,7 @@ class LabApp(PanelMessages):
         self.past_view = PastView(self.panel_area, self.run_controller.timeline)
         self.feed: Feed | None = None
         self._drawn: tuple[Any, ...] = ((None,),)
-        self.goals = AppGoals(self, self.run_controller, self.panel_area, settings.goals)
+        self.goals = GoalsController(self, self.run_controller, self.panel_area, settings.goals)
         self.loader = Loader(
             self,
             self.run_controller,
@@ -160,8 +160,8 @@ class LabApp(PanelMessages):
             settings.world_file,
         )
         self.document = Document(self, self.run_controller, self.panel_area, self.loader)
-        self.debugger = AppDebugger(self, self.run_controller, self.panel_area, self.document.lines, self._to_now)
-        self.lesson = AppLesson(
+        self.debugger = DebugController(self, self.run_controller, self.panel_area, self.document.lines, self._to_now)
+        self.lesson = LessonController(
             self,
             self.run_controller,
             self.panel_area,

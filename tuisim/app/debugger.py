@@ -88,7 +88,7 @@ SHOWS_PANELS = frozenset({PauseReason.STEP, PauseReason.LINE, PauseReason.BREAK}
 """Pause reasons that open the debug panels automatically."""
 
 
-class AppDebugger:
+class DebugController:
     """The debugger of the app.
 
     Args:

@@ -33,7 +33,7 @@ _SHARE = 0.1
 """Largest share of the time that judging takes: a long recording is judged less often."""
 
 
-class AppGoals:
+class GoalsController:
     """The goals that are open in the app. While there are none, or their panel is closed, nothing is judged.
 
     Args:

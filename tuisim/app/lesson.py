@@ -18,20 +18,20 @@ from tuisim.core.spec import RunSpec, WorldSpec
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.goals.files import GoalsFile
 from tuisim.goals.judgement import GoalState, Judgement
-from tuisim.goals.spec import Log, Print
+from tuisim.goals.spec import LogCondition, PrintCondition
 from tuisim.lessons import progress as stored
 from tuisim.lessons.catalogue import find_lesson, lesson_paths
 from tuisim.lessons.events import (
     BreakMet,
     Event,
     Exported,
+    ExpressionWatched,
     JudgedRun,
     Noted,
     Shown,
     TriedElsewhere,
     Typed,
     Visited,
-    Watched,
     good_runs,
     is_met,
     met_by,
@@ -43,26 +43,26 @@ from tuisim.lessons.files import load_lesson
 from tuisim.lessons.progress import LessonProgress, StepState
 from tuisim.lessons.spec import (
     SEEABLE,
-    Break,
+    BreakCheck,
     Check,
-    Export,
+    ExportCheck,
     Lesson,
-    Note,
+    LessonStep,
+    NoteCheck,
     OtherWorld,
-    Question,
-    Run,
-    Show,
-    Step,
-    Visit,
-    Watch,
+    QuestionCheck,
+    RunCheck,
+    ShowCheck,
+    VisitCheck,
+    WatchCheck,
 )
 from tuisim.lessons.story import story
 from tuisim.protocol import End, PauseReason
 from tuisim.runs.store import load_run
 
 if TYPE_CHECKING:
-    from tuisim.app.debugger import AppDebugger
-    from tuisim.app.goals import AppGoals
+    from tuisim.app.debugger import DebugController
+    from tuisim.app.goals import GoalsController
     from tuisim.app.loader import Loader
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.panels.lesson import LessonPanel
@@ -82,7 +82,7 @@ def goals_of(lesson: Lesson) -> GoalsFile:
     return GoalsFile(lesson.path, lesson.title, lesson.goals, lesson.settings)
 
 
-class AppLesson:
+class LessonController:
     """The lesson that is open in the app, if any.
 
     Args:
@@ -101,9 +101,9 @@ class AppLesson:
         app: AppServices,
         run_controller: RunController,
         panel_area: PanelArea,
-        goals: AppGoals,
+        goals: GoalsController,
         loader: Loader,
-        debugger: AppDebugger,
+        debugger: DebugController,
         lesson: Lesson | None,
         folder: str | None,
     ) -> None:
@@ -119,7 +119,7 @@ class AppLesson:
         self._before = ""
         """Id of the run that was in view when the step began, which does not count."""
         self._judgements: tuple[Judgement, ...] = ()
-        self._done: Step | None = None
+        self._done: LessonStep | None = None
         """The step that has just been done."""
         self._elsewhere: RunSpec | None = None
         """What a run was that did not begin in the lesson's world; None if the last one did."""
@@ -194,17 +194,17 @@ class AppLesson:
         recording = self._run_controller.timeline.recording
         self._before = recording.run_id if recording else ""
         match self.step.check if self.step is not None else None:
-            case Show(panel=panel):
+            case ShowCheck(panel=panel):
                 # The student is to open it.
                 self._panel_area.request({panel: False})
-            case Question(at_x_mm=(_, *_)):
+            case QuestionCheck(at_x_mm=(_, *_)):
                 # The arrow keys are to move the robot, not the lines of the program.
                 self._panel_area.leave_code()
         self.show()
         self._app.situation_changed()
 
     @property
-    def step(self) -> Step | None:
+    def step(self) -> LessonStep | None:
         """The step to do; None if no lesson is open, or all of its steps are done or skipped."""
         return self.lesson.steps[self._at] if self.lesson is not None and self._at is not None else None
 
@@ -242,7 +242,7 @@ class AppLesson:
             TuisimError: it is wrong.
         """
         step = self.step
-        if step is None or not isinstance(step.check, Question):
+        if step is None or not isinstance(step.check, QuestionCheck):
             return
         check = step.check
         if not text:
@@ -259,7 +259,7 @@ class AppLesson:
             left = len(step.hints) - self.progress.of(step.name).hints
             raise TuisimError(f"{text} is not right. Try again{': escape, then Y shows a hint' if left > 0 else ''}")
 
-    def _typed(self, check: Question, text: str) -> Typed:
+    def _typed(self, check: QuestionCheck, text: str) -> Typed:
         """Return an answer with what has happened before it."""
         self._look()
         recording = self._run_controller.timeline.recording
@@ -307,7 +307,7 @@ class AppLesson:
         self._begin_step()
 
     @property
-    def step_before(self) -> Step | None:
+    def step_before(self) -> LessonStep | None:
         """The step before the one to do, or the last one at the end of the lesson."""
         at = len(self.lesson.steps) if self.lesson is not None and self._at is None else self._at
         return self.lesson.steps[at - 1] if self.lesson is not None and at else None
@@ -343,34 +343,34 @@ class AppLesson:
                 # What a run from elsewhere needs depends on whether it is over.
                 self.show()
 
-    def _observed(self, step: Step) -> Iterator[Event]:
+    def _observed(self, step: LessonStep) -> Iterator[Event]:
         match step.check:
-            case Run():
+            case RunCheck():
                 yield from self._judged_run(step)
-            case Watch():
+            case WatchCheck():
                 if self._debugger.view is not None:
                     watches = self._debugger.view.inspected.watches
-                    yield from (Watched(watch.text) for watch in watches if not watch.error)
-            case Break():
+                    yield from (ExpressionWatched(watch.text) for watch in watches if not watch.error)
+            case BreakCheck():
                 view = self._debugger.view
                 if view is not None and not view.past and view.paused.reason is PauseReason.BREAK:
                     yield BreakMet(view.paused.detail)
-            case Visit():
+            case VisitCheck():
                 timeline = self._run_controller.timeline
                 if timeline.at is not None and timeline.recording is not None:
                     yield Visited(timeline.at / timeline.recording.spec.profile.tick_hz)
-            case Show(panel=panel):
+            case ShowCheck(panel=panel):
                 if self._panel_area.shown(panel):
                     yield Shown(panel, self._run_controller.state is RunPhase.PAUSED)
-            case Note():
+            case NoteCheck():
                 yield from self._notes(step.check)
-            case Question() | Export():
+            case QuestionCheck() | ExportCheck():
                 # The student's keys tell.
                 pass
             case _:
                 assert_never(step.check)
 
-    def _judged_run(self, step: Step) -> Iterator[Event]:
+    def _judged_run(self, step: LessonStep) -> Iterator[Event]:
         recording, judgements = self._goals.judged
         if recording is None or recording.run_id == self._before or judgements is self._judgements:
             return
@@ -393,7 +393,7 @@ class AppLesson:
 
     def _try_elsewhere(self, check: Check, recording: Recording) -> None:
         """Try the program of a good run in the other worlds of the step, in the background."""
-        assert isinstance(check, Run)
+        assert isinstance(check, RunCheck)
         lesson, run_id = self.lesson, recording.run_id
         is_good = any(run.run_id == run_id for run in met_by(check, self._events))
         is_over = self._run_controller.state is RunPhase.ENDED
@@ -409,7 +409,9 @@ class AppLesson:
         then = partial(self._tried_elsewhere, check, run_id)
         background.run(self._panel_area, work, then, self._app.complain, group="lesson")
 
-    def _tried_elsewhere(self, check: Run, run_id: str, found: list[tuple[OtherWorld, tuple[Judgement, ...]]]) -> None:
+    def _tried_elsewhere(
+        self, check: RunCheck, run_id: str, found: list[tuple[OtherWorld, tuple[Judgement, ...]]]
+    ) -> None:
         """Take in how the program did in other worlds, unless the student has gone on meanwhile."""
         if self.step is None or self.step.check is not check:
             return
@@ -426,9 +428,9 @@ class AppLesson:
             self._remark = remark
         self.show()
 
-    def _count_try(self, step: Step, recording: Recording, judgements: tuple[Judgement, ...]) -> None:
+    def _count_try(self, step: LessonStep, recording: Recording, judgements: tuple[Judgement, ...]) -> None:
         """Count a run that has ended without passing as a try."""
-        assert isinstance(step.check, Run)
+        assert isinstance(step.check, RunCheck)
         states = [each.state for each in judgements if each.goal.name in step.check.goals]
         is_over = self._run_controller.state is RunPhase.ENDED and GoalState.OPEN not in states
         if is_over and GoalState.MISSED in states and self._counted != recording.run_id:
@@ -455,7 +457,7 @@ class AppLesson:
             return "This run began elsewhere. The robot is back at its start: R runs the program."
         return "This run began elsewhere: m moves the robot to its start, then R."
 
-    def _notes(self, check: Note) -> Iterator[Event]:
+    def _notes(self, check: NoteCheck) -> Iterator[Event]:
         recording = self._run_controller.timeline.recording
         if recording is None or time.monotonic() < self._next_look_s:
             return
@@ -482,8 +484,8 @@ class AppLesson:
         self._app.say(f"✓ {step.title}" + (" · the lesson is done" if over else ""))
         return True
 
-    def _leave_step(self, step: Step, state: StepState) -> None:
-        goals = step.check.goals if isinstance(step.check, Run) else ()
+    def _leave_step(self, step: LessonStep, state: StepState) -> None:
+        goals = step.check.goals if isinstance(step.check, RunCheck) else ()
         self._story = story(each for each in self._judgements if each.goal.name in goals)
         self._keep(self.progress.with_step(step.name, state=state, at=stored.now()))
         self._done = step if state is StepState.DONE else None
@@ -527,7 +529,7 @@ class AppLesson:
         if self.lesson is None:
             return LessonView()
         step = self.step
-        good = good_runs(step.check, self._events) if step and isinstance(step.check, Run) else 0
+        good = good_runs(step.check, self._events) if step and isinstance(step.check, RunCheck) else 0
         return LessonView(
             lesson=self.lesson,
             states=tuple(self.progress.of(each.name).state for each in self.lesson.steps),
@@ -550,7 +552,7 @@ def _is_of(event: Event, run_id: str) -> bool:
 
 def _why_elsewhere(missed: Judgement) -> str:
     """Return why a goal is missed in another world, without the numbers and words that are asked for there."""
-    if any(isinstance(part, Log | Print) for part in missed.goal.parts):
+    if any(isinstance(part, LogCondition | PrintCondition) for part in missed.goal.parts):
         return "what it prints is not what the robot sees there, at the places where it sees it."
     return missed.reason
 

@@ -25,7 +25,7 @@ from tuisim.runs.store import RunStore
 from tuisim.source import Program
 
 if TYPE_CHECKING:
-    from tuisim.app.goals import AppGoals
+    from tuisim.app.goals import GoalsController
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.render.mat import Pixels
     from tuisim.app.run_controller import RunController
@@ -56,14 +56,14 @@ class Loader:
         app: AppServices,
         run_controller: RunController,
         panel_area: PanelArea,
-        goals: AppGoals,
+        goals: GoalsController,
         on_change: Callable[[], None],
         on_mat: Callable[[Pixels | None], None],
         world_file: Path | None,
     ) -> None:
         self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
         self._goals, self._on_change, self._on_mat = goals, on_change, on_mat
-        self._watch = Watch()
+        self._watch = FileWatch()
         self.is_preparing = True
         """Whether the mat of the next run is being prepared, or will be: at first the app is drawn."""
         self._good: tuple[NextRun, Mat] | None = None
@@ -524,7 +524,7 @@ def _stamp(path: Path) -> _Stamp | None:
     return found.st_mtime_ns, found.st_size, found.st_ino
 
 
-class Watch:
+class FileWatch:
     """Detects changed files. A check costs one `stat` per file; nothing is read."""
 
     def __init__(self) -> None:

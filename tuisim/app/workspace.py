@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tuisim.app.debugger import AppDebugger
+    from tuisim.app.debugger import DebugController
     from tuisim.app.editor.document import Document
-    from tuisim.app.lesson import AppLesson
+    from tuisim.app.lesson import LessonController
     from tuisim.app.loader import Loader
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.run_controller import RunController
@@ -24,5 +24,5 @@ class Workspace:
     panel_area: PanelArea
     document: Document
     loader: Loader
-    debugger: AppDebugger
-    lesson: AppLesson
+    debugger: DebugController
+    lesson: LessonController

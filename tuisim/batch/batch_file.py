@@ -21,7 +21,7 @@ from tuisim.errors import ConfigError
 MAX_PROGRAMS = 10_000
 
 
-class _Batch(Struct):
+class _BatchTable(Struct):
     """The keys of the table; `Any` where further functions check them."""
 
     program: str | list[str] | UnsetType = UNSET
@@ -81,7 +81,7 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
     at = Location(str(path)).at(BATCH_KEY)
     if BATCH_KEY not in data:
         raise ConfigError("is no batch", f"a batch has a table [{BATCH_KEY}]", file=str(path))
-    table = files.convert(data.pop(BATCH_KEY), _Batch, at)
+    table = files.convert(data.pop(BATCH_KEY), _BatchTable, at)
     folder = path.parent
     world = None
     if table.world is not UNSET:
@@ -118,7 +118,7 @@ def _expressions(data: object, at: Location) -> dict[str, str]:
     return {name: files.convert(text, str, at.at(name)) for name, text in files.table(data, at).items()}
 
 
-def _choices(table: _Batch, at: Location) -> dict[str, Choice]:
+def _choices(table: _BatchTable, at: Location) -> dict[str, Choice]:
     found: dict[str, Choice] = {}
     if table.set is not UNSET:
         place = at.at("set")

@@ -14,7 +14,7 @@ from contextlib import suppress
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from tuisim.batch.cluster_watch import Watch, within
+from tuisim.batch.cluster_watch import ClusterWatch, within
 from tuisim.batch.execute import execute
 from tuisim.batch.task import Result, Task
 from tuisim.errors import ConfigError, HostError, TuisimError
@@ -69,7 +69,7 @@ def run_on_cluster(tasks: Iterable[Task], scheduler: str = "", workers: int = 0)
     except Exception as error:  # What listens at an address may be anything, and raise anything.
         raise _no_scheduler(scheduler, error) from None
     try:
-        yield from _results(client, Watch(client, scheduler or "this machine"), iter(tasks))
+        yield from _results(client, ClusterWatch(client, scheduler or "this machine"), iter(tasks))
     finally:
         _close(client)
         if cluster is not None:
@@ -104,7 +104,7 @@ def _close(client: Any) -> None:
         client.close(timeout=_CLOSE_S)
 
 
-def _results(client: Any, watch: Watch, tasks: Iterator[Task]) -> Iterator[Result]:
+def _results(client: Any, watch: ClusterWatch, tasks: Iterator[Task]) -> Iterator[Result]:
     watch.wait_for_workers()
     done: queue.SimpleQueue[Any] = queue.SimpleQueue()
     pending = 0

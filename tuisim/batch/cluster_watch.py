@@ -44,7 +44,7 @@ def within(seconds: float, call: Callable[..., _Found], *args: Any, **named: Any
     return result  # type: ignore[return-value]
 
 
-class Watch:
+class ClusterWatch:
     """Looks from time to time at a cluster.
 
     Args:

@@ -35,7 +35,7 @@ _TRUTHS: Mapping[str, bool] = {"true": True, "on": True, "false": False, "off": 
 ALLOWED = "0,20,50 or 54:58:0.5 or 0..199 or random(0, 50, 20) or latin(0, 50, 20)"
 
 
-class Draw(StrEnum):
+class RandomDraw(StrEnum):
     """How the values of a sample are spread over its interval."""
 
     RANDOM = "random"
@@ -45,10 +45,10 @@ class Draw(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Sample:
+class SampleValues:
     """A number of values drawn from an interval, with a seed of their own."""
 
-    draw: Draw
+    draw: RandomDraw
     low: float
     high: float
     count: int
@@ -66,7 +66,7 @@ class Sample:
         """
         random = Random(f"{self.draw} {self.seed} {name}")
         shares = [random.random() for _ in range(self.count)]
-        if self.draw is Draw.LATIN:
+        if self.draw is RandomDraw.LATIN:
             # Sorting by random numbers gives a permutation that no version of Python changes.
             order = sorted((random.random(), part) for part in range(self.count))
             shares = [(part + share) / self.count for (_, part), share in zip(order, shares, strict=True)]
@@ -78,12 +78,12 @@ class Sample:
         return tuple(self.low + share * (self.high - self.low) for share in shares)
 
 
-Choice = tuple[Value, ...] | Sample
+Choice = tuple[Value, ...] | SampleValues
 """What a parameter takes: these values, or a sample."""
 
 
 @dataclass(frozen=True, slots=True)
-class Axis:
+class ParameterAxis:
     """Parameters that vary together: one, or those of a Latin hypercube."""
 
     names: tuple[str, ...]
@@ -95,7 +95,7 @@ class Axis:
 class Grid:
     """Every combination of the points of some axes; the last axis varies fastest."""
 
-    axes: tuple[Axis, ...]
+    axes: tuple[ParameterAxis, ...]
     names: tuple[str, ...] = field(init=False)
     """The parameters, in the order of the axes."""
 
@@ -127,15 +127,15 @@ def grid_of(choices: Mapping[str, Choice], is_whole: Callable[[str, float], bool
     Raises:
         ConfigError: the samples of a Latin hypercube differ in number or seed, or there are too many combinations.
     """
-    axes: list[Axis] = []
+    axes: list[ParameterAxis] = []
     drawn = {name: choice for name, choice in choices.items() if _is_latin(choice)}
     for name, choice in choices.items():
         if name not in drawn:
-            axes.append(Axis((name,), tuple((value,) for value in _values(name, choice, is_whole))))
+            axes.append(ParameterAxis((name,), tuple((value,) for value in _values(name, choice, is_whole))))
         elif name == next(iter(drawn)):
             _check_together(drawn)
             columns = [_values(one, other, is_whole) for one, other in drawn.items()]
-            axes.append(Axis(tuple(drawn), tuple(zip(*columns, strict=True))))
+            axes.append(ParameterAxis(tuple(drawn), tuple(zip(*columns, strict=True))))
     grid = Grid(tuple(axes))
     if len(grid) > MAX_VALUES:
         raise ConfigError(f"{len(grid):,} combinations of {', '.join(grid.names)}", f"at most {MAX_VALUES:,}")
@@ -143,20 +143,20 @@ def grid_of(choices: Mapping[str, Choice], is_whole: Callable[[str, float], bool
 
 
 def _is_latin(choice: Choice) -> bool:
-    return isinstance(choice, Sample) and choice.draw is Draw.LATIN
+    return isinstance(choice, SampleValues) and choice.draw is RandomDraw.LATIN
 
 
 def _check_together(drawn: Mapping[str, Choice]) -> None:
     (first, one), *others = drawn.items()
     for name, other in others:
-        assert isinstance(one, Sample) and isinstance(other, Sample)
+        assert isinstance(one, SampleValues) and isinstance(other, SampleValues)
         if (one.count, one.seed) != (other.count, other.seed):
             message = f"a Latin hypercube needs the same number of values and seed as {first}"
             raise ConfigError(message, f"latin(…, …, {one.count}, seed={one.seed})", key=name)
 
 
 def _values(name: str, choice: Choice, is_whole: Callable[[str, float], bool]) -> Sequence[Value]:
-    if not isinstance(choice, Sample):
+    if not isinstance(choice, SampleValues):
         return choice
     # The middle of two whole numbers, inside the interval.
     inside = math.floor(choice.low) + 0.5
@@ -205,7 +205,7 @@ def parse_seeds(text: str, key: str = "--seeds") -> tuple[int, ...]:
         ConfigError: one is not a whole number in the range of seeds, or occurs twice.
     """
     choice = parse_values(text, key)
-    if isinstance(choice, Sample):
+    if isinstance(choice, SampleValues):
         choice = choice.values(SEED, whole=True)
     return checked_seeds(choice, key)
 
@@ -271,10 +271,10 @@ def _range(low: Decimal, high: Decimal, step: Decimal, piece: str, key: str) -> 
     return [int(value) if whole else float(value) for value in values]
 
 
-def _sample(name: str, inside: str, key: str) -> Sample:
+def _sample(name: str, inside: str, key: str) -> SampleValues:
     """Parse `random(LOW, HIGH, COUNT, seed=N)`, without the name."""
-    if name not in [*Draw]:
-        raise ConfigError(f"no such sample {name}(…)", nearest(name, [*Draw]), key=key)
+    if name not in [*RandomDraw]:
+        raise ConfigError(f"no such sample {name}(…)", nearest(name, [*RandomDraw]), key=key)
     words = [word.strip() for word in inside.split(",")]
     seed = 0
     if words and (named := re.fullmatch(r"seed\s*=\s*(\d{1,18})", words[-1])):
@@ -288,4 +288,4 @@ def _sample(name: str, inside: str, key: str) -> Sample:
         raise ConfigError(f"cannot draw {words[2]!r} values", f"a whole number from 1 to {MAX_VALUES:,}", key=key)
     if not low < high:
         raise ConfigError(f"{words[0]} is not less than {words[1]}", usage, key=key)
-    return Sample(Draw(name), low, high, int(words[2]), seed)
+    return SampleValues(RandomDraw(name), low, high, int(words[2]), seed)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from tuisim.atomic import replacing
 from tuisim.charts.layout import (
     FONT_PX,
-    Chart,
+    ChartData,
     Drawing,
     Raster,
     Rule,
@@ -41,7 +41,7 @@ Size = tuple[int, int]
 class ChartFormat:
     """One line of `CHART_FORMATS`."""
 
-    write: Callable[[Chart, Size], bytes]
+    write: Callable[[ChartData, Size], bytes]
     size: Size
     """Default width and height."""
     least: Size
@@ -51,17 +51,17 @@ class ChartFormat:
     """Resolution: subdivisions of a unit."""
 
 
-def _svg(chart: Chart, size: Size) -> bytes:
+def _svg(chart: ChartData, size: Size) -> bytes:
     return svg_of(laid_out(chart, *size)).encode()
 
 
-def _png(chart: Chart, size: Size) -> bytes:
+def _png(chart: ChartData, size: Size) -> bytes:
     content = io.BytesIO()
     image_of(laid_out(chart, *size)).save(content, "png")
     return content.getvalue()
 
 
-def _text(chart: Chart, size: Size) -> bytes:
+def _text(chart: ChartData, size: Size) -> bytes:
     from tuisim.charts.text_chart import text_of
 
     return f"{text_of(chart, *size).plain}\n".encode()
@@ -92,7 +92,7 @@ def format_of(path: Path) -> ChartFormat:
     return found
 
 
-def save_chart(chart_of: Callable[[int, int], Chart], path: Path, size: Size | None = None) -> None:
+def save_chart(chart_of: Callable[[int, int], ChartData], path: Path, size: Size | None = None) -> None:
     """Write a chart to a file, replacing an existing one.
 
     Args:

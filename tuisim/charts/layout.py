@@ -64,7 +64,7 @@ class Span:
 
 
 @dataclass(frozen=True, slots=True)
-class Chart:
+class ChartData:
     """The data of a whole chart."""
 
     title: str
@@ -190,7 +190,7 @@ class Frame:
         return Frame(self.left, self.top, self.right, self.bottom, self.x, limits)
 
 
-def laid_out(chart: Chart, width: int, height: int, *, titled: bool = True) -> Drawing:
+def laid_out(chart: ChartData, width: int, height: int, *, titled: bool = True) -> Drawing:
     """Return the picture of a chart in a size in pixels, with or without the title above it."""
     shapes: list[Shape] = []
     top: float = PAD
@@ -351,7 +351,7 @@ def _widest(limits: Limits) -> float:
     return max((len(text) for _, text in labelled(limits, 20)), default=1) * LETTER_PX + 8
 
 
-def _squared(chart: Chart, frame: Frame) -> Frame:
+def _squared(chart: ChartData, frame: Frame) -> Frame:
     """Use equal scales on both axes, for a path on the field."""
     names = [chart.x_label.partition(" (")[0], *(line.name for line in chart.lines)]
     if not chart.path or {unit_of(name) for name in names} != {"mm"}:
@@ -402,7 +402,7 @@ def _axes(frame: Frame, scale: _Scales, *, with_x: bool) -> list[Shape]:
     return shapes + borders_of(frame)
 
 
-def _strokes(chart: Chart, lines: Sequence[Line], scale: _Scales, frame: Frame) -> list[Shape]:
+def _strokes(chart: ChartData, lines: Sequence[Line], scale: _Scales, frame: Frame) -> list[Shape]:
     shapes: list[Shape] = []
     for line in lines:
         own = frame.with_y(scale.right) if scale.right and line.other_scale else frame
@@ -416,7 +416,7 @@ def _strokes(chart: Chart, lines: Sequence[Line], scale: _Scales, frame: Frame) 
     return shapes
 
 
-def _spans(chart: Chart, lines: Sequence[Line], frame: Frame) -> list[Shape]:
+def _spans(chart: ChartData, lines: Sequence[Line], frame: Frame) -> list[Shape]:
     names = {line.name for line in lines}
     shapes: list[Shape] = []
     for span in chart.spans:

@@ -7,12 +7,12 @@ from collections.abc import Iterable
 import numpy as np
 
 from tuisim.charts.axes import Limits
-from tuisim.charts.layout import Chart, Line
+from tuisim.charts.layout import ChartData, Line
 from tuisim.charts.traces import Pyramid, Trace, min_max
 from tuisim.runs.samples import Sample
 
 
-def sample_chart(samples: Iterable[Sample], columns: int, limits: Limits | None = None) -> Chart:
+def sample_chart(samples: Iterable[Sample], columns: int, limits: Limits | None = None) -> ChartData:
     """Return the samples over simulated time as `tuisim log plot` draws them, one line per name.
 
     Args:
@@ -30,4 +30,4 @@ def sample_chart(samples: Iterable[Sample], columns: int, limits: Limits | None 
         Line(name, *min_max(found.times_s, found.values, limits, columns), number, Trace(name, number).other_scale)
         for number, (name, found) in enumerate(series.items())
     )
-    return Chart("", lines, limits, "time (s)")
+    return ChartData("", lines, limits, "time (s)")

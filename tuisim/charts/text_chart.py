@@ -12,7 +12,7 @@ from rich.text import Text
 from tuisim.charts import axes
 from tuisim.charts.axes import Limits
 from tuisim.charts.canvas import AXIS, BRAILLE, PLAIN, Curve, TextRun, canvas, styled, xy_lines
-from tuisim.charts.layout import COLORS, Chart, Line, color_of, limits_of
+from tuisim.charts.layout import COLORS, ChartData, Line, color_of, limits_of
 from tuisim.charts.plot_image import Plot
 from tuisim.charts.text_runs import Run, cut
 from tuisim.charts.traces import Trace, Traces
@@ -111,7 +111,7 @@ class ChartPainter:
         with_line = height >= 9
         rows = max(height - len(lines) - len(values) - 1 - with_line, 1)
         x_limits = state.x_limits or _time_limits(traces.end_s(), state.grows)
-        scales = _Scales.of(drawn, width, rows, state.zoomed)
+        scales = _CellScales.of(drawn, width, rows, state.zoomed)
         columns = max(width - scales.left_width - scales.right_width, 2)
         left, top = scales.left_width, len(lines)
         cursors = [time_s for time_s in (state.cursor_s, state.other_s) if time_s is not None]
@@ -131,7 +131,13 @@ class ChartPainter:
         return ChartPicture([*lines, *values][:height], boxes, left, top, columns, rows, x_limits, plot)
 
     def _draw(
-        self, drawn: list[Trace], scales: _Scales, columns: int, rows: int, x_limits: Limits, curves: Sequence[Curve]
+        self,
+        drawn: list[Trace],
+        scales: _CellScales,
+        columns: int,
+        rows: int,
+        x_limits: Limits,
+        curves: Sequence[Curve],
     ) -> None:
         points = [(trace.name, len(trace.times_s)) for trace in drawn]
         key = (points, scales.left, scales.right, columns, rows, x_limits, [curve.marker for curve in curves])
@@ -142,7 +148,7 @@ class ChartPainter:
 
 
 @dataclass(frozen=True, slots=True)
-class _Scales:
+class _CellScales:
     """The vertical scale on the left, and perhaps another on the right."""
 
     left: Limits
@@ -151,7 +157,7 @@ class _Scales:
     right_labels: dict[int, str]
 
     @classmethod
-    def of(cls, drawn: list[Trace], width: int, rows: int, zoomed: bool) -> _Scales:
+    def of(cls, drawn: list[Trace], width: int, rows: int, zoomed: bool) -> _CellScales:
         others = [trace for trace in drawn if trace.other_scale]
         two = 0 < len(others) < len(drawn) and width >= _MIN_TWO_SCALES
         left = _limits([trace for trace in drawn if not trace.other_scale] if two else drawn, zoomed)
@@ -318,7 +324,7 @@ class _Drawn(Traces):
             trace.add(line.xs.tolist(), line.ys.tolist())
 
 
-def text_of(chart: Chart, width: int, height: int, *, colors: bool = False) -> Text:
+def text_of(chart: ChartData, width: int, height: int, *, colors: bool = False) -> Text:
     """Return a chart as text of a given size in characters.
 
     Args:
@@ -360,5 +366,5 @@ def _on_any_ground(run: Run) -> Run:
     return run if style.color and style.color.triplet in COLORS else (text, Style())
 
 
-def _unit(chart: Chart) -> str:
+def _unit(chart: ChartData) -> str:
     return chart.x_label.rpartition("(")[2].rstrip(")") if "(" in chart.x_label else ""

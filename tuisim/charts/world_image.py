@@ -313,7 +313,7 @@ _FAR_MM = 1e5
 
 
 @dataclass(frozen=True, slots=True)
-class PenTrace:
+class PenLines:
     """The pen trace of a run."""
 
     color: str
@@ -327,7 +327,7 @@ def pen_points_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatA
     return world_points_mm(telemetry, *outline_of(robot).pen_mm)
 
 
-def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> PenTrace:
+def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> PenLines:
     """Return the pen trace of a run, from the records of `runs.views.TelemetryView.array`."""
     pen = spec.robot.pen
     x_mm, y_mm = pen_points_mm(spec.robot, telemetry)
@@ -342,7 +342,7 @@ def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> PenTrace:
         moved = np.any(np.diff(np.round(line / MM_PER_PX * 2), axis=0) != 0, axis=1)
         # In most ticks the pen moves less than half a pixel.
         lines.append(tuple(map(tuple, line[np.concatenate([[True], moved])].tolist())))
-    return PenTrace(pen.color, pen.width_mm, tuple(line for line in lines if len(line) > 1))
+    return PenLines(pen.color, pen.width_mm, tuple(line for line in lines if len(line) > 1))
 
 
 def _scaled(mat: Pixels, mm_per_px: float) -> Image:
@@ -386,7 +386,7 @@ class WorldPainter:
     def _at(self, x_mm: float, y_mm: float) -> Point:
         return x_mm / self._scale, (FIELD_HEIGHT_MM - y_mm) / self._scale
 
-    def add_trace(self, trace: PenTrace) -> None:
+    def add_trace(self, trace: PenLines) -> None:
         """Add a pen trace to every later picture."""
         from PIL import ImageDraw
 
@@ -422,7 +422,7 @@ class WorldPainter:
 
 
 def world_picture(
-    spec: RunSpec, mat: Pixels, pose: Pose | None = None, traces: Sequence[PenTrace] = (), *,
+    spec: RunSpec, mat: Pixels, pose: Pose | None = None, traces: Sequence[PenLines] = (), *,
     rays: bool = False,
 ) -> Image:  # fmt: skip
     """Return mat, obstacles, pen traces and robot.

@@ -15,7 +15,7 @@ from tuisim.lessons.catalogue import find_lesson, lesson_paths, load_all, shippe
 from tuisim.lessons.files import load_lesson
 from tuisim.lessons.markdown import plain_text
 from tuisim.lessons.progress import LessonProgress, StepState, last_opened, load_progress
-from tuisim.lessons.spec import Lesson, Question, Step
+from tuisim.lessons.spec import Lesson, LessonStep, QuestionCheck
 
 _COLUMNS = 80
 _MARKS = {StepState.OPEN: "·", StepState.DONE: "✓", StepState.SKIPPED: "–"}
@@ -84,8 +84,8 @@ def text_of(lesson: Lesson, progress: LessonProgress) -> str:
     return "\n\n".join(part for part in parts if part)
 
 
-def _question(step: Step) -> list[str]:
-    if not isinstance(step.check, Question):
+def _question(step: LessonStep) -> list[str]:
+    if not isinstance(step.check, QuestionCheck):
         return []
     choices = [f"  {number} {choice}" for number, choice in enumerate(step.check.choices, start=1)]
     return ["\n".join([plain_text(f"Question: {step.check.ask}", _COLUMNS), *choices])]
@@ -135,7 +135,7 @@ def status(folder: str | None, as_json: bool) -> int:
     return 0
 
 
-def _details(progress: LessonProgress, step: Step) -> str:
+def _details(progress: LessonProgress, step: LessonStep) -> str:
     one = progress.of(step.name)
     words = [counted(one.tries, "wrong try", "wrong tries")] if one.tries else []
     words += [counted(one.hints, "hint")] if one.hints else []

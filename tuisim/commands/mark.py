@@ -35,9 +35,9 @@ from tuisim.marks.journal import Journal, journal_of
 from tuisim.marks.outcome import Outcome
 from tuisim.marks.page import page_of
 from tuisim.marks.reports import folder_of, write_reports
-from tuisim.marks.runs import STALL_LIMIT_S, Entry, Plan, outcomes_of
-from tuisim.marks.sheet import Column, Sheet, lines_of, sheet_of, summary_of
-from tuisim.marks.students import Found, Student, file_outside, find_students
+from tuisim.marks.runs import STALL_LIMIT_S, MarkPlan, RunEntry, outcomes_of
+from tuisim.marks.sheet import Sheet, SheetColumn, lines_of, sheet_of, summary_of
+from tuisim.marks.students import Student, StudentsFound, file_outside, find_students
 from tuisim.runs.child.isolation import check_isolation
 from tuisim.runs.child.supervisor import supervised
 from tuisim.runs.handle import RunOptions, user_python_path
@@ -103,7 +103,7 @@ def mark(**given: Any) -> int:
         arguments.folders, Path(task.program).name if task.program else "", _excluded(arguments, task)
     )
     entries, students = _entries(found, task, arguments)
-    plan = Plan(
+    plan = MarkPlan(
         goals=tuple(task.goals),
         seeds=seeds,
         options=RunOptions(
@@ -153,7 +153,7 @@ def _isolates(arguments: Arguments) -> bool:
 
 
 def _tell_so_far(
-    task: GoalsFile, plan: Plan, students: Sequence[Student], outcomes: Mapping[str, Sequence[Outcome]]
+    task: GoalsFile, plan: MarkPlan, students: Sequence[Student], outcomes: Mapping[str, Sequence[Outcome]]
 ) -> None:
     """Print the marks of the students whose programs have had all their runs, and what is kept of the others."""
     done = [
@@ -205,10 +205,10 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
         raise ConfigError(f"{arguments.feedback} is no folder", "name a folder", key="--feedback")
 
 
-def _columns(task: GoalsFile) -> list[Column]:
+def _columns(task: GoalsFile) -> list[SheetColumn]:
     """Return the goals that a student is shown: not those that are only parts of others."""
     shown = [goal for goal in task.goals if goal.points or goal.say]
-    return [Column(goal.name, goal.say or goal.name, goal.points, goal.hint) for goal in shown]
+    return [SheetColumn(goal.name, goal.say or goal.name, goal.points, goal.hint) for goal in shown]
 
 
 def _answers(arguments: Arguments, task: GoalsFile) -> tuple[str, ...]:
@@ -225,7 +225,7 @@ def _excluded(arguments: Arguments, task: GoalsFile) -> frozenset[Path]:
     return frozenset(Path(os.path.realpath(path)) for path in found)
 
 
-def _entries(found: Found, task: GoalsFile, arguments: Arguments) -> tuple[list[Entry], list[Student]]:
+def _entries(found: StudentsFound, task: GoalsFile, arguments: Arguments) -> tuple[list[RunEntry], list[Student]]:
     """Return the students whose programs can be run, and all students.
 
     Raises:
@@ -246,13 +246,13 @@ def _entries(found: Found, task: GoalsFile, arguments: Arguments) -> tuple[list[
                 text = str(error).replace(f"{folder}{os.sep}", "")
                 student = replace(student, source=None, problem=printable(text))
         if student.source:
-            entries.append(Entry(student, spec))
+            entries.append(RunEntry(student, spec))
         students.append(student)
     return entries, students
 
 
 def _collect(
-    entries: Sequence[Entry], plan: Plan, journal: Path, outcomes: dict[str, list[Outcome]], *, resumes: bool
+    entries: Sequence[RunEntry], plan: MarkPlan, journal: Path, outcomes: dict[str, list[Outcome]], *, resumes: bool
 ) -> None:
     """Run what is to be run; add the outcomes by name of student as they become known."""
     total = len(entries) * len(plan.seeds)

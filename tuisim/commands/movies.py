@@ -15,7 +15,7 @@ from tuisim.errors import ConfigError, nearest
 from tuisim.runs.store import RunStore
 
 if TYPE_CHECKING:
-    from tuisim.movies.clip import Panel, Recorded
+    from tuisim.movies.clip import ClipPanel, Recorded
     from tuisim.movies.painter import Size
     from tuisim.runs.run_folder import StoredRun
 
@@ -118,26 +118,26 @@ def _check_number(value: float, low: float, high: float, key: str) -> None:
         raise ConfigError(f"must be from {low:g} to {high:g}, got {value:g}", key=key)
 
 
-def _useful(recorded: Recorded) -> tuple[Panel, ...]:
+def _useful(recorded: Recorded) -> tuple[ClipPanel, ...]:
     """Return the panels that have something to show."""
-    from tuisim.movies.clip import Panel
+    from tuisim.movies.clip import ClipPanel
 
-    return (Panel.WORLD, Panel.CHART) if recorded.samples else (Panel.WORLD,)
+    return (ClipPanel.WORLD, ClipPanel.CHART) if recorded.samples else (ClipPanel.WORLD,)
 
 
-def _panels_of(text: str | None) -> tuple[Panel, ...]:
+def _panels_of(text: str | None) -> tuple[ClipPanel, ...]:
     """Return the named panels, in their order on the picture; none for None."""
-    from tuisim.movies.clip import Panel
+    from tuisim.movies.clip import ClipPanel
 
     if text is None:
         return ()
     names = [name.strip() for name in text.split(",") if name.strip()]
     for name in names:
-        if name not in list(Panel):
-            raise ConfigError(f"no such panel {name!r}", nearest(name, Panel), key="--panels")
+        if name not in list(ClipPanel):
+            raise ConfigError(f"no such panel {name!r}", nearest(name, ClipPanel), key="--panels")
     if not names:
         raise ConfigError("no panel given", f"some of {_PANELS}", key="--panels")
-    return tuple(panel for panel in Panel if panel in names)
+    return tuple(panel for panel in ClipPanel if panel in names)
 
 
 def _size_of(text: str) -> Size | None:

@@ -20,7 +20,7 @@ POLL_S = 0.05
 """The interval at which printed lines are relayed."""
 
 
-class Interrupts:
+class RelayInterrupts:
     """Handles ctrl-C and SIGTERM, from the start of the first run until all exports are written.
 
     The first signal stops the current run, and no further run is started; logged data is still exported.

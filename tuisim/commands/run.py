@@ -12,7 +12,7 @@ from tuisim.commands import exit_status
 from tuisim.commands.echo import Progress, echo_error, echo_written, is_watched, tell
 from tuisim.commands.listings import names_of
 from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
-from tuisim.commands.relay import Follower, Interrupts
+from tuisim.commands.relay import Follower, RelayInterrupts
 from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
 from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.command_line import Arguments, Value, argument, choice, command, option
@@ -37,7 +37,7 @@ MAX_PRESS_S = 1e6
 
 
 @dataclass(frozen=True, slots=True)
-class Press:
+class ButtonPress:
     """One button, held for a while; times in simulated seconds."""
 
     button: str
@@ -46,7 +46,7 @@ class Press:
     until_s: float
 
 
-def parse_press(text: str) -> Press:
+def parse_press(text: str) -> ButtonPress:
     """Parse a press such as `enter@1.0-1.5` or `enter@1`.
 
     Raises:
@@ -64,10 +64,10 @@ def parse_press(text: str) -> Press:
     until_s = seconds(end, PRESS) if to else from_s + DEFAULT_PRESS_S
     if until_s <= from_s:
         raise ConfigError(f"{text!r} ends before it begins", "BUTTON@FROM-UNTIL, in simulated seconds", key=PRESS)
-    return Press(name, from_s, until_s)
+    return ButtonPress(name, from_s, until_s)
 
 
-def press_actions(presses: Sequence[Press], tick_hz: int) -> tuple[UserAction, ...]:
+def press_actions(presses: Sequence[ButtonPress], tick_hz: int) -> tuple[UserAction, ...]:
     """Return the changes of the button states, ordered by tick; presses may overlap, and last at least one tick."""
     held = []
     for press in presses:
@@ -153,7 +153,7 @@ def run(**given: Any) -> int:
     if telemetry is not None and len(prepared) > 1:
         raise ConfigError("takes one program", f"got {len(prepared)}", key="--telemetry")
     store = RunStore()
-    with Interrupts() as interrupts, Progress(""):
+    with RelayInterrupts() as interrupts, Progress(""):
         code, results = _run_all(prepared, arguments, store, interrupts)
         if done := [run for _, run in results if run is not None]:
             _export(done, arguments)
@@ -262,7 +262,7 @@ def _check_only_listed(arguments: Arguments, count: int) -> None:
 
 
 def _run_all(
-    prepared: Sequence[Prepared | NotRun], arguments: Arguments, store: RunStore, interrupts: Interrupts
+    prepared: Sequence[Prepared | NotRun], arguments: Arguments, store: RunStore, interrupts: RelayInterrupts
 ) -> tuple[int, list[tuple[str, StoredRun | None]]]:
     """Run the programs in turn until done or interrupted; return the worst exit code, and (label, run) pairs."""
     results: list[tuple[str, StoredRun | None]] = []
@@ -302,7 +302,11 @@ def _how_far(number: int, count: int) -> Callable[[RunHandle], None]:
 
 
 def _run_one(
-    one: Prepared, arguments: Arguments, store: RunStore, interrupts: Interrupts, how_far: Callable[[RunHandle], None]
+    one: Prepared,
+    arguments: Arguments,
+    store: RunStore,
+    interrupts: RelayInterrupts,
+    how_far: Callable[[RunHandle], None],
 ) -> tuple[int, RunHandle]:
     assert one.program is not None
     speed = one.settings.speed or 0.0

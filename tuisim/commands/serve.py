@@ -75,7 +75,9 @@ def serve(**given: Any) -> int:
     gate = Gate(arguments.host)
     idle_s = float("inf") if arguments.idle is None else 60 * arguments.idle
     command_of_app = [sys.executable, "-P", "-c", _BOOT, _PACKAGE_FOLDER, "open", *words_without(_SERVER)]
-    visitors = server.Server(command_of_app, gate, server.Limits(arguments.max_visitors, idle_s), echo_error_lines)
+    visitors = server.Server(
+        command_of_app, gate, server.ServerLimits(arguments.max_visitors, idle_s), echo_error_lines
+    )
     return server.serve(visitors, arguments.host, arguments.port, lambda port: _announce(gate, port))
 
 

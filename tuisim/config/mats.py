@@ -53,7 +53,7 @@ class Background:
 
 
 @dataclass(frozen=True, slots=True)
-class _Entry:
+class _MatEntry:
     """A mat in the catalogue; its name is the key."""
 
     title: str
@@ -67,7 +67,7 @@ class _Entry:
 
 def _background(name: str, data: object, file: Path) -> Background:
     at = Location(str(file), BackgroundError, name)
-    entry = convert(data, _Entry, at)
+    entry = convert(data, _MatEntry, at)
     return Background(
         name=name,
         title=entry.title,

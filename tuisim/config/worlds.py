@@ -58,7 +58,7 @@ class _Noise(Struct):
     motor: Given[Annotated[int, Meta(ge=0, le=MAX_MOTOR_NOISE)]] = UNSET
 
 
-class _Pen(Struct):
+class _PenTable(Struct):
     down: Given[bool] = UNSET
     color: Given[str] = UNSET
     width_mm: Given[Annotated[float, Meta(ge=options.MIN_PEN_MM, le=options.MAX_PEN_MM)]] = UNSET
@@ -100,7 +100,7 @@ class _World(Struct):
     hidden_panels: Given[list[Any]] = UNSET
     start: Given[_Start] = UNSET
     noise: Given[_Noise] = UNSET
-    pen: Given[_Pen] = UNSET
+    pen: Given[_PenTable] = UNSET
     beacon: Any = UNSET
     remote: Any = UNSET
     title: Any = UNSET

@@ -11,11 +11,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
 
-from tuisim.goals.evidence import START, Evidence, Span
-from tuisim.goals.found import Found
+from tuisim.goals.evidence import START, Evidence, EvidenceSpan
+from tuisim.goals.found import Occurrence
 from tuisim.goals.provenance import provenance_of
 from tuisim.goals.readings import NOUNS
-from tuisim.goals.spec import Avoid, Use
+from tuisim.goals.spec import AvoidCondition, UseCondition
 from tuisim.source import PRELUDE_TEXTS
 
 _MAX_MEANING = 200
@@ -129,40 +129,40 @@ def lines_of_calls(text: str, prelude: str, wanted: str) -> list[int]:
     return sorted({line for meaning, said, line in calls if names.may_be(meaning, whole) or said == wanted})
 
 
-def _found(condition: Use | Avoid, evidence: Evidence) -> dict[str, list[int]] | Found:
+def _found(condition: UseCondition | AvoidCondition, evidence: Evidence) -> dict[str, list[int]] | Occurrence:
     program = evidence.program
     try:
         return {call: lines_of_calls(program.text, program.prelude, call) for call in condition.calls}
     except SyntaxError as error:
-        return Found(None, f"The program is not Python: {error.msg}.", error.lineno or 0)
+        return Occurrence(None, f"The program is not Python: {error.msg}.", error.lineno or 0)
     except (ValueError, RecursionError, MemoryError) as error:
-        return Found(None, f"The program cannot be read: {error}.")
+        return Occurrence(None, f"The program cannot be read: {error}.")
 
 
-def find_used(condition: Use, evidence: Evidence, span: Span) -> Found:
+def find_used(condition: UseCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find out whether the program has each of the calls."""
     found = _found(condition, evidence)
-    if isinstance(found, Found):
+    if isinstance(found, Occurrence):
         return found
     missing = [call for call, lines in found.items() if not lines]
     if missing:
-        return Found(None, f"The program does not call {' and '.join(missing)}.")
+        return Occurrence(None, f"The program does not call {' and '.join(missing)}.")
     known = provenance_of(evidence.program.text, condition.reading) if condition.reading else None
     if condition.reading is not None and known is not None:
         for call, lines in found.items():
             if not any(map(known.decides, lines)):
                 noun = NOUNS[condition.reading]
-                return Found(None, f"Nothing that the {noun} read decides how the program calls {call}.", lines[0])
-    return Found(START, line=min(lines[0] for lines in found.values()))
+                return Occurrence(None, f"Nothing that the {noun} read decides how the program calls {call}.", lines[0])
+    return Occurrence(START, line=min(lines[0] for lines in found.values()))
 
 
-def find_avoided(condition: Avoid, evidence: Evidence, span: Span) -> Found:
+def find_avoided(condition: AvoidCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find out whether the program has none of the calls."""
     found = _found(condition, evidence)
-    if isinstance(found, Found):
+    if isinstance(found, Occurrence):
         return found
     used = [(lines[0], call) for call, lines in found.items() if lines]
     if used:
         line, call = min(used)
-        return Found(None, f"The program calls {call}.", line)
-    return Found(START)
+        return Occurrence(None, f"The program calls {call}.", line)
+    return Occurrence(START)

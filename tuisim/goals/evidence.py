@@ -31,7 +31,7 @@ JudgedRun: TypeAlias = StoredRun | RunHandle
 """A run to judge: a stored one, or one that may still be running."""
 
 
-class Moment(NamedTuple):
+class EvidencePoint(NamedTuple):
     """An instant of a run: after a tick is complete (row -1), or when a row of output is written."""
 
     tick: int
@@ -41,12 +41,12 @@ class Moment(NamedTuple):
     """The time of a moment that is defined by it; the row is then the first one after it."""
 
 
-START = Moment(-1, -1)
+START = EvidencePoint(-1, -1)
 """Before everything that can happen."""
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class EvidenceSpan:
     """The part of a run in which a condition counts."""
 
     first_tick: int
@@ -54,7 +54,7 @@ class Span:
     """The tick after the last one."""
     first_row: int
     end_row: int
-    stop: Moment | None
+    stop: EvidencePoint | None
     """The limit that has been reached; None if there is none, or the run did not get there."""
     over: bool
     """Whether the run has ended and the span reaches to its end."""
@@ -146,29 +146,29 @@ class Evidence:
         return max(newest, self.end.time_ns / NS_PER_S) if self.end else newest
 
     @property
-    def last(self) -> Moment:
+    def last(self) -> EvidencePoint:
         """The newest moment, after everything in the recording."""
-        return Moment(len(self.records) - 1, len(self.rows), self.end_s)
+        return EvidencePoint(len(self.records) - 1, len(self.rows), self.end_s)
 
-    def at_time(self, time_s: float) -> Moment | None:
+    def at_time(self, time_s: float) -> EvidencePoint | None:
         """Return the moment after everything up to a time; None if the recording does not go beyond that time."""
         if time_s >= self.end_s:
             return None
         tick = bisect_right(self.times_s, time_s) - 1
         row = bisect_right(self.rows, time_s * NS_PER_S, key=lambda row: row.time_ns)
-        return Moment(tick, row, time_s)
+        return EvidencePoint(tick, row, time_s)
 
-    def before_time(self, time_s: float) -> Moment | None:
+    def before_time(self, time_s: float) -> EvidencePoint | None:
         """Return the moment just before a time; None if the recording does not go that far."""
         if time_s > self.end_s:
             return None
         tick = bisect_left(self.times_s, time_s) - 1
-        return Moment(tick, bisect_left(self.rows, time_s * NS_PER_S, key=lambda row: row.time_ns) - 1)
+        return EvidencePoint(tick, bisect_left(self.rows, time_s * NS_PER_S, key=lambda row: row.time_ns) - 1)
 
-    def span(self, start: Moment, stop: Moment | None) -> Span:
+    def span(self, start: EvidencePoint, stop: EvidencePoint | None) -> EvidenceSpan:
         """Return the part of the run between two moments, both exclusive; None: as far as the recording goes."""
         end = self.last if stop is None else stop
-        return Span(
+        return EvidenceSpan(
             first_tick=start.tick + 1,
             end_tick=end.tick + (end.row >= 0),
             first_row=self._row_after(start) if start.row < 0 else start.row + 1,
@@ -177,10 +177,10 @@ class Evidence:
             over=stop is None and self.ended,
         )
 
-    def _row_after(self, moment: Moment) -> int:
+    def _row_after(self, moment: EvidencePoint) -> int:
         return bisect_left(self.rows, moment.tick, key=lambda row: row.tick) if moment.tick > 0 else 0
 
-    def time_s(self, moment: Moment) -> float:
+    def time_s(self, moment: EvidencePoint) -> float:
         """Return the simulated time of a moment."""
         if moment.time_s >= 0:
             return moment.time_s
@@ -195,7 +195,7 @@ class Evidence:
         record = self.records[min(max(tick, 0), len(self.records) - 1)]
         return float(record["x_mm"]), float(record["y_mm"])
 
-    def line(self, moment: Moment) -> int:
+    def line(self, moment: EvidencePoint) -> int:
         """Return the program's line at a moment; 0 if there is none."""
         if moment.row >= 0 and moment.time_s < 0:
             return self.rows[moment.row].line

@@ -22,10 +22,10 @@ from tuisim.goals.spec import (
     AllOf,
     AnyOf,
     Condition,
-    Dialogue,
-    Draw,
+    ConditionKind,
+    DialogueCondition,
+    DrawCondition,
     Goal,
-    Kind,
     Points,
     Seconds,
     Together,
@@ -54,7 +54,7 @@ class GoalsFile:
     @property
     def answers(self) -> tuple[str, ...]:
         """The answers to `input()` that its dialogues give, in the order of the goals."""
-        dialogues = (part for goal in self.goals for part in goal.parts if isinstance(part, Dialogue))
+        dialogues = (part for goal in self.goals for part in goal.parts if isinstance(part, DialogueCondition))
         return tuple(turn.answer for dialogue in dialogues for turn in dialogue.turns)
 
 
@@ -198,7 +198,7 @@ def _condition(kind: type[Condition], data: object, at: Location, folder: Path) 
     if isinstance(data, dict) and isinstance(data.get(kind.SHORT), str):
         # A single one needs no list.
         data = {**data, kind.SHORT: [data[kind.SHORT]]}
-    if kind is Draw:
+    if kind is DrawCondition:
         table = files.convert(data, PictureTable, at)
         try:
             return draw_from_table(table, folder)
@@ -216,10 +216,10 @@ def _limit(data: object, at: Location) -> str | float:
 
 
 _UNFIT = {
-    Kind.REACHED: "it is met once: use before",
-    Kind.HELD: "it must hold all the time: use until",
-    Kind.FIXED: "it is known before the run",
-    Kind.COMBINED: "give it to the goals that are combined",
+    ConditionKind.REACHED: "it is met once: use before",
+    ConditionKind.HELD: "it must hold all the time: use until",
+    ConditionKind.FIXED: "it is known before the run",
+    ConditionKind.COMBINED: "give it to the goals that are combined",
 }
 
 

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from tuisim.goals.evidence import Moment
+from tuisim.goals.evidence import EvidencePoint
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class Occurrence:
     """When a condition was reached or, if it is one to hold, violated."""
 
-    moment: Moment | None = None
+    moment: EvidencePoint | None = None
     """None: not up to now."""
     reason: str = ""
     """Why it is not reached, or how it was violated, in one sentence; empty where nothing needs to be said."""
     line: int | None = None
     """The program's line that this is about; 0: there is none; None: the line at the moment, none without a moment."""
-    happened: Moment | None = None
+    happened: EvidencePoint | None = None
     """When that happened which reaches it, if only a later moment decides: lines may come once up to the end."""
 
 

@@ -9,50 +9,50 @@ from typing import Any, assert_never
 from tuisim.core.field import Field
 from tuisim.errors import ConfigError
 from tuisim.goals import calls, output, pen_trace, places, readings
-from tuisim.goals.evidence import START, Evidence, JudgedRun, Moment, Span
-from tuisim.goals.found import Found
+from tuisim.goals.evidence import START, Evidence, EvidencePoint, EvidenceSpan, JudgedRun
+from tuisim.goals.found import Occurrence
 from tuisim.goals.judgement import Change, GoalState, Judgement
 from tuisim.goals.spec import (
     AllOf,
     AnyOf,
-    Avoid,
+    AvoidCondition,
     Condition,
-    Dialogue,
-    Draw,
-    Finish,
-    Follow,
+    ConditionKind,
+    DialogueCondition,
+    DrawCondition,
+    FinishCondition,
+    FollowCondition,
     Goal,
-    Inside,
-    Kind,
-    Log,
-    Outside,
-    Pass,
-    Print,
-    Reach,
-    Read,
-    TouchNothing,
-    Use,
-    When,
+    InsideCondition,
+    LogCondition,
+    OutsideCondition,
+    PassCondition,
+    PrintCondition,
+    ReachCondition,
+    ReadCondition,
+    TouchNothingCondition,
+    UseCondition,
+    WhenCondition,
 )
 
-Finder = Callable[[Any, Evidence, Span], Found]
+Finder = Callable[[Any, Evidence, EvidenceSpan], Occurrence]
 
 FINDERS: Mapping[type, Finder] = {
-    Reach: places.find_reach,
-    Pass: places.find_pass,
-    Inside: places.find_left,
-    Outside: places.find_entered,
-    TouchNothing: places.find_touch,
-    Follow: readings.find_off_line,
-    Draw: pen_trace.find_drawn,
-    Print: output.find_printed,
-    Log: output.find_levels,
-    Read: readings.find_read,
-    When: readings.find_when,
-    Dialogue: output.find_dialogue,
-    Finish: output.find_finish,
-    Use: calls.find_used,
-    Avoid: calls.find_avoided,
+    ReachCondition: places.find_reach,
+    PassCondition: places.find_pass,
+    InsideCondition: places.find_left,
+    OutsideCondition: places.find_entered,
+    TouchNothingCondition: places.find_touch,
+    FollowCondition: readings.find_off_line,
+    DrawCondition: pen_trace.find_drawn,
+    PrintCondition: output.find_printed,
+    LogCondition: output.find_levels,
+    ReadCondition: readings.find_read,
+    WhenCondition: readings.find_when,
+    DialogueCondition: output.find_dialogue,
+    FinishCondition: output.find_finish,
+    UseCondition: calls.find_used,
+    AvoidCondition: calls.find_avoided,
 }
 """Finds when a condition was reached or violated in a span of a run."""
 
@@ -60,12 +60,12 @@ FINDERS: Mapping[type, Finder] = {
 @dataclass(frozen=True, slots=True)
 class _Outcome:
     state: GoalState
-    moment: Moment = START
+    moment: EvidencePoint = START
     """When it was decided; meaningless while it is open."""
     reason: str = ""
     line: int | None = 0
     """0: there is none; None: the line at the moment."""
-    happened: Moment | None = None
+    happened: EvidencePoint | None = None
     """When that happened which meets it; None: at the moment."""
 
 
@@ -106,7 +106,7 @@ class _Judge:
         happened = self._change(outcome.happened, outcome.state) if outcome.happened else None
         return Judgement(goal, changes, outcome.reason, self._line(outcome), happened)
 
-    def _change(self, moment: Moment, state: GoalState) -> Change:
+    def _change(self, moment: EvidencePoint, state: GoalState) -> Change:
         tick = max(0, moment.tick)
         return Change(tick, self._evidence.time_s(moment), state, *self._evidence.place_mm(tick))
 
@@ -143,7 +143,7 @@ class _Judge:
         outcomes = [self._part(part, goal, start) for part in goal.parts]
         return outcomes[0] if len(outcomes) == 1 else _first_of(outcomes, GoalState.MISSED)
 
-    def _part(self, condition: Condition, goal: Goal, start: Moment) -> _Outcome:
+    def _part(self, condition: Condition, goal: Goal, start: EvidencePoint) -> _Outcome:
         """Return the outcome of one condition of a goal, which counts after a moment."""
         if isinstance(condition, AllOf | AnyOf):
             return self._combined(condition, goal)
@@ -151,19 +151,19 @@ class _Judge:
         span = self._evidence.span(start, stop)
         found = FINDERS[type(condition)](condition, self._evidence, span)
         match condition.KIND:
-            case Kind.REACHED:
+            case ConditionKind.REACHED:
                 return self._reached(goal, found, stop)
-            case Kind.HELD:
+            case ConditionKind.HELD:
                 return self._held(goal, found, stop)
-            case Kind.FIXED:
+            case ConditionKind.FIXED:
                 state = GoalState.MET if found.moment is not None else GoalState.MISSED
                 return _Outcome(state, START, found.reason, found.line or 0)
-            case Kind.COMBINED:
+            case ConditionKind.COMBINED:
                 raise AssertionError(condition)
             case _:
                 assert_never(condition.KIND)
 
-    def _stop(self, goal: Goal, kind: Kind) -> Moment | None:
+    def _stop(self, goal: Goal, kind: ConditionKind) -> EvidencePoint | None:
         """Return the moment that limits a goal's conditions of a kind, if it has come."""
         limits = [getattr(goal, limit) for limit in goal.limits(kind) if limit != "after"]
         if not limits:
@@ -180,7 +180,7 @@ class _Judge:
             return _Outcome(GoalState.OPEN, reason="")
         return _Outcome(GoalState.MISSED, self._evidence.last, reason)
 
-    def _reached(self, goal: Goal, found: Found, stop: Moment | None) -> _Outcome:
+    def _reached(self, goal: Goal, found: Occurrence, stop: EvidencePoint | None) -> _Outcome:
         if found.moment is not None:
             return _Outcome(GoalState.MET, found.moment, line=found.line, happened=found.happened)
         if stop is not None:
@@ -189,7 +189,7 @@ class _Judge:
             return _Outcome(GoalState.MISSED, self._evidence.last, found.reason, found.line or 0)
         return _Outcome(GoalState.OPEN, reason=found.reason, line=found.line or 0)
 
-    def _held(self, goal: Goal, found: Found, stop: Moment | None) -> _Outcome:
+    def _held(self, goal: Goal, found: Occurrence, stop: EvidencePoint | None) -> _Outcome:
         if found.moment is not None:
             return _Outcome(GoalState.MISSED, found.moment, found.reason, found.line)
         if stop is not None:

@@ -8,11 +8,19 @@ from itertools import islice, pairwise
 
 from tuisim.core.profile import NS_PER_S
 from tuisim.errors import counted
-from tuisim.goals.evidence import Evidence, Moment, Span
-from tuisim.goals.found import Found
+from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
+from tuisim.goals.found import Occurrence
 from tuisim.goals.provenance import provenance_of
 from tuisim.goals.readings import NOUNS, is_as_read, range_words, read_ticks, within_x
-from tuisim.goals.spec import Dialogue, Finish, Log, Print, Range, Reading, Turn
+from tuisim.goals.spec import (
+    DialogueCondition,
+    DialogueTurn,
+    FinishCondition,
+    LogCondition,
+    PrintCondition,
+    Range,
+    Reading,
+)
 from tuisim.protocol import End
 from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.samples import Sample
@@ -35,13 +43,13 @@ def _shown(text: str) -> str:
     return repr(text if len(text) <= _MOST_SHOWN else text[: _MOST_SHOWN - 1] + "…")
 
 
-def _printed(evidence: Evidence, span: Span) -> list[tuple[int, OutputRow]]:
+def _printed(evidence: Evidence, span: EvidenceSpan) -> list[tuple[int, OutputRow]]:
     """Return the printed lines of a span, each with its index."""
     rows = evidence.rows[span.first_row : span.end_row]
     return [(at, row) for at, row in enumerate(rows, start=span.first_row) if row.stream == Stream.STDOUT]
 
 
-def find_printed(condition: Print, evidence: Evidence, span: Span) -> Found:
+def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find when the last of the lines was printed."""
     rows = _printed(evidence, span)
     at, last, line = 0, -1, None
@@ -50,38 +58,42 @@ def find_printed(condition: Print, evidence: Evidence, span: Span) -> Found:
     for count, pattern in enumerate(condition.lines):
         search = re.compile(pattern).search
         start = at if condition.in_order else 0
-        fault = Found()
+        fault = Occurrence()
         fitting = (place for place in range(start, len(rows)) if search(rows[place][1].text))
         for place in islice(fitting, _MOST_TRIED):
             row = rows[place][1]
             found = _fault(condition, count, row, since, evidence)
             if not found:
                 break
-            fault = fault if fault.reason else Found(None, found, row.line)
+            fault = fault if fault.reason else Occurrence(None, found, row.line)
         else:
             # Of the line that the reason quotes.
             about = rows[-1][1].line if rows and line is None else line
-            return fault if fault.reason else Found(None, _no_line(condition, pattern, rows, line is not None), about)
+            return (
+                fault if fault.reason else Occurrence(None, _no_line(condition, pattern, rows, line is not None), about)
+            )
         at, line, since = place + 1, row.line, row.tick
         last = max(last, place)
     if condition.once and (open_or_missed := _not_once(condition, rows, span, evidence)):
         return open_or_missed
     number, row = rows[last]
-    return _printed_at(Moment(row.tick, number), row.line, condition.once, evidence)
+    return _printed_at(EvidencePoint(row.tick, number), row.line, condition.once, evidence)
 
 
-def _not_once(condition: Print, rows: list[tuple[int, OutputRow]], span: Span, evidence: Evidence) -> Found | None:
+def _not_once(
+    condition: PrintCondition, rows: list[tuple[int, OutputRow]], span: EvidenceSpan, evidence: Evidence
+) -> Occurrence | None:
     """Return what is missing of a condition whose lines come only once; None if nothing is."""
     fits = [(row, sum(bool(re.search(pattern, row.text)) for pattern in condition.lines)) for _, row in rows]
     if several := [row for row, count in fits if count > 1]:
-        return Found(None, f"{_shown(several[0].text)} says several of the lines at once.", several[0].line)
+        return Occurrence(None, f"{_shown(several[0].text)} says several of the lines at once.", several[0].line)
     fitting = [row for row, count in fits if count]
     if len(fitting) > len(condition.lines):
         return _again(condition, fitting, evidence)
-    return None if span.over else Found()
+    return None if span.over else Occurrence()
 
 
-def _again(condition: Print, rows: list[OutputRow], evidence: Evidence) -> Found:
+def _again(condition: PrintCondition, rows: list[OutputRow], evidence: Evidence) -> Occurrence:
     """Return which of some rows is the first that says again what one before it says."""
     said: set[str] = set()
     for row in rows:
@@ -91,10 +103,12 @@ def _again(condition: Print, rows: list[OutputRow], evidence: Evidence) -> Found
         said.add(pattern)
     x_mm = evidence.place_mm(row.tick)[0]
     reason = f"{_shown(row.text)} was printed again at {row.time_ns / NS_PER_S:.2f} s, at x = {x_mm:.0f} mm"
-    return Found(None, f"{reason}: {counted(len(rows), 'such line')} in all, and each is asked for once.", row.line)
+    return Occurrence(
+        None, f"{reason}: {counted(len(rows), 'such line')} in all, and each is asked for once.", row.line
+    )
 
 
-def _fault(condition: Print, count: int, row: OutputRow, since: int, evidence: Evidence) -> str:
+def _fault(condition: PrintCondition, count: int, row: OutputRow, since: int, evidence: Evidence) -> str:
     """Return why a line that matches does not count, in a sentence; empty if it does.
 
     Args:
@@ -129,7 +143,7 @@ def _between_mm_s(first: int, then: int, evidence: Evidence) -> float:
     return way_mm / float(evidence.times_s[then] - evidence.times_s[first])
 
 
-def _elsewhere(condition: Print | Log, count: int, tick: int, evidence: Evidence) -> str:
+def _elsewhere(condition: PrintCondition | LogCondition, count: int, tick: int, evidence: Evidence) -> str:
     """Return where the robot was at a tick if that was wrong, as the end of a sentence; empty if it was right."""
     place = _range(condition, count)
     x_mm = evidence.place_mm(tick)[0]
@@ -138,7 +152,7 @@ def _elsewhere(condition: Print | Log, count: int, tick: int, evidence: Evidence
     return f"the robot was at x = {x_mm:.0f} mm; it must be at {range_words(place)}."
 
 
-def _range(condition: Print | Log, count: int) -> Range | None:
+def _range(condition: PrintCondition | LogCondition, count: int) -> Range | None:
     if not condition.x_mm:
         return None
     return condition.x_mm[count if len(condition.x_mm) > 1 else 0]
@@ -153,7 +167,7 @@ def _read_between(reading: Reading, first_tick: int, end_tick: int, evidence: Ev
     return bool(((ticks >= first_tick) & (ticks <= end_tick)).any())
 
 
-def _no_line(condition: Print, pattern: str, rows: list[tuple[int, OutputRow]], some: bool) -> str:
+def _no_line(condition: PrintCondition, pattern: str, rows: list[tuple[int, OutputRow]], some: bool) -> str:
     if not rows:
         return "The program printed nothing."
     if some and condition.in_order and any(re.search(pattern, row.text) for _, row in rows):
@@ -163,7 +177,7 @@ def _no_line(condition: Print, pattern: str, rows: list[tuple[int, OutputRow]], 
     return f"No printed line matches {_asked(pattern)}; {printed} {last}."
 
 
-def find_levels(condition: Log, evidence: Evidence, span: Span) -> Found:
+def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find when the samples of a variable had taken all levels."""
     samples = [
         (number, sample)
@@ -173,14 +187,14 @@ def find_levels(condition: Log, evidence: Evidence, span: Span) -> Found:
     at, last = 0, -1
     for count, level in enumerate(condition.levels):
         start = at if condition.in_order else 0
-        fault = Found()
+        fault = Occurrence()
         near = (place for place in range(start, len(samples)) if _near(samples[place][1], level, condition))
         for place in islice(near, _MOST_TRIED):
             sample = samples[place][1]
             found = _not_measured(condition, count, sample, evidence)
             if not found:
                 break
-            fault = fault if fault.reason else Found(None, found, sample.line)
+            fault = fault if fault.reason else Occurrence(None, found, sample.line)
         else:
             return fault if fault.reason else _missing_level(condition, count, samples, start, last, evidence)
         at = place + 1
@@ -189,18 +203,18 @@ def find_levels(condition: Log, evidence: Evidence, span: Span) -> Found:
     if condition.once and len(samples) > len(condition.levels):
         wanted = f"{len(condition.levels)} {'is' if len(condition.levels) == 1 else 'are'}"
         reason = f"{len(samples):,} samples {condition.name} were printed, {wanted} asked for."
-        return Found(None, reason, samples[-1][1].line)
+        return Occurrence(None, reason, samples[-1][1].line)
     if condition.once and not span.over:
-        return Found()
-    return _printed_at(Moment(sample.tick, number), sample.line, condition.once, evidence)
+        return Occurrence()
+    return _printed_at(EvidencePoint(sample.tick, number), sample.line, condition.once, evidence)
 
 
-def _printed_at(moment: Moment, line: int, once: bool, evidence: Evidence) -> Found:
+def _printed_at(moment: EvidencePoint, line: int, once: bool, evidence: Evidence) -> Occurrence:
     """Return that what was asked for was printed; that it came only once, the end of the run decides."""
-    return Found(evidence.last, line=line, happened=moment) if once else Found(moment, line=line)
+    return Occurrence(evidence.last, line=line, happened=moment) if once else Occurrence(moment, line=line)
 
 
-def _not_measured(condition: Log, count: int, sample: Sample, evidence: Evidence) -> str:
+def _not_measured(condition: LogCondition, count: int, sample: Sample, evidence: Evidence) -> str:
     """Return why a sample near its level does not count, in a sentence; empty if it does."""
     value = f"{sample.name}: {sample.value:.6g} was printed at {sample.time_ns / NS_PER_S:.2f} s"
     printed = sum(one.name == condition.counts and one.tick <= sample.tick for _, one in evidence.samples)
@@ -227,8 +241,8 @@ def _not_measured(condition: Log, count: int, sample: Sample, evidence: Evidence
 
 
 def _missing_level(
-    condition: Log, count: int, samples: list[tuple[int, Sample]], start: int, last: int, evidence: Evidence
-) -> Found:
+    condition: LogCondition, count: int, samples: list[tuple[int, Sample]], start: int, last: int, evidence: Evidence
+) -> Occurrence:
     """Return which level is missing, the one after the first `count`, and why.
 
     Args:
@@ -239,15 +253,15 @@ def _missing_level(
     rest = [sample for _, sample in samples[start:]]
     nearest = min(rest, key=lambda sample: abs(sample.value - condition.levels[count]), default=None)
     about = nearest or (samples[last][1] if last >= 0 else None)
-    return Found(None, _no_level(condition, count, nearest, evidence), about.line if about else 0)
+    return Occurrence(None, _no_level(condition, count, nearest, evidence), about.line if about else 0)
 
 
-def _near(sample: Sample, level: float, condition: Log) -> bool:
+def _near(sample: Sample, level: float, condition: LogCondition) -> bool:
     # Rounding of the difference must not matter.
     return abs(sample.value - level) <= condition.within + 1e-9 * max(1.0, abs(level))
 
 
-def _no_level(condition: Log, count: int, nearest: Sample | None, evidence: Evidence) -> str:
+def _no_level(condition: LogCondition, count: int, nearest: Sample | None, evidence: Evidence) -> str:
     """Return why a level is missing, the one after the first `count`; `nearest` is the sample that came nearest."""
     name, levels = condition.name, condition.levels
     if not any(sample.name == name for _, sample in evidence.samples):
@@ -275,13 +289,13 @@ def _form_fault(name: str, evidence: Evidence) -> str:
     return f" Line {row.line} printed {_shown(row.text)}: {form}"
 
 
-def find_dialogue(condition: Dialogue, evidence: Evidence, span: Span) -> Found:
+def find_dialogue(condition: DialogueCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find when the last of the turns was complete."""
     rows = evidence.rows[: span.end_row]
     questions = [at for at, row in enumerate(rows) if row.stream == Stream.INPUT]
     known = dict(zip(questions, evidence.answers, strict=False))
     asked = [at for at in questions if at >= span.first_row]
-    at, moment, line = 0, Moment(0, -1), 0
+    at, moment, line = 0, EvidencePoint(0, -1), 0
     for number, turn in enumerate(condition.turns, start=1):
         reply: int | None = None
         reason = ""
@@ -292,9 +306,9 @@ def find_dialogue(condition: Dialogue, evidence: Evidence, span: Span) -> Found:
                 line = rows[asked[at]].line
             at += 1
         if reply is None:
-            return Found(None, reason or _not_asked(number, turn, len(asked)), line)
-        moment, line = Moment(rows[reply].tick, reply), rows[reply].line
-    return Found(moment, line=line)
+            return Occurrence(None, reason or _not_asked(number, turn, len(asked)), line)
+        moment, line = EvidencePoint(rows[reply].tick, reply), rows[reply].line
+    return Occurrence(moment, line=line)
 
 
 def _prompt(text: str, answer: str, given: str | None) -> str | None:
@@ -312,7 +326,7 @@ def _prompt(text: str, answer: str, given: str | None) -> str | None:
     return prompt
 
 
-def _turn(turn: Turn, prompt: str, rows: list[OutputRow], asked: range) -> tuple[int | None, str]:
+def _turn(turn: DialogueTurn, prompt: str, rows: list[OutputRow], asked: range) -> tuple[int | None, str]:
     """Return the row that completes a turn or None, and what is wrong with a turn that got its answer.
 
     Args:
@@ -330,22 +344,22 @@ def _turn(turn: Turn, prompt: str, rows: list[OutputRow], asked: range) -> tuple
     return None, f"After the answer {_shown(turn.answer)} {said}, and no line like {_shown(turn.reply)}."
 
 
-def _not_asked(number: int, turn: Turn, asked: int) -> str:
+def _not_asked(number: int, turn: DialogueTurn, asked: int) -> str:
     times = {1: "once", 2: "twice"}.get(asked, f"{asked} times")
     if not asked:
         return "The program did not ask for input."
     return f"The program asked {times}; no question got answer {number}, {_shown(turn.answer)}."
 
 
-def find_finish(condition: Finish, evidence: Evidence, span: Span) -> Found:
+def find_finish(condition: FinishCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find when the program finished without an error."""
     if not span.over:
-        return Found(None, "The program was still running.", evidence.line(span.stop or evidence.last))
+        return Occurrence(None, "The program was still running.", evidence.line(span.stop or evidence.last))
     end = evidence.end
     if end is None:
-        return Found(None, "The run was interrupted.", evidence.line(evidence.last))
+        return Occurrence(None, "The run was interrupted.", evidence.line(evidence.last))
     if end.end is End.FINISHED and not end.exit_code:
-        return Found(evidence.last)
+        return Occurrence(evidence.last)
     what = f"exit code {end.exit_code}" if end.end is End.FINISHED else end.end.replace("_", " ")
     summary = end.summary.removesuffix(f" (line {end.error_line})").rstrip(".")
-    return Found(None, f"The program did not finish: {summary or what}.", evidence.line(evidence.last))
+    return Occurrence(None, f"The program did not finish: {summary or what}.", evidence.line(evidence.last))

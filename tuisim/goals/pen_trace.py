@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 from tuisim.core.spec import PenSpec
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.goals import picture
-from tuisim.goals.evidence import Evidence, Moment, Span
-from tuisim.goals.found import Found, share_words
-from tuisim.goals.spec import Draw
+from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
+from tuisim.goals.found import Occurrence, share_words
+from tuisim.goals.spec import DrawCondition
 
 if TYPE_CHECKING:
     import numpy as np
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, Any]
 
 
-def find_drawn(condition: Draw, evidence: Evidence, span: Span) -> Found:
+def find_drawn(condition: DrawCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find out at the end of a span whether the drawing is near the picture."""
     import numpy as np
 
     records = evidence.records[span.ticks]
     points, ticks = _strokes(records, evidence.spec.robot.pen, condition)
     if not len(points):
-        return Found(None, "The pen drew nothing.")
+        return Occurrence(None, "The pen drew nothing.")
     wanted = picture.cells(condition)
     covered, near = picture.compare(wanted, points, condition.within_mm)
     drawn, on_picture = float(covered.mean()), float(near.mean())
@@ -36,17 +36,17 @@ def find_drawn(condition: Draw, evidence: Evidence, span: Span) -> Found:
     if on_picture < condition.share:
         off = int(np.argmin(near))
         tick = span.first_tick + int(ticks[off])
-        (x_mm, y_mm), line = points[off], evidence.line(Moment(tick))
+        (x_mm, y_mm), line = points[off], evidence.line(EvidencePoint(tick))
         reasons.append(
             f"{share_words(on_picture)} of the drawing is on the picture, it leaves it at x {x_mm:.0f}, "
             f"y {y_mm:.0f} mm at {evidence.time_words(tick)}"
         )
     if reasons:
-        return Found(None, f"{' and '.join(reasons)}; {share_words(condition.share)} are needed.", line)
-    return Found(evidence.last if span.over else span.stop)
+        return Occurrence(None, f"{' and '.join(reasons)}; {share_words(condition.share)} are needed.", line)
+    return Occurrence(evidence.last if span.over else span.stop)
 
 
-def _strokes(records: Array, pen: PenSpec, condition: Draw) -> tuple[Array, Array]:
+def _strokes(records: Array, pen: PenSpec, condition: DrawCondition) -> tuple[Array, Array]:
     """Return the points that the pen drew, shape (n, 2) in mm, close enough for the comparison, and their ticks."""
     import numpy as np
 

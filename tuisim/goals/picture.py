@@ -19,7 +19,7 @@ from tuisim.config import mat_image
 from tuisim.config.folders import user_path
 from tuisim.core.spec import BACKGROUND_FITS, FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import ConfigError
-from tuisim.goals.spec import MAX_PLACES, Draw, Share, X, Y
+from tuisim.goals.spec import MAX_PLACES, DrawCondition, Share, X, Y
 
 if TYPE_CHECKING:
     import numpy as np
@@ -55,7 +55,7 @@ class PictureTable:
                 raise ConfigError(f"must have 2 to {MAX_PLACES} points, has {len(line)}", key=f"lines_mm[{number}]")
 
 
-def draw_from_table(table: PictureTable, folder: Path) -> Draw:
+def draw_from_table(table: PictureTable, folder: Path) -> DrawCondition:
     """Return the condition with its picture; an image is read relative to a folder.
 
     Raises:
@@ -69,7 +69,7 @@ def draw_from_table(table: PictureTable, folder: Path) -> Draw:
     else:
         points = _points_of_lines(table.lines_mm, cell_mm(table.within_mm))
     found = np.unique(_cell_numbers(points, table.within_mm))
-    return Draw(found.astype("<i4").tobytes(), table.within_mm, table.share)
+    return DrawCondition(found.astype("<i4").tobytes(), table.within_mm, table.share)
 
 
 def _dark_points(path: Path, fit: str) -> Array:
@@ -113,7 +113,7 @@ def _cell_numbers(points: Array, within_mm: float) -> Array:
     return numbers
 
 
-def cells(condition: Draw) -> Array:
+def cells(condition: DrawCondition) -> Array:
     """Return the indices of the picture's cells, ascending, shape (n,)."""
     import numpy as np
 

@@ -7,9 +7,17 @@ from typing import TYPE_CHECKING, Any
 from tuisim.core.collision import Solids
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import Obstacle, RobotSpec, WorldSpec
-from tuisim.goals.evidence import Evidence, Moment, Span
-from tuisim.goals.found import Found, distance_words
-from tuisim.goals.spec import Area, Inside, Outside, Part, Pass, Reach, TouchNothing
+from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
+from tuisim.goals.found import Occurrence, distance_words
+from tuisim.goals.spec import (
+    AreaCondition,
+    BodyPart,
+    InsideCondition,
+    OutsideCondition,
+    PassCondition,
+    ReachCondition,
+    TouchNothingCondition,
+)
 
 if TYPE_CHECKING:
     import numpy as np
@@ -22,36 +30,36 @@ CONTACT_MM = 0.01
 _WALLS = ("the left wall", "the right wall", "the lower wall", "the upper wall")
 
 
-def find_reach(condition: Reach, evidence: Evidence, span: Span) -> Found:
+def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find when the robot was at a place and heading."""
     import numpy as np
 
     records, first = evidence.records[span.ticks], span.first_tick
     if not len(records):
-        return Found(None, "The robot was not simulated at that time.")
+        return Occurrence(None, "The robot was not simulated at that time.")
     away_mm, turned_deg = _away_mm(condition, records), _turned_deg(condition, records)
     there = (away_mm <= condition.within_mm) & (turned_deg <= condition.within_deg)
     if condition.at_end:
         if span.over and there[-1]:
-            return Found(evidence.last)
+            return Occurrence(evidence.last)
         words = _off_words(condition, records[-1], away_mm[-1], turned_deg[-1])
         text = f"At the end the robot was {words}." if span.over else f"The robot is {words}."
-        return Found(None, "" if there[-1] else text, line_of_motion(records, len(records) - 1))
+        return Occurrence(None, "" if there[-1] else text, line_of_motion(records, len(records) - 1))
     if not there.any():
         nearest = int(np.argmin(np.maximum(away_mm / condition.within_mm, turned_deg / condition.within_deg)))
         words = _off_words(condition, records[nearest], away_mm[nearest], turned_deg[nearest])
         text = f"At its nearest, at {evidence.time_words(first + nearest)}, the robot was {words}."
-        return Found(None, text, line_of_motion(records, nearest))
+        return Occurrence(None, text, line_of_motion(records, nearest))
     times_s = evidence.times_s[span.ticks]
     came = _came_at(there)
     stayed_s = np.where(there, times_s - times_s[came], -1.0)
     enough = np.flatnonzero(stayed_s >= condition.for_s - 1e-9)
     if len(enough):
-        return Found(Moment(first + int(enough[0])))
+        return Occurrence(EvidencePoint(first + int(enough[0])))
     longest = int(np.argmax(stayed_s))
     text = f"The robot stayed there for at most {stayed_s[longest]:.2f} s, {condition.for_s:g} s are needed."
     # What moved it away, else what brought it there.
-    return Found(None, text, line_of_motion(records, longest + 1))
+    return Occurrence(None, text, line_of_motion(records, longest + 1))
 
 
 def line_of_motion(records: Array, at: int) -> int:
@@ -78,7 +86,7 @@ def _came_at(there: Array) -> Array:
     return since
 
 
-def _away_mm(condition: Reach, records: Array) -> Array:
+def _away_mm(condition: ReachCondition, records: Array) -> Array:
     import numpy as np
 
     x_mm = 0.0 if condition.x_mm is None else records["x_mm"] - condition.x_mm
@@ -87,7 +95,7 @@ def _away_mm(condition: Reach, records: Array) -> Array:
     return away
 
 
-def _turned_deg(condition: Reach, records: Array) -> Array:
+def _turned_deg(condition: ReachCondition, records: Array) -> Array:
     import numpy as np
 
     if condition.heading_deg is None:
@@ -96,7 +104,7 @@ def _turned_deg(condition: Reach, records: Array) -> Array:
     return turned
 
 
-def _off_words(condition: Reach, record: Any, away_mm: float, turned_deg: float) -> str:
+def _off_words(condition: ReachCondition, record: Any, away_mm: float, turned_deg: float) -> str:
     words = []
     if condition.x_mm is not None or condition.y_mm is not None:
         words.append(f"{distance_words(away_mm)} {_side_words(condition, record)} {_place_words(condition)}")
@@ -105,7 +113,7 @@ def _off_words(condition: Reach, record: Any, away_mm: float, turned_deg: float)
     return " and ".join(words)
 
 
-def _side_words(condition: Reach, record: Any) -> str:
+def _side_words(condition: ReachCondition, record: Any) -> str:
     """Return on which side of a line the robot is; a point has no sides."""
     if condition.x_mm is None:
         return "below" if record["y_mm"] < condition.y_mm else "above"
@@ -114,7 +122,7 @@ def _side_words(condition: Reach, record: Any) -> str:
     return "from"
 
 
-def _place_words(condition: Reach) -> str:
+def _place_words(condition: ReachCondition) -> str:
     if condition.y_mm is None:
         return f"x = {condition.x_mm:g} mm"
     if condition.x_mm is None:
@@ -122,11 +130,11 @@ def _place_words(condition: Reach) -> str:
     return f"({condition.x_mm:g}, {condition.y_mm:g})"
 
 
-def find_pass(condition: Pass, evidence: Evidence, span: Span) -> Found:
+def find_pass(condition: PassCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find when the robot had passed the last of the places."""
     records, first = evidence.records[span.ticks], span.first_tick
     if not len(records):
-        return Found(None, "The robot was not simulated at that time.")
+        return Occurrence(None, "The robot was not simulated at that time.")
     at = last = 0
     for count, (x_mm, y_mm) in enumerate(condition.places_mm):
         away_mm = _way_away_mm(records, x_mm, y_mm)
@@ -139,10 +147,10 @@ def find_pass(condition: Pass, evidence: Evidence, span: Span) -> Found:
                 f"The robot came no nearer than {distance_words(away_mm[nearest])} to place {count + 1} of "
                 f"{len(condition.places_mm)} ({x_mm:g}, {y_mm:g}){after}, at {evidence.time_words(first + nearest)}."
             )
-            return Found(None, text, line_of_motion(records, nearest))
+            return Occurrence(None, text, line_of_motion(records, nearest))
         at = start + int(near.argmax())
         last = max(last, at)
-    return Found(Moment(first + last))
+    return Occurrence(EvidencePoint(first + last))
 
 
 def _way_away_mm(records: Array, x_mm: float, y_mm: float) -> Array:
@@ -161,7 +169,7 @@ def _way_away_mm(records: Array, x_mm: float, y_mm: float) -> Array:
     return away_mm
 
 
-def find_left(condition: Inside, evidence: Evidence, span: Span) -> Found:
+def find_left(condition: InsideCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find when the robot left an area."""
     import numpy as np
 
@@ -172,12 +180,12 @@ def find_left(condition: Inside, evidence: Evidence, span: Span) -> Found:
     return _first(~inside, "left the area", "was not in the area from the start", evidence, span)
 
 
-def find_entered(condition: Outside, evidence: Evidence, span: Span) -> Found:
+def find_entered(condition: OutsideCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find when the robot entered an area."""
     import numpy as np
 
     records = evidence.records[span.ticks]
-    if condition.part is Part.CENTRE:
+    if condition.part is BodyPart.CENTRE:
         within = _in_area(condition, records["x_mm"], records["y_mm"])
     elif condition.radius_mm is not None:
         within = _circle_gap_mm(condition, records, evidence.spec.robot) < condition.radius_mm
@@ -191,22 +199,24 @@ def find_entered(condition: Outside, evidence: Evidence, span: Span) -> Found:
     return _first(within, "entered the area", "was in the area from the start", evidence, span)
 
 
-def _first(wrong: Array, text: str, at_start: str, evidence: Evidence, span: Span) -> Found:
+def _first(wrong: Array, text: str, at_start: str, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     if not wrong.any():
-        return Found()
+        return Occurrence()
     tick = span.first_tick + int(wrong.argmax())
     x_mm, y_mm = evidence.place_mm(tick)
     what = f"{text} at {evidence.time_words(tick)}" if tick else at_start
     # No line of the program has put it where it is at the start.
-    return Found(Moment(tick), f"The robot {what}, at x {x_mm:.0f} mm, y {y_mm:.0f} mm.", None if tick else 0)
+    return Occurrence(
+        EvidencePoint(tick), f"The robot {what}, at x {x_mm:.0f} mm, y {y_mm:.0f} mm.", None if tick else 0
+    )
 
 
-def _points(part: Part, records: Array, robot: RobotSpec) -> list[tuple[Array, Array]]:
+def _points(part: BodyPart, records: Array, robot: RobotSpec) -> list[tuple[Array, Array]]:
     """Return x and y of the points of the robot that matter, in mm, each at every tick."""
     import numpy as np
 
     x_mm, y_mm = records["x_mm"], records["y_mm"]
-    if part is Part.CENTRE:
+    if part is BodyPart.CENTRE:
         return [(x_mm, y_mm)]
     turn = np.radians(records["heading_deg"])
     cos, sin = np.cos(turn), np.sin(turn)
@@ -214,7 +224,7 @@ def _points(part: Part, records: Array, robot: RobotSpec) -> list[tuple[Array, A
     return [(x_mm + ahead * cos + aside * sin, y_mm + ahead * sin - aside * cos) for aside, ahead in corners]
 
 
-def _in_area(area: Area, x_mm: Array, y_mm: Array) -> Array:
+def _in_area(area: AreaCondition, x_mm: Array, y_mm: Array) -> Array:
     import numpy as np
 
     if area.radius_mm is not None:
@@ -225,7 +235,7 @@ def _in_area(area: Area, x_mm: Array, y_mm: Array) -> Array:
     return in_box
 
 
-def _circle_gap_mm(area: Area, records: Array, robot: RobotSpec) -> Array:
+def _circle_gap_mm(area: AreaCondition, records: Array, robot: RobotSpec) -> Array:
     """Return the distance of the robot's body from the centre of a circle, at every tick."""
     import numpy as np
 
@@ -239,7 +249,7 @@ def _circle_gap_mm(area: Area, records: Array, robot: RobotSpec) -> Array:
     return gap
 
 
-def find_touch(condition: TouchNothing, evidence: Evidence, span: Span) -> Found:
+def find_touch(condition: TouchNothingCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find when the robot touched an obstacle or a wall, or came too near to one."""
     world, robot = evidence.spec.world, evidence.spec.robot
     walls = world.walls and condition.walls
@@ -247,14 +257,14 @@ def find_touch(condition: TouchNothing, evidence: Evidence, span: Span) -> Found
     solids = Solids(WorldSpec(walls=walls, obstacles=obstacles), robot)
     found = _first_contact(evidence.records[span.ticks], solids, max(condition.gap_mm, CONTACT_MM), forgiven=True)
     if found is None:
-        return Found()
+        return Occurrence()
     at, number = found
     tick = span.first_tick + at
     names = [*(_WALLS if walls else ()), *(f"the obstacle at x {o.x_mm:g}, y {o.y_mm:g}" for o in obstacles)]
     did = "came too near to" if condition.gap_mm > CONTACT_MM else "touched"
     x_mm, y_mm = evidence.place_mm(tick)
     place = f"at x {x_mm:.0f} mm, y {y_mm:.0f} mm"
-    return Found(Moment(tick), f"The robot {did} {names[number]} at {evidence.time_words(tick)}, {place}.")
+    return Occurrence(EvidencePoint(tick), f"The robot {did} {names[number]} at {evidence.time_words(tick)}, {place}.")
 
 
 def _first_contact(records: Array, solids: Solids, gap_mm: float, *, forgiven: bool) -> tuple[int, int] | None:

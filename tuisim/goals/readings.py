@@ -10,11 +10,11 @@ from tuisim.core.comparison import COMPARE, comparison_in
 from tuisim.core.sensors import columns_of, number_in
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
 from tuisim.errors import counted, nearest
-from tuisim.goals.evidence import Evidence, Moment, Span
-from tuisim.goals.found import Found, share_words
+from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
+from tuisim.goals.found import Occurrence, share_words
 from tuisim.goals.places import line_of_motion
 from tuisim.goals.provenance import provenance_of
-from tuisim.goals.spec import Follow, Range, Read, Reading, When
+from tuisim.goals.spec import FollowCondition, Range, ReadCondition, Reading, WhenCondition
 from tuisim.runs.frames import quiet_color_columns
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def _light(records: Array, evidence: Evidence) -> Array:
     return np.array(rows).reshape(len(rows), len(records))
 
 
-def find_read(condition: Read, evidence: Evidence, span: Span) -> Found:
+def find_read(condition: ReadCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find when the program had taken enough readings."""
     noun = NOUNS[condition.reading]
     every = read_ticks(condition.reading, evidence)
@@ -98,17 +98,17 @@ def find_read(condition: Read, evidence: Evidence, span: Span) -> Found:
         ticks = within_x(ticks, place, evidence)
     if len(ticks) >= condition.times:
         tick = int(ticks[condition.times - 1])
-        return Found(Moment(tick), line=int(evidence.records["line"][tick]))
+        return Occurrence(EvidencePoint(tick), line=int(evidence.records["line"][tick]))
     if not len(every):
-        return Found(None, f"The program did not read the {noun}.")
+        return Occurrence(None, f"The program did not read the {noun}.")
     where = f" at {range_words(condition.x_mm[0])}" if condition.x_mm else ""
     when = " in that time" if span.first_tick else ""
     times = counted(len(ticks), "time")
     text = f"The program read the {noun} {times}{where}{when}; {condition.times:,} are needed."
-    return Found(None, text, int(evidence.records["line"][every[0]]))
+    return Occurrence(None, text, int(evidence.records["line"][every[0]]))
 
 
-def find_when(condition: When, evidence: Evidence, span: Span) -> Found:
+def find_when(condition: WhenCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find the first tick at which columns have the values that are asked for."""
     import numpy as np
 
@@ -123,10 +123,10 @@ def find_when(condition: When, evidence: Evidence, span: Span) -> Found:
         try:
             number = number_in(wanted.value, name or "")
         except ValueError as error:
-            return Found(None, f"{text}: {error}.")
+            return Occurrence(None, f"{text}: {error}.")
         if name is None:
             names = (column.name for column in columns)
-            return Found(None, f"The robot has no column {wanted.name} ({nearest(wanted.name, names)}).")
+            return Occurrence(None, f"The robot has no column {wanted.name} ({nearest(wanted.name, names)}).")
         values = evidence.column(name)[ticks]
         here = COMPARE[wanted.operator](values, number)
         if len(values) and not here.any():
@@ -137,11 +137,11 @@ def find_when(condition: When, evidence: Evidence, span: Span) -> Found:
         met &= here
     found = np.flatnonzero(met)
     if len(found):
-        return Found(Moment(span.first_tick + int(found[0])))
-    return Found(None, f"{'; '.join(never)}." if never else "They were not true at the same time.")
+        return Occurrence(EvidencePoint(span.first_tick + int(found[0])))
+    return Occurrence(None, f"{'; '.join(never)}." if never else "They were not true at the same time.")
 
 
-def find_off_line(condition: Follow, evidence: Evidence, span: Span) -> Found:
+def find_off_line(condition: FollowCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find out at the end of a span whether the robot was on a line for too small a share of the time."""
     import numpy as np
 
@@ -150,10 +150,10 @@ def find_off_line(condition: Follow, evidence: Evidence, span: Span) -> Found:
     if unknown:
         known = ", ".join(named) or "none"
         text = f"The robot has no colour sensor {unknown[0]}; it has: {known}."
-        return Found(Moment(max(0, span.first_tick)), text, 0)
+        return Occurrence(EvidencePoint(max(0, span.first_tick)), text, 0)
     records = evidence.records[span.ticks]
     if not len(records):
-        return Found()
+        return Occurrence()
     if condition.point_mm is not None:
         on_line = _is_line(condition, _light_at_percent(records, *condition.point_mm, evidence))
     else:
@@ -162,7 +162,7 @@ def find_off_line(condition: Follow, evidence: Evidence, span: Span) -> Found:
             on_line |= _is_line(condition, _reflected_percent(records, named[name], evidence))
     share = float(on_line.mean())
     if share >= condition.share:
-        return Found()
+        return Occurrence()
     gap = _longest_gap(on_line)
     lost = span.first_tick + gap
     what = f"The sensor {' or '.join(condition.sensors)}" if condition.sensors else "The robot"
@@ -171,7 +171,7 @@ def find_off_line(condition: Follow, evidence: Evidence, span: Span) -> Found:
         f"was off for longest from {evidence.time_words(lost)}."
     )
     decided = span.stop or (evidence.last if span.over else None)
-    return Found(decided, text, line_of_motion(records, gap))
+    return Occurrence(decided, text, line_of_motion(records, gap))
 
 
 def _light_at_percent(records: Array, x_mm: float, y_mm: float, evidence: Evidence) -> Array:
@@ -197,7 +197,7 @@ def _reflected_percent(records: Array, sensor: ColorSensorSpec, evidence: Eviden
     return percent
 
 
-def _is_line(condition: Follow, percent: Array) -> Array:
+def _is_line(condition: FollowCondition, percent: Array) -> Array:
     import numpy as np
 
     on_line = np.ones(len(percent), np.bool_)

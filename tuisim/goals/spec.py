@@ -34,7 +34,7 @@ Points = Annotated[float, Meta(ge=0, le=1000)]
 Number = Annotated[float, Meta(ge=-1e15, le=1e15)]
 
 
-class Kind(StrEnum):
+class ConditionKind(StrEnum):
     """When a condition is decided."""
 
     REACHED = "reached"
@@ -47,16 +47,16 @@ class Kind(StrEnum):
     """Decided by other goals."""
 
 
-LIMITS: Mapping[Kind, tuple[str, ...]] = {
-    Kind.REACHED: ("before", "after"),
-    Kind.HELD: ("after", "until"),
-    Kind.FIXED: (),
-    Kind.COMBINED: ("before",),
+LIMITS: Mapping[ConditionKind, tuple[str, ...]] = {
+    ConditionKind.REACHED: ("before", "after"),
+    ConditionKind.HELD: ("after", "until"),
+    ConditionKind.FIXED: (),
+    ConditionKind.COMBINED: ("before",),
 }
 """The limits that a condition of a kind can have."""
 
 
-class Part(StrEnum):
+class BodyPart(StrEnum):
     """What of the robot must be in or out of an area."""
 
     CENTRE = "centre"
@@ -92,10 +92,10 @@ def _check_count(found: tuple[object, ...], key: str) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Reach:
+class ReachCondition:
     """The robot comes to a place, a heading, or both."""
 
-    KIND: ClassVar[Kind] = Kind.REACHED
+    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = ""
     """The key that is meant if a file gives a value instead of a table; its value may be one text instead of a list."""
 
@@ -119,10 +119,10 @@ class Reach:
 
 
 @dataclass(frozen=True, slots=True)
-class Area:
+class AreaCondition:
     """A part of the field: a rectangle from its lower left corner, or a circle around its centre."""
 
-    KIND: ClassVar[Kind] = Kind.HELD
+    KIND: ClassVar[ConditionKind] = ConditionKind.HELD
     SHORT: ClassVar[str] = ""
 
     x_mm: Annotated[float, Meta(ge=-10_000, le=10_000)]
@@ -130,7 +130,7 @@ class Area:
     width_mm: Annotated[float, Meta(ge=1, le=20_000)] | None = None
     height_mm: Annotated[float, Meta(ge=1, le=20_000)] | None = None
     radius_mm: Annotated[float, Meta(ge=1, le=20_000)] | None = None
-    part: Part = Part.CENTRE
+    part: BodyPart = BodyPart.CENTRE
 
     def __post_init__(self) -> None:
         if self.radius_mm is not None and (self.width_mm is not None or self.height_mm is not None):
@@ -152,17 +152,17 @@ class Area:
 
 
 @dataclass(frozen=True, slots=True)
-class Inside(Area):
+class InsideCondition(AreaCondition):
     """The robot stays inside an area."""
 
 
 @dataclass(frozen=True, slots=True)
-class Outside(Area):
+class OutsideCondition(AreaCondition):
     """The robot stays out of an area."""
 
     def __post_init__(self) -> None:
         # `super()` without arguments does not find the class that `slots=True` makes.
-        Area.__post_init__(self)
+        AreaCondition.__post_init__(self)
         left, lower, right, upper = self.box_mm
         covers = left <= 0 and lower <= 0 and right >= FIELD_WIDTH_MM and upper >= FIELD_HEIGHT_MM
         if covers and self.radius_mm is None:
@@ -170,10 +170,10 @@ class Outside(Area):
 
 
 @dataclass(frozen=True, slots=True)
-class TouchNothing:
+class TouchNothingCondition:
     """The robot touches no obstacle and no wall; what it touches at the start counts once it has left it."""
 
-    KIND: ClassVar[Kind] = Kind.HELD
+    KIND: ClassVar[ConditionKind] = ConditionKind.HELD
     SHORT: ClassVar[str] = ""
 
     obstacles: bool = True
@@ -187,10 +187,10 @@ class TouchNothing:
 
 
 @dataclass(frozen=True, slots=True)
-class Pass:
+class PassCondition:
     """The robot passes places."""
 
-    KIND: ClassVar[Kind] = Kind.REACHED
+    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = "places_mm"
 
     places_mm: tuple[tuple[X, Y], ...]
@@ -203,10 +203,10 @@ class Pass:
 
 
 @dataclass(frozen=True, slots=True)
-class Follow:
+class FollowCondition:
     """A part of the robot is on a line for a share of the time. Noise and the pen's marks do not count."""
 
-    KIND: ClassVar[Kind] = Kind.HELD
+    KIND: ClassVar[ConditionKind] = ConditionKind.HELD
     SHORT: ClassVar[str] = "sensors"
 
     sensors: tuple[str, ...] = ()
@@ -226,10 +226,10 @@ class Follow:
 
 
 @dataclass(frozen=True, slots=True)
-class Draw:
+class DrawCondition:
     """What the pen draws is near a picture: a share of the picture is drawn, and of the drawing lies on it."""
 
-    KIND: ClassVar[Kind] = Kind.REACHED
+    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = ""
 
     picture: bytes
@@ -239,10 +239,10 @@ class Draw:
 
 
 @dataclass(frozen=True, slots=True)
-class Print:
+class PrintCondition:
     """The program prints lines."""
 
-    KIND: ClassVar[Kind] = Kind.REACHED
+    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = "lines"
 
     lines: tuple[str, ...]
@@ -265,10 +265,10 @@ class Print:
 
 
 @dataclass(frozen=True, slots=True)
-class Log:
+class LogCondition:
     """The samples of a variable take levels."""
 
-    KIND: ClassVar[Kind] = Kind.REACHED
+    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = ""
 
     name: str
@@ -296,10 +296,10 @@ class Log:
 
 
 @dataclass(frozen=True, slots=True)
-class Read:
+class ReadCondition:
     """The program takes readings."""
 
-    KIND: ClassVar[Kind] = Kind.REACHED
+    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = ""
 
     reading: Reading
@@ -312,10 +312,10 @@ class Read:
 
 
 @dataclass(frozen=True, slots=True)
-class When:
+class WhenCondition:
     """Columns of the recording take values, all in the same tick."""
 
-    KIND: ClassVar[Kind] = Kind.REACHED
+    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = "comparisons"
 
     comparisons: tuple[str, ...]
@@ -330,18 +330,18 @@ class When:
 
 
 @dataclass(frozen=True, slots=True)
-class Finish:
+class FinishCondition:
     """The program finishes without an error."""
 
-    KIND: ClassVar[Kind] = Kind.REACHED
+    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = ""
 
 
 @dataclass(frozen=True, slots=True)
-class Calls:
+class CallsCondition:
     """Calls in the program's text, such as `tank_drive.on_for_rotations` or `time.sleep`, also under other names."""
 
-    KIND: ClassVar[Kind] = Kind.FIXED
+    KIND: ClassVar[ConditionKind] = ConditionKind.FIXED
     SHORT: ClassVar[str] = "calls"
 
     calls: tuple[str, ...]
@@ -358,7 +358,7 @@ class Calls:
 
 
 @dataclass(frozen=True, slots=True)
-class Use(Calls):
+class UseCondition(CallsCondition):
     """The program uses each of the calls."""
 
     reading: Reading | None = None
@@ -366,12 +366,12 @@ class Use(Calls):
 
 
 @dataclass(frozen=True, slots=True)
-class Avoid(Calls):
+class AvoidCondition(CallsCondition):
     """The program uses none of the calls."""
 
 
 @dataclass(frozen=True, slots=True)
-class Turn:
+class DialogueTurn:
     """An answer to `input()`, and what the program prints next."""
 
     answer: str
@@ -382,13 +382,13 @@ class Turn:
 
 
 @dataclass(frozen=True, slots=True)
-class Dialogue:
+class DialogueCondition:
     """The program asks, is given answers, and replies."""
 
-    KIND: ClassVar[Kind] = Kind.REACHED
+    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = "turns"
 
-    turns: tuple[Turn, ...]
+    turns: tuple[DialogueTurn, ...]
 
     def __post_init__(self) -> None:
         _check_count(self.turns, "turns")
@@ -401,7 +401,7 @@ class Dialogue:
 class Combination:
     """Other goals, by name."""
 
-    KIND: ClassVar[Kind] = Kind.COMBINED
+    KIND: ClassVar[ConditionKind] = ConditionKind.COMBINED
     SHORT: ClassVar[str] = "goals"
 
     goals: tuple[str, ...]
@@ -424,49 +424,49 @@ class AnyOf(Combination):
 class Together:
     """Several conditions of one goal, which are all met; in a file, several keys of a goal."""
 
-    KIND: ClassVar[Kind] = Kind.COMBINED
+    KIND: ClassVar[ConditionKind] = ConditionKind.COMBINED
     SHORT: ClassVar[str] = ""
 
     conditions: tuple[Condition, ...]
 
 
 Condition: TypeAlias = (
-    Reach
-    | Inside
-    | Outside
-    | TouchNothing
-    | Pass
-    | Follow
-    | Draw
-    | Print
-    | Log
-    | Read
-    | When
-    | Finish
-    | Use
-    | Avoid
-    | Dialogue
+    ReachCondition
+    | InsideCondition
+    | OutsideCondition
+    | TouchNothingCondition
+    | PassCondition
+    | FollowCondition
+    | DrawCondition
+    | PrintCondition
+    | LogCondition
+    | ReadCondition
+    | WhenCondition
+    | FinishCondition
+    | UseCondition
+    | AvoidCondition
+    | DialogueCondition
     | AllOf
     | AnyOf
     | Together
 )
 
 CONDITIONS: Mapping[str, type[Condition]] = {
-    "reach": Reach,
-    "pass": Pass,
-    "inside": Inside,
-    "outside": Outside,
-    "touch_nothing": TouchNothing,
-    "follow": Follow,
-    "draw": Draw,
-    "print": Print,
-    "log": Log,
-    "read": Read,
-    "when": When,
-    "dialogue": Dialogue,
-    "finish": Finish,
-    "use": Use,
-    "avoid": Avoid,
+    "reach": ReachCondition,
+    "pass": PassCondition,
+    "inside": InsideCondition,
+    "outside": OutsideCondition,
+    "touch_nothing": TouchNothingCondition,
+    "follow": FollowCondition,
+    "draw": DrawCondition,
+    "print": PrintCondition,
+    "log": LogCondition,
+    "read": ReadCondition,
+    "when": WhenCondition,
+    "dialogue": DialogueCondition,
+    "finish": FinishCondition,
+    "use": UseCondition,
+    "avoid": AvoidCondition,
     "all": AllOf,
     "any": AnyOf,
 }
@@ -503,6 +503,6 @@ class Goal:
         """The conditions, usually one."""
         return self.condition.conditions if isinstance(self.condition, Together) else (self.condition,)
 
-    def limits(self, kind: Kind) -> tuple[str, ...]:
+    def limits(self, kind: ConditionKind) -> tuple[str, ...]:
         """Return which of `before`, `after` and `until` apply to its conditions of a kind."""
         return tuple(limit for limit in LIMITS[kind] if getattr(self, limit) is not None)

@@ -20,7 +20,7 @@ _PAGES = Path(__file__).resolve().parent / "pages"
 _PARTS = re.compile(r"\A\+\+\+\n(?P<head>.*?)\n\+\+\+\n\n# (?P<title>[^\n]+)\n(?P<text>.*)\Z", re.DOTALL)
 
 
-class Part(StrEnum):
+class GuidePart(StrEnum):
     """A part of the guide: what its pages are for."""
 
     TUTORIAL = "Tutorials"
@@ -30,19 +30,19 @@ class Part(StrEnum):
     PROJECT = "The project"
 
 
-CONTENTS: Mapping[Part, tuple[str, ...]] = {
-    Part.TUTORIAL: ("first-steps", "measuring-bands"),
-    Part.HOW_TO: (
+CONTENTS: Mapping[GuidePart, tuple[str, ...]] = {
+    GuidePart.TUTORIAL: ("first-steps", "measuring-bands"),
+    GuidePart.HOW_TO: (
         "writing-programs", "real-programs", "lessons", "stepping", "going-back", "analysing-logs", "exporting-data",
         "pictures-and-movies", "notebooks", "in-a-browser", "working-over-ssh", "own-mats", "marking", "experiments",
         "when-it-goes-wrong",
     ),
-    Part.REFERENCE: (
+    GuidePart.REFERENCE: (
         "keys", "commands", "options", "settings", "breakpoints", "profile-rules", "data-columns", "world-files",
         "goal-files", "the-brick", "device-files", "library-differences",
     ),
-    Part.EXPLANATION: ("virtual-time", "how-sensors-see", "motion-and-drift", "the-real-robot"),
-    Part.PROJECT: ("contributing", "architecture", "security", "licences"),
+    GuidePart.EXPLANATION: ("virtual-time", "how-sensors-see", "motion-and-drift", "the-real-robot"),
+    GuidePart.PROJECT: ("contributing", "architecture", "security", "licences"),
 }  # fmt: skip
 """The names of all pages, by part."""
 
@@ -52,7 +52,7 @@ class Page:
     """A page of the guide."""
 
     name: str
-    part: Part
+    part: GuidePart
     title: str
     about: str
     """A sentence for the contents."""
@@ -68,7 +68,7 @@ def pages() -> Mapping[str, Page]:
     return {name: _read(name, part) for part, names in CONTENTS.items() for name in names}
 
 
-def _read(name: str, part: Part) -> Page:
+def _read(name: str, part: GuidePart) -> Page:
     found = _PARTS.match((_PAGES / f"{name}.md").read_text(encoding="utf-8"))
     assert found is not None, name
     head = tomllib.loads(found["head"])

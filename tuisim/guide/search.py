@@ -29,7 +29,7 @@ _ENOUGH = 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class SearchResult:
     """A page that answers a question."""
 
     name: str
@@ -97,7 +97,7 @@ def _index() -> Mapping[str, _Entry]:
     return found
 
 
-def search(question: str) -> list[Found]:
+def search(question: str) -> list[SearchResult]:
     """Return the pages that have words of a question, the best one first.
 
     Args:
@@ -116,7 +116,7 @@ def search(question: str) -> list[Found]:
                    for group, rare in zip(groups, rarity, strict=True)]  # fmt: skip
         if score := sum(weights):
             share = sum(weight > 0 for weight in weights) / len(weights)
-            found.append(Found(name, score * share, _best_section(entry, groups)))
+            found.append(SearchResult(name, score * share, _best_section(entry, groups)))
     return sorted(found, key=lambda one: -one.score)
 
 

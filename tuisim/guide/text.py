@@ -8,7 +8,7 @@ from rich.style import Style
 
 from tuisim.charts.text_runs import Line
 from tuisim.guide.catalogue import CONTENTS, Page, pages
-from tuisim.guide.search import Found
+from tuisim.guide.search import SearchResult
 from tuisim.guide.tables import markdown_of
 from tuisim.lessons.markdown import PLAIN, markdown_lines
 
@@ -46,7 +46,7 @@ def contents_lines(width: int) -> list[Line]:
     return markdown_lines("\n\n".join(text), width)
 
 
-def result_lines(found: list[Found], width: int) -> list[Line]:
+def result_lines(found: list[SearchResult], width: int) -> list[Line]:
     """Return what a search has found, the best page first."""
     items = [
         f"- `{one.name}` **{pages()[one.name].title}**{f': {one.heading}' if one.heading else ''}. "

@@ -7,7 +7,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias, assert_never
 
-from tuisim.lessons.spec import Break, Check, Export, Note, Question, Run, Show, Visit, Watch
+from tuisim.lessons.spec import (
+    BreakCheck,
+    Check,
+    ExportCheck,
+    NoteCheck,
+    QuestionCheck,
+    RunCheck,
+    ShowCheck,
+    VisitCheck,
+    WatchCheck,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +59,7 @@ class Typed:
 
 
 @dataclass(frozen=True, slots=True)
-class Watched:
+class ExpressionWatched:
     """A paused program has shown the value of a watch."""
 
     expression: str
@@ -94,7 +104,9 @@ class Shown:
     """Whether a program was paused at that moment."""
 
 
-Event: TypeAlias = JudgedRun | TriedElsewhere | Typed | Watched | BreakMet | Exported | Noted | Visited | Shown
+Event: TypeAlias = (
+    JudgedRun | TriedElsewhere | Typed | ExpressionWatched | BreakMet | Exported | Noted | Visited | Shown
+)
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?)\s*[^\d.,]*$")
 
@@ -102,29 +114,29 @@ _NUMBER = re.compile(r"\s*([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?)\s*
 def is_met(check: Check, events: Sequence[Event]) -> bool:
     """Return whether what a student has done since a step began passes its check."""
     match check:
-        case Run():
+        case RunCheck():
             return good_runs(check, events) >= check.times
-        case Question():
+        case QuestionCheck():
             typed = [event for event in events if isinstance(event, Typed)]
             return any(is_right(check, event.text) and not unready(check, event) for event in typed)
-        case Watch(expression):
-            return any(isinstance(event, Watched) and _same(event.expression, expression) for event in events)
-        case Break(matches):
+        case WatchCheck(expression):
+            return any(isinstance(event, ExpressionWatched) and _same(event.expression, expression) for event in events)
+        case BreakCheck(matches):
             return any(isinstance(event, BreakMet) and re.search(matches, event.text) for event in events)
-        case Export(suffix):
+        case ExportCheck(suffix):
             return any(isinstance(event, Exported) and event.name.endswith(suffix) for event in events)
-        case Note():
+        case NoteCheck():
             return any(isinstance(event, Noted) and _is_noted(check, event) for event in events)
-        case Visit(from_s, to_s):
+        case VisitCheck(from_s, to_s):
             return any(isinstance(event, Visited) and from_s <= event.time_s <= to_s for event in events)
-        case Show(panel, paused):
+        case ShowCheck(panel, paused):
             shown = (event for event in events if isinstance(event, Shown) and event.panel == panel)
             return any(event.paused or not paused for event in shown)
         case _:
             assert_never(check)
 
 
-def good_runs(check: Run, events: Sequence[Event]) -> int:
+def good_runs(check: RunCheck, events: Sequence[Event]) -> int:
     """Return how many runs have passed a check so far."""
     passed = {
         (event.run_id, other.where)
@@ -136,13 +148,13 @@ def good_runs(check: Run, events: Sequence[Event]) -> int:
     return len({run.seed for run in good} if check.seeds else {run.run_id for run in good})
 
 
-def met_by(check: Run, events: Sequence[Event]) -> list[JudgedRun]:
+def met_by(check: RunCheck, events: Sequence[Event]) -> list[JudgedRun]:
     """Return the runs that have met the goals of a check, whatever their programs do in other worlds."""
     runs = [event for event in events if isinstance(event, JudgedRun)]
     return [run for run in runs if set(check.goals) <= run.met and (run.from_start or check.anywhere)]
 
 
-def is_right(question: Question, text: str) -> bool:
+def is_right(question: QuestionCheck, text: str) -> bool:
     """Return whether a typed text answers a question. A number may have a unit; a choice may be given by its number."""
     match question.answer:
         case int() | float() as wanted:
@@ -154,7 +166,7 @@ def is_right(question: Question, text: str) -> bool:
             return any(_same(text, wanted) for wanted in several)
 
 
-def unready(question: Question, event: Typed) -> str:
+def unready(question: QuestionCheck, event: Typed) -> str:
     """Return in a sentence what must happen before an answer counts; empty if that has happened."""
     if question.run and not event.has_run:
         return "Run the program first: the question is about its run."
@@ -168,7 +180,7 @@ def unready(question: Question, event: Typed) -> str:
     return ""
 
 
-def wanted_form(question: Question, text: str) -> str:
+def wanted_form(question: QuestionCheck, text: str) -> str:
     """Return in words what form an answer must have; empty if the text has it."""
     if isinstance(question.answer, int | float):
         return "" if _NUMBER.match(text) else "a number, such as 12.5"
@@ -177,7 +189,7 @@ def wanted_form(question: Question, text: str) -> str:
     return ""
 
 
-def _chosen(question: Question, text: str) -> str:
+def _chosen(question: QuestionCheck, text: str) -> str:
     number = text.strip().rstrip(".)")
     if question.choices and number.isdecimal() and 1 <= int(number) <= len(question.choices):
         return question.choices[int(number) - 1]
@@ -193,13 +205,13 @@ def _plain(text: str) -> str:
     return "".join(text.split()).casefold().removesuffix(".")
 
 
-def _is_noted(check: Note, event: Noted) -> bool:
+def _is_noted(check: NoteCheck, event: Noted) -> bool:
     if check.level is not None and (event.level is None or abs(event.level - check.level) > check.within):
         return False
     return re.search(check.matches, event.text, re.IGNORECASE) is not None
 
 
-def note_fault(check: Note, event: Noted) -> str:
+def note_fault(check: NoteCheck, event: Noted) -> str:
     """Return in a sentence why a note does not pass; empty if it does."""
     if _is_noted(check, event):
         return ""
@@ -218,21 +230,21 @@ def event_of(check: Check, text: str) -> Event:
         ValueError: the check is about runs, or needs a number and the text is none.
     """
     match check:
-        case Run():
+        case RunCheck():
             raise ValueError("a check of runs takes a program")
-        case Question():
+        case QuestionCheck():
             return Typed(text)
-        case Watch():
-            return Watched(text)
-        case Break():
+        case WatchCheck():
+            return ExpressionWatched(text)
+        case BreakCheck():
             return BreakMet(text)
-        case Export():
+        case ExportCheck():
             return Exported(text)
-        case Note(level=level):
+        case NoteCheck(level=level):
             return Noted(text, level)
-        case Visit():
+        case VisitCheck():
             return Visited(float(text))
-        case Show():
+        case ShowCheck():
             return Shown(text)
         case _:
             assert_never(check)
@@ -247,11 +259,11 @@ def model_event(check: Check, model: str) -> Event:
     if model:
         return event_of(check, model)
     match check:
-        case Question(answer=answer):
+        case QuestionCheck(answer=answer):
             return Typed(answer[0] if isinstance(answer, tuple) else f"{answer}")
-        case Watch(text) | Export(text) | Show(text):
+        case WatchCheck(text) | ExportCheck(text) | ShowCheck(text):
             return event_of(check, text)
-        case Visit(from_s, to_s):
+        case VisitCheck(from_s, to_s):
             return Visited((from_s + to_s) / 2)
         case _:
             raise ValueError("needs a model")

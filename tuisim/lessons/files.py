@@ -22,7 +22,19 @@ from tuisim.errors import ConfigError
 from tuisim.goals.files import goals_from_list, line_in_errors
 from tuisim.lessons.events import event_of, is_met, model_event
 from tuisim.lessons.others import others_of
-from tuisim.lessons.spec import CHECKS, MAX_HINTS, MAX_STEPS, Break, Check, Lesson, Note, Run, Step, Way, WrongProgram
+from tuisim.lessons.spec import (
+    CHECKS,
+    MAX_HINTS,
+    MAX_STEPS,
+    BreakCheck,
+    Check,
+    Lesson,
+    LessonStep,
+    NoteCheck,
+    RunCheck,
+    Way,
+    WrongProgram,
+)
 
 SUFFIX = ".md"
 FENCE = "+++"
@@ -201,14 +213,14 @@ def _world(data: dict[str, Any], path: Path) -> WorldFile:
     return world_from_table({key: value for key, value in data.items() if key not in _LESSON_KEYS}, path)
 
 
-def _steps(data: Any, sections: Sequence[_Section], goals: set[str], at: Location) -> tuple[Step, ...]:
+def _steps(data: Any, sections: Sequence[_Section], goals: set[str], at: Location) -> tuple[LessonStep, ...]:
     if not data.get("step"):
         raise at.at("step").wrong("there are no steps", "begin each with a line [[step]]")
     listed = files.entries(data["step"], at.at("step"), MAX_STEPS, "steps")
     if len(listed) != len(sections):
         where = Location(f"{at.file}, line {sections[-1].line}") if sections else at
         raise where.wrong(f"there are {len(listed)} steps [[step]], but {len(sections)} sections ## in the text")
-    steps: list[Step] = []
+    steps: list[LessonStep] = []
     for (entry, place), section in zip(listed, sections, strict=True):
         step = _step(entry, section, place, at.file)
         if any(step.name == other.name for other in steps):
@@ -218,7 +230,7 @@ def _steps(data: Any, sections: Sequence[_Section], goals: set[str], at: Locatio
     return _with_answers(steps, at)
 
 
-def _step(data: object, section: _Section, at: Location, file: str) -> Step:
+def _step(data: object, section: _Section, at: Location, file: str) -> LessonStep:
     found = files.table(data, at, (*_STEP_KEYS, *CHECKS))
     name = files.convert(files.required(found, "name", at), str, at.at("name"))
     kinds = [key for key in CHECKS if key in found]
@@ -229,7 +241,7 @@ def _step(data: object, section: _Section, at: Location, file: str) -> Step:
     if not section.title:
         raise Location(f"{file}, line {section.line}").wrong("the step has no title", "## TITLE")
     answers = section.of(Role.ANSWER)
-    step = Step(
+    step = LessonStep(
         name=name,
         title=section.title,
         text=section.text,
@@ -243,7 +255,7 @@ def _step(data: object, section: _Section, at: Location, file: str) -> Step:
         wrong_programs=tuple(WrongProgram(block.text, block.line, block.way) for block in section.of(Role.WRONG)),
         excludes=_excludes(found.get("excludes", {}), at.at("excludes")),
     )
-    if step.wrong_programs and not isinstance(check, Run):
+    if step.wrong_programs and not isinstance(check, RunCheck):
         raise Location(f"{file}, line {step.wrong_programs[0].line}").wrong("this step does not run a program")
     _check_models(step, at)
     return step
@@ -261,15 +273,15 @@ def _texts(found: Any, key: str, at: Location, most: int) -> tuple[str, ...]:
 
 def _check(kind: type[Check], data: object, at: Location, path: Path) -> Check:
     if not isinstance(data, dict) and kind.SHORT:
-        data = {kind.SHORT: [data] if kind is Run and isinstance(data, str) else data}
-    if kind is not Run or not isinstance(data, dict) or "also" not in data:
+        data = {kind.SHORT: [data] if kind is RunCheck and isinstance(data, str) else data}
+    if kind is not RunCheck or not isinstance(data, dict) or "also" not in data:
         return files.convert(data, kind, at)
-    run = files.convert({key: value for key, value in data.items() if key != "also"}, Run, at)
+    run = files.convert({key: value for key, value in data.items() if key != "also"}, RunCheck, at)
     return replace(run, also=others_of(data["also"], run.goals, at.at("also"), path))
 
 
 def _check_goals(check: Check, goals: set[str], at: Location) -> None:
-    if isinstance(check, Run):
+    if isinstance(check, RunCheck):
         _check_names(check.goals, goals, at.at("run"))
         for number, other in enumerate(check.also, start=1):
             place, own = at.at(f"run.also[{number}]"), {goal.name for goal in other.own_goals}
@@ -284,14 +296,14 @@ def _check_names(names: Sequence[str], goals: set[str], at: Location) -> None:
             raise at.at(f"goals[{number}]").wrong(f"there is no goal {name!r}", f"one of {', '.join(sorted(goals))}")
 
 
-def _check_models(step: Step, at: Location) -> None:
+def _check_models(step: LessonStep, at: Location) -> None:
     """Raise ConfigError if the model does not pass, or a wrong one does."""
-    if isinstance(step.check, Run):
+    if isinstance(step.check, RunCheck):
         for key in ("model", "wrong"):
             if getattr(step, key):
                 raise at.at(key).wrong("is not for a step that runs a program", f"a block ```python {key}")
         return
-    if not step.model and isinstance(step.check, Break | Note):
+    if not step.model and isinstance(step.check, BreakCheck | NoteCheck):
         raise at.at("model").wrong("is missing", "give what a student would type")
     for key, text in (("model", step.model), *((f"wrong[{at_}]", one) for at_, one in enumerate(step.wrong, 1))):
         try:
@@ -302,13 +314,13 @@ def _check_models(step: Step, at: Location) -> None:
             raise at.at(key).wrong(f"{files.shown(text)} {'does not pass' if key == 'model' else 'passes'}")
 
 
-def _with_answers(steps: Sequence[Step], at: Location) -> tuple[Step, ...]:
+def _with_answers(steps: Sequence[LessonStep], at: Location) -> tuple[LessonStep, ...]:
     """Give each step that runs a program its model answer: the next one in the text."""
     answer, found = "", []
     for step in reversed(steps):
         answer = step.answer or answer
-        if isinstance(step.check, Run) and not answer:
+        if isinstance(step.check, RunCheck) and not answer:
             where = Location(f"{at.file}, line {step.line}")
             raise where.wrong(f"the step {step.name!r} has no model answer", "a block ```python answer")
-        found.append(replace(step, answer=answer if isinstance(step.check, Run) else step.answer))
+        found.append(replace(step, answer=answer if isinstance(step.check, RunCheck) else step.answer))
     return tuple(reversed(found))

@@ -63,7 +63,7 @@ class OtherWorld:
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class RunCheck:
     """Runs of the program meet goals of the lesson."""
 
     SHORT: ClassVar[str] = "goals"
@@ -88,7 +88,7 @@ class Run:
 
 
 @dataclass(frozen=True, slots=True)
-class Question:
+class QuestionCheck:
     """The student types the right answer: a number, a text, or one of several choices."""
 
     SHORT: ClassVar[str] = ""
@@ -130,7 +130,7 @@ class Question:
 
 
 @dataclass(frozen=True, slots=True)
-class Watch:
+class WatchCheck:
     """The student watches a variable or an expression while the program is paused."""
 
     SHORT: ClassVar[str] = "expression"
@@ -145,7 +145,7 @@ class Watch:
 
 
 @dataclass(frozen=True, slots=True)
-class Break:
+class BreakCheck:
     """A run stops at a breakpoint."""
 
     SHORT: ClassVar[str] = "matches"
@@ -164,7 +164,7 @@ class Break:
 
 
 @dataclass(frozen=True, slots=True)
-class Export:
+class ExportCheck:
     """The student exports a log."""
 
     SHORT: ClassVar[str] = "suffix"
@@ -180,7 +180,7 @@ class Export:
 
 
 @dataclass(frozen=True, slots=True)
-class Note:
+class NoteCheck:
     """The student writes a note on the run, perhaps on a band with a certain level."""
 
     SHORT: ClassVar[str] = "matches"
@@ -200,7 +200,7 @@ class Note:
 
 
 @dataclass(frozen=True, slots=True)
-class Visit:
+class VisitCheck:
     """The student goes back to a past instant of a run."""
 
     SHORT: ClassVar[str] = ""
@@ -220,7 +220,7 @@ class Visit:
 
 
 @dataclass(frozen=True, slots=True)
-class Show:
+class ShowCheck:
     """A panel of the app is on the screen."""
 
     SHORT: ClassVar[str] = "panel"
@@ -239,17 +239,17 @@ class Show:
         _check_panel(self.panel, "panel")
 
 
-Check: TypeAlias = Run | Question | Watch | Break | Export | Note | Visit | Show
+Check: TypeAlias = RunCheck | QuestionCheck | WatchCheck | BreakCheck | ExportCheck | NoteCheck | VisitCheck | ShowCheck
 
 CHECKS: Mapping[str, type[Check]] = {
-    "run": Run,
-    "question": Question,
-    "watch": Watch,
-    "breakpoint": Break,
-    "export": Export,
-    "note": Note,
-    "visit": Visit,
-    "show": Show,
+    "run": RunCheck,
+    "question": QuestionCheck,
+    "watch": WatchCheck,
+    "breakpoint": BreakCheck,
+    "export": ExportCheck,
+    "note": NoteCheck,
+    "visit": VisitCheck,
+    "show": ShowCheck,
 }
 """The kinds of checks by their key in a file."""
 
@@ -266,7 +266,7 @@ class WrongProgram:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class LessonStep:
     """One step of a lesson."""
 
     name: str
@@ -294,7 +294,7 @@ class Step:
         """Return the wrong ways that are neither tried nor excluded with a reason."""
         covered = {*self.excludes, *self.check.EXCLUDES, *(one.way for one in self.wrong_programs)}
         match self.check:
-            case Question(choices=choices, at_x_mm=place, seen=seen, run=run):
+            case QuestionCheck(choices=choices, at_x_mm=place, seen=seen, run=run):
                 # What must have happened is not there in the trials of `is_met`.
                 tried = {
                     Way.LITERAL: self.wrong or choices,
@@ -303,7 +303,7 @@ class Step:
                     Way.ORDER: run,
                 }
                 covered |= {way for way, there in tried.items() if there}
-            case Note(level=level):
+            case NoteCheck(level=level):
                 covered |= {Way.LITERAL} if self.wrong else set()
                 covered |= {Way.PLACE} if level is not None else set()
         return tuple(way for way in Way if way not in covered)
@@ -321,7 +321,7 @@ class Lesson:
     """Why it matters on a real robot."""
     intro: str
     """Markdown before the first step."""
-    steps: tuple[Step, ...]
+    steps: tuple[LessonStep, ...]
     program: str
     """The program to complete; empty for none."""
     goals: tuple[Goal, ...]

@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from tuisim.goals.judgement import Change, GoalState, Judgement
-from tuisim.goals.spec import Condition, Finish, Follow, Log, Pass, Print, Reach
+from tuisim.goals.spec import (
+    Condition,
+    FinishCondition,
+    FollowCondition,
+    LogCondition,
+    PassCondition,
+    PrintCondition,
+    ReachCondition,
+)
 
 
 def story(judgements: Iterable[Judgement]) -> str:
@@ -36,17 +44,17 @@ def _words(condition: Condition, event: Change, line: int) -> str:
     """Return what met a condition; empty for those that only the program's text meets."""
     when, where = f"at {event.time_s:.2f} s", f"at x = {event.x_mm:.0f} mm, y = {event.y_mm:.0f} mm"
     match condition:
-        case Reach(at_end=True):
+        case ReachCondition(at_end=True):
             return f"it ended {where}"
-        case Reach() | Pass():
+        case ReachCondition() | PassCondition():
             return f"it was {where} {when}"
-        case Print(lines=lines):
+        case PrintCondition(lines=lines):
             last = "" if len(lines) == 1 else " the last"
             return f"line {line} printed{last or ' it'} {when}, {where}"
-        case Log(name=name):
+        case LogCondition(name=name):
             return f"line {line} logged {name} {when}, {where}"
-        case Follow():
+        case FollowCondition():
             return "the sensor was on the line for long enough"
-        case Finish():
+        case FinishCondition():
             return f"it finished {when}"
     return ""

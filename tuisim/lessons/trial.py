@@ -12,7 +12,7 @@ from tuisim.config.options import settings_of
 from tuisim.config.program_file import parse_program
 from tuisim.config.program_settings import program_settings
 from tuisim.goals.judgement import GoalState, Judgement
-from tuisim.lessons.spec import Lesson, OtherWorld, Question, Run, Step, Way
+from tuisim.lessons.spec import Lesson, LessonStep, OtherWorld, QuestionCheck, RunCheck, Way
 from tuisim.runs.handle import RunOptions
 from tuisim.runs.run_folder import StoredRun
 from tuisim.source import source_lines
@@ -27,7 +27,7 @@ _Key = tuple[str, int, str]
 class Trial:
     """A program that is tried on a step."""
 
-    step: Step
+    step: LessonStep
     text: str
     line: int
     """Where it begins in the lesson's file; 0 for the model answer."""
@@ -43,7 +43,7 @@ def trials(lesson: Lesson) -> list[Trial]:
     found = []
     seed = build_run_spec(settings_of(lesson.settings)).seed
     for step in lesson.steps:
-        if isinstance(step.check, Run):
+        if isinstance(step.check, RunCheck):
             found += [Trial(step, step.answer, 0, True, seed + more) for more in range(step.check.times)]
             found += [Trial(step, wrong.text, wrong.line, False, seed, wrong.way) for wrong in step.wrong_programs]
     return found
@@ -63,7 +63,7 @@ def task_of(lesson: Lesson, text: str, seed: int, index: int = 0, other: OtherWo
     return Task(index, source.program, spec, RunOptions(time_limit_s=TIME_LIMIT_S), goals)
 
 
-def tried_elsewhere(lesson: Lesson, check: Run, run: StoredRun) -> list[tuple[OtherWorld, tuple[Judgement, ...]]]:
+def tried_elsewhere(lesson: Lesson, check: RunCheck, run: StoredRun) -> list[tuple[OtherWorld, tuple[Judgement, ...]]]:
     """Try the program of a run in the other worlds of a check, and judge that; blocks meanwhile.
 
     Raises:
@@ -94,7 +94,7 @@ def faults(lesson: Lesson) -> list[str]:
 def _worlds(trial: Trial) -> list[tuple[_Key, OtherWorld | None]]:
     """Return the worlds in which a trial runs, each with its key; None for that of the lesson."""
     check = trial.step.check
-    assert isinstance(check, Run)
+    assert isinstance(check, RunCheck)
     found = [((trial.text, trial.seed, f"{trial.step.name} {other.where}"), other) for other in check.also]
     return [((trial.text, trial.seed, ""), None), *found]
 
@@ -105,7 +105,7 @@ def warnings(lesson: Lesson) -> list[str]:
     for step in lesson.steps:
         at = f"{lesson.path}, line {step.line}"
         found += [f"{at}: no wrong way “{way}” is tried on “{step.title}”, nor excluded" for way in step.missing_ways()]
-        if isinstance(step.check, Question | Run) and not step.why:
+        if isinstance(step.check, QuestionCheck | RunCheck) and not step.why:
             found.append(f"{at}: no `why` says why what passes “{step.title}” is right")
     return found
 
@@ -113,7 +113,7 @@ def warnings(lesson: Lesson) -> list[str]:
 def _faults_of(lesson: Lesson, trial: Trial, results: Mapping[_Key, Result]) -> Iterator[str]:
     """Yield what is wrong with a trial."""
     check = trial.step.check
-    assert isinstance(check, Run)
+    assert isinstance(check, RunCheck)
     tried = [(results[key], other) for key, other in _worlds(trial)]
     missed = [(result, _missed(other.goals if other else check.goals, result), other) for result, other in tried]
     result, reasons, other = next((one for one in missed if one[1]), missed[0])

@@ -9,7 +9,7 @@ from textwrap import fill
 
 from tuisim.atomic import replacing
 from tuisim.errors import ExportError, printable
-from tuisim.marks.sheet import Cell, Column, Row, Sheet, in_words
+from tuisim.marks.sheet import Cell, Sheet, SheetColumn, SheetRow, in_words
 from tuisim.source import source_lines
 
 SUFFIX = ".txt"
@@ -37,7 +37,7 @@ def file_stems(names: Iterable[str]) -> list[str]:
     return found
 
 
-def feedback_of(sheet: Sheet, row: Row, source: str = "") -> str:
+def feedback_of(sheet: Sheet, row: SheetRow, source: str = "") -> str:
     """Return the feedback for one student as plain text.
 
     Args:
@@ -57,7 +57,7 @@ def feedback_of(sheet: Sheet, row: Row, source: str = "") -> str:
     return "".join(f"{printable(line)}\n" for line in lines)
 
 
-def _how_often(row: Row) -> list[str]:
+def _how_often(row: SheetRow) -> list[str]:
     if row.stopped_early:
         return ["Your program was run once: it would not end in other runs either.", ""]
     if row.runs < 2:
@@ -67,7 +67,7 @@ def _how_often(row: Row) -> list[str]:
                      f"{full} of {row.runs} runs met every goal."), ""]  # fmt: skip
 
 
-def _goal(column: Column, cell: Cell, runs: int, lines: Sequence[str]) -> list[str]:
+def _goal(column: SheetColumn, cell: Cell, runs: int, lines: Sequence[str]) -> list[str]:
     is_met = bool(runs) and cell.met == runs
     mark = "met" if is_met else "missed" if not cell.met else "met in part"
     points = f" ({in_words(cell.points)} of {in_words(column.points)})" if column.points else ""

@@ -8,7 +8,7 @@ from urllib.parse import quote
 
 from tuisim.analysis.report import page, paragraph, section, table
 from tuisim.charts.files import clean
-from tuisim.marks.sheet import Cell, Column, Row, Sheet, in_words, summary_of
+from tuisim.marks.sheet import Cell, Sheet, SheetColumn, SheetRow, in_words, summary_of
 
 _STYLE = """<style>
 body { max-width: 90rem; }
@@ -57,7 +57,7 @@ def _students(sheet: Sheet, links: Links) -> str:
     ))  # fmt: skip
 
 
-def _row(row: Row, sheet: Sheet, links: Links) -> str:
+def _row(row: SheetRow, sheet: Sheet, links: Links) -> str:
     level = _level(row.points, sheet.most_points) if sheet.most_points else _level(row.robustness, 1.0)
     cells = (
         f'<th class="student" scope="row">{clean(row.name)}</th>',
@@ -73,7 +73,7 @@ def _level(points: float, most: float) -> str:
     return "met" if points >= most else "part" if points else "missed"
 
 
-def _cell(cell: Cell, column: Column, row: Row) -> str:
+def _cell(cell: Cell, column: SheetColumn, row: SheetRow) -> str:
     # A goal without points is met or missed, too.
     level = "met" if row.runs and cell.met == row.runs else "part" if cell.met else "missed"
     seeds = f"met in {cell.met} of {row.runs} runs" if row.runs > 1 else ""
@@ -81,7 +81,7 @@ def _cell(cell: Cell, column: Column, row: Row) -> str:
     return f'<td class="number {level}" title="{clean(hint)}">{in_words(cell.points)}</td>'
 
 
-def _reason(row: Row, links: Links) -> str:
+def _reason(row: SheetRow, links: Links) -> str:
     found = [clean(row.reason)] if row.reason else []
     if row.line:
         found.append(f"<br>line {row.line}: <code>{clean(row.source_line)}</code>")

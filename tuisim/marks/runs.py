@@ -15,7 +15,7 @@ from tuisim.marks.journal import Journal
 from tuisim.marks.outcome import Outcome
 from tuisim.marks.results import outcome_of
 from tuisim.marks.students import Student
-from tuisim.marks.workspace import Workspace, digest_of, program_in, temporary_workspace
+from tuisim.marks.workspace import StudentWorkspace, digest_of, program_in, temporary_workspace
 from tuisim.runs.handle import RunOptions
 
 STALL_LIMIT_S = 10.0
@@ -25,7 +25,7 @@ REAL_TIME_LIMIT_S = 120.0
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class MarkPlan:
     """What is run for each student."""
 
     goals: tuple[Goal, ...]
@@ -43,7 +43,7 @@ class Plan:
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class RunEntry:
     """A student whose program can be run."""
 
     student: Student
@@ -55,12 +55,12 @@ class Entry:
 class _Turn:
     """One run of one student."""
 
-    entry: Entry
+    entry: RunEntry
     seed: int
     key: str
 
 
-def outcomes_of(entries: Sequence[Entry], plan: Plan, journal: Journal) -> Generator[tuple[str, Outcome]]:
+def outcomes_of(entries: Sequence[RunEntry], plan: MarkPlan, journal: Journal) -> Generator[tuple[str, Outcome]]:
     """Run every student's program with every seed; yield names of students and outcomes as they become known.
 
     A program that hangs, floods or dies with the first seed is not run with the others. Outcomes that the journal
@@ -80,7 +80,7 @@ def outcomes_of(entries: Sequence[Entry], plan: Plan, journal: Journal) -> Gener
     yield from _run(later, plan, journal)
 
 
-def _turns(entry: Entry, plan: Plan) -> list[_Turn]:
+def _turns(entry: RunEntry, plan: MarkPlan) -> list[_Turn]:
     student = entry.student
     assert student.source is not None
     basis: list[object] = [
@@ -98,7 +98,7 @@ def _turns(entry: Entry, plan: Plan) -> list[_Turn]:
     return turns
 
 
-def _run(turns: Sequence[_Turn], plan: Plan, journal: Journal) -> Iterator[tuple[str, Outcome]]:
+def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[tuple[str, Outcome]]:
     unknown = []
     for turn in turns:
         if turn.key in journal.known:
@@ -117,7 +117,7 @@ def _run(turns: Sequence[_Turn], plan: Plan, journal: Journal) -> Iterator[tuple
             yield turn.entry.student.name, outcome
 
 
-def _tasks(turns: Sequence[_Turn], plan: Plan, workspace: Workspace) -> Iterator[Task]:
+def _tasks(turns: Sequence[_Turn], plan: MarkPlan, workspace: StudentWorkspace) -> Iterator[Task]:
     for index, turn in enumerate(turns):
         student = turn.entry.student
         program = program_in(

@@ -17,7 +17,7 @@ DIGITS = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class SheetColumn:
     """A goal as a column."""
 
     name: str
@@ -43,7 +43,7 @@ class Cell:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class SheetRow:
     """One student."""
 
     name: str
@@ -78,8 +78,8 @@ class Sheet:
     """The marks of a class."""
 
     title: str
-    columns: tuple[Column, ...]
-    rows: tuple[Row, ...]
+    columns: tuple[SheetColumn, ...]
+    rows: tuple[SheetRow, ...]
     seeds: tuple[int, ...]
 
     @property
@@ -90,7 +90,7 @@ class Sheet:
 
 def sheet_of(
     title: str,
-    columns: Sequence[Column],
+    columns: Sequence[SheetColumn],
     seeds: Sequence[int],
     students: Sequence[Student],
     outcomes: Mapping[str, Sequence[Outcome]],
@@ -104,14 +104,14 @@ def sheet_of(
     return Sheet(title, tuple(columns), rows, tuple(seeds))
 
 
-def row_of(student: Student, columns: Sequence[Column], outcomes: Sequence[Outcome], seeds: int) -> Row:
+def row_of(student: Student, columns: Sequence[SheetColumn], outcomes: Sequence[Outcome], seeds: int) -> SheetRow:
     """Return the row of a student."""
     if not student.source:
         cells = tuple(Cell(0.0, 0, student.problem) for _ in columns)
-        return Row(student.name, student.main, 0.0, 0.0, cells, student.problem, failure=student.problem)
+        return SheetRow(student.name, student.main, 0.0, 0.0, cells, student.problem, failure=student.problem)
     ordered = tuple(sorted((one for one in outcomes if one.counts), key=lambda one: one.seed))
     if not ordered:
-        return Row(student.name, student.main, 0.0, 0.0, tuple(Cell(0.0, 0, NOT_RUN) for _ in columns), NOT_RUN)
+        return SheetRow(student.name, student.main, 0.0, 0.0, tuple(Cell(0.0, 0, NOT_RUN) for _ in columns), NOT_RUN)
     totals = [_points(columns, one) for one in ordered]
     # In a task without points, every goal counts.
     counted_goals = [column.name for column in columns if column.points] or [column.name for column in columns]
@@ -119,7 +119,7 @@ def row_of(student: Student, columns: Sequence[Column], outcomes: Sequence[Outco
     failed = incomplete[0] if incomplete else None
     reason, line = _reason(failed, counted_goals) if failed else ("", 0)
     lines = source_lines(student.text)
-    return Row(
+    return SheetRow(
         name=student.name,
         program=student.main,
         points=_rounded(math.fsum(totals) / len(totals)),
@@ -137,13 +137,13 @@ def row_of(student: Student, columns: Sequence[Column], outcomes: Sequence[Outco
     )
 
 
-def _points(columns: Sequence[Column], outcome: Outcome) -> float:
+def _points(columns: Sequence[SheetColumn], outcome: Outcome) -> float:
     """Return the points of one run; one of which nothing is recorded has no judgements, and no points."""
     met = {goal.name for goal in outcome.goals if goal.met}
     return math.fsum(column.points for column in columns if column.name in met)
 
 
-def _cell(column: Column, outcomes: Sequence[Outcome]) -> Cell:
+def _cell(column: SheetColumn, outcomes: Sequence[Outcome]) -> Cell:
     goals = [(one, next((goal for goal in one.goals if goal.name == column.name), None)) for one in outcomes]
     met = sum(goal is not None and goal.met for _, goal in goals)
     points = _rounded(column.points * met / len(goals))

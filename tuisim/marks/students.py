@@ -43,7 +43,7 @@ class Student:
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class StudentsFound:
     """The contents of the folders of a class."""
 
     students: tuple[Student, ...]
@@ -51,7 +51,7 @@ class Found:
     """Names of files that are no programs."""
 
 
-def find_students(words: Sequence[str], program: str = "", excluded: Collection[Path] = ()) -> Found:
+def find_students(words: Sequence[str], program: str = "", excluded: Collection[Path] = ()) -> StudentsFound:
     """Return the students in folders; a folder that contains a main program, or a file, is one student.
 
     Args:
@@ -80,7 +80,7 @@ def find_students(words: Sequence[str], program: str = "", excluded: Collection[
     if not students:
         hint = f"a file NAME.py or a folder for each student; {see_page('marking')}"
         raise ConfigError("has no programs", hint, file=listed(words))
-    return Found(tuple(_named(students)), tuple(ignored))
+    return StudentsFound(tuple(_named(students)), tuple(ignored))
 
 
 def _real(path: Path) -> Path:

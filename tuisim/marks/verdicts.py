@@ -9,9 +9,9 @@ from tuisim.analysis.report import section, table
 from tuisim.errors import LogError
 from tuisim.goals.judge import judge
 from tuisim.goals.judgement import Change
-from tuisim.goals.spec import Goal, Kind
+from tuisim.goals.spec import ConditionKind, Goal
 from tuisim.marks.outcome import GoalOutcome, Outcome
-from tuisim.marks.sheet import Column, in_words
+from tuisim.marks.sheet import SheetColumn, in_words
 from tuisim.protocol import End
 from tuisim.runs.run_folder import StoredRun
 
@@ -19,7 +19,7 @@ _HEADS = ("", "goal", "result", "why", "points")
 
 
 def verdicts(
-    columns: Sequence[Column], goals: Sequence[Goal], outcome: Outcome, run: StoredRun
+    columns: Sequence[SheetColumn], goals: Sequence[Goal], outcome: Outcome, run: StoredRun
 ) -> tuple[str, list[Pin]]:
     """Return the section with the goals of a run, and a pin for each goal that was decided at a place.
 
@@ -57,4 +57,4 @@ def _judged(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str
 
 
 def _is_of_the_text(goal: Goal) -> bool:
-    return all(part.KIND is Kind.FIXED for part in goal.parts)
+    return all(part.KIND is ConditionKind.FIXED for part in goal.parts)

@@ -23,7 +23,7 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 
 
 @dataclass(frozen=True, slots=True)
-class Workspace:
+class StudentWorkspace:
     """A folder with a copy of a student's files for each run."""
 
     path: Path
@@ -54,14 +54,14 @@ class Workspace:
 
 
 @contextmanager
-def temporary_workspace() -> Iterator[Workspace]:
+def temporary_workspace() -> Iterator[StudentWorkspace]:
     """Create an empty workspace, and delete it afterwards.
 
     Raises:
         LogError: it cannot be created.
     """
     with temporary_home("tuisim-mark-") as folder:
-        yield Workspace(folder.resolve())
+        yield StudentWorkspace(folder.resolve())
 
 
 def _copy_folder(folder: Path, place: Path) -> None:

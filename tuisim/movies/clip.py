@@ -21,7 +21,7 @@ _STEP_MS = 10
 """GIF counts time in hundredths of a second."""
 
 
-class Panel(StrEnum):
+class ClipPanel(StrEnum):
     """A part of the picture."""
 
     WORLD = "world"
@@ -61,7 +61,7 @@ def shot_count(start_s: float, stop_s: float, speed: float, fps: float) -> int:
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
+class ClipMoment:
     """What is known of a run at one instant."""
 
     time_s: float
@@ -118,7 +118,7 @@ class Recorded:
             raise ConfigError(f"nothing to show from {asked[0]:g} s to {asked[1]:g} s", known, key="--from, --to")
         return low, high
 
-    def moment(self, time_s: float) -> Moment:
+    def moment(self, time_s: float) -> ClipMoment:
         """Return the run at a simulated time within it."""
         # A time such as 0.29 s is slightly less than 29 hundredths.
         tick = min(math.floor(time_s * self._hz + 1e-6), len(self.telemetry) - 1)
@@ -126,4 +126,4 @@ class Recorded:
         for name, (ticks, numbers) in self._values.items():
             if count := bisect_right(ticks, tick):
                 values.append((name, numbers[count - 1]))
-        return Moment(time_s, tick, self.run.telemetry.record(tick), tuple(values))
+        return ClipMoment(time_s, tick, self.run.telemetry.record(tick), tuple(values))

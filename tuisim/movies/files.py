@@ -15,7 +15,7 @@ from tuisim.charts.files import svg_of, write_whole
 from tuisim.errors import ConfigError, ExportError
 from tuisim.logs.export import check_place
 from tuisim.movies import image_files
-from tuisim.movies.clip import Panel, Recorded, Shot, shot_count, shots_of
+from tuisim.movies.clip import ClipPanel, Recorded, Shot, shot_count, shots_of
 from tuisim.movies.painter import FramePainter, Size
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class Clip:
     """A movie to be written."""
 
     recorded: Recorded
-    panels: tuple[Panel, ...]
+    panels: tuple[ClipPanel, ...]
     span_s: tuple[float, float]
     """Range of simulated time."""
     speed: float = 1.0
@@ -177,7 +177,7 @@ def small_movie(recorded: Recorded) -> tuple[Clip, bytes] | None:
     if not moves:
         return None
     speed = max(1, math.ceil(recorded.end_s / _SMALL_S))
-    clip = Clip(recorded, (Panel.WORLD,), recorded.span_s(None, None), speed, _SMALL_FPS)
+    clip = Clip(recorded, (ClipPanel.WORLD,), recorded.span_s(None, None), speed, _SMALL_FPS)
     for lossless in (True, False):
         frames = _Frames(clip, lambda done, total: None)
         content = image_files.webp(frames.draw, frames.durations_ms, lossless=lossless)
@@ -187,7 +187,7 @@ def small_movie(recorded: Recorded) -> tuple[Clip, bytes] | None:
 
 
 def save_picture(
-    recorded: Recorded, panels: Sequence[Panel], time_s: float, path: Path, size: Size | None = None
+    recorded: Recorded, panels: Sequence[ClipPanel], time_s: float, path: Path, size: Size | None = None
 ) -> None:
     """Write the picture of a run at an instant, replacing an existing file.
 

@@ -13,7 +13,7 @@ from tuisim.charts.layout import (
     LETTER_PX,
     LINE_PX,
     PAD,
-    Chart,
+    ChartData,
     Drawing,
     Raster,
     Shape,
@@ -26,7 +26,7 @@ from tuisim.charts.layout import (
 from tuisim.charts.sample_chart import sample_chart
 from tuisim.charts.world_image import fitting_view
 from tuisim.errors import ConfigError, printable
-from tuisim.movies.clip import Moment, Panel, Recorded
+from tuisim.movies.clip import ClipMoment, ClipPanel, Recorded
 from tuisim.movies.pictures import MovingWorld, SensorArrays
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ _ARRAYS_SHARE = 0.4
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
+class PictureBox:
     """A part of the picture, in pixels."""
 
     left: int
@@ -74,30 +74,30 @@ class FramePainter:
     """
 
     def __init__(
-        self, recorded: Recorded, panels: Sequence[Panel], span_s: tuple[float, float], size: Size | None = None
+        self, recorded: Recorded, panels: Sequence[ClipPanel], span_s: tuple[float, float], size: Size | None = None
     ) -> None:
         run = recorded.run
         self._recorded, self._panels = recorded, panels
         self.size = size or self._fitting_size()
         boxes = self._boxes = _boxes(panels, self.size, len(run.spec.robot.color_sensors))
-        if Panel.WORLD in boxes:
-            box = boxes[Panel.WORLD]
+        if ClipPanel.WORLD in boxes:
+            box = boxes[ClipPanel.WORLD]
             self._world = MovingWorld(recorded, fitting_view(run.spec.robot, box.width, box.height))
-        if Panel.CHART in boxes:
-            box = boxes[Panel.CHART]
+        if ClipPanel.CHART in boxes:
+            box = boxes[ClipPanel.CHART]
             self._chart = laid_out(_chart(recorded, box.width, span_s), box.width, box.height, titled=False)
-        if Panel.ARRAYS in boxes:
+        if ClipPanel.ARRAYS in boxes:
             self._arrays = SensorArrays(recorded)
 
     def _fitting_size(self) -> Size:
         height_px = _CAPTION_PX
-        if Panel.WORLD in self._panels:
+        if ClipPanel.WORLD in self._panels:
             height_px += fitting_view(self._recorded.run.spec.robot, WIDTH_PX - 2 * PAD, MOST[1]).height_px
-        if Panel.CHART in self._panels or Panel.ARRAYS in self._panels:
+        if ClipPanel.CHART in self._panels or ClipPanel.ARRAYS in self._panels:
             height_px += _STRIP_PX
         return WIDTH_PX, height_px + PAD
 
-    def image(self, moment: Moment) -> Image:
+    def image(self, moment: ClipMoment) -> Image:
         """Return the frame as a Pillow image. The instants of successive calls must not decrease."""
         from PIL import Image
 
@@ -106,7 +106,7 @@ class FramePainter:
             image.paste(image_of(part) if isinstance(part, Drawing) else part, (box.left, box.top))
         return image
 
-    def drawing(self, moment: Moment) -> Drawing:
+    def drawing(self, moment: ClipMoment) -> Drawing:
         """Return the frame as a drawing, with text and curves as shapes."""
         shapes: list[Shape] = []
         for box, part in self._parts(moment):
@@ -116,73 +116,73 @@ class FramePainter:
                 shapes.append(Raster(box.left, box.top, part.width, part.height, np.asarray(part)))
         return Drawing(printable(self._recorded.run.program.name), *self.size, tuple(shapes))
 
-    def _parts(self, moment: Moment) -> Iterable[tuple[Box, Drawing | Image]]:
+    def _parts(self, moment: ClipMoment) -> Iterable[tuple[PictureBox, Drawing | Image]]:
         """Yield everything that is drawn, with its place."""
-        caption = Box(0, 0, self.size[0], _CAPTION_PX)
+        caption = PictureBox(0, 0, self.size[0], _CAPTION_PX)
         yield caption, _caption(moment, caption)
-        if box := self._boxes.get(Panel.WORLD):
+        if box := self._boxes.get(ClipPanel.WORLD):
             picture = self._world.at(moment)
             yield _centred(box, picture.size), picture
-        if box := self._boxes.get(Panel.ARRAYS):
+        if box := self._boxes.get(ClipPanel.ARRAYS):
             yield from self._arrays_at(moment, box)
-        if box := self._boxes.get(Panel.CHART):
+        if box := self._boxes.get(ClipPanel.CHART):
             yield box, drawn_until(self._chart, moment.time_s)
 
-    def _arrays_at(self, moment: Moment, box: Box) -> Iterable[tuple[Box, Drawing | Image]]:
+    def _arrays_at(self, moment: ClipMoment, box: PictureBox) -> Iterable[tuple[PictureBox, Drawing | Image]]:
         from PIL import Image
 
         arrays = self._arrays.at(moment)
         each = box.width // max(len(arrays), 1)
         side = min(each - PAD, box.height - _LABEL_PX)
         for at, (name, picture) in enumerate(arrays):
-            place = Box(box.left + at * each + (each - side) // 2, box.top + _LABEL_PX, side, side)
+            place = PictureBox(box.left + at * each + (each - side) // 2, box.top + _LABEL_PX, side, side)
             yield place, picture.resize((side, side), Image.Resampling.NEAREST)
             label = shortened(name, side)
             words = Words(side / 2, _LABEL_PX / 2, label, "middle")
-            yield Box(place.left, box.top, side, _LABEL_PX), Drawing(label, side, _LABEL_PX, (words,))
+            yield PictureBox(place.left, box.top, side, _LABEL_PX), Drawing(label, side, _LABEL_PX, (words,))
 
 
-def _boxes(panels: Sequence[Panel], size: Size, sensors: int) -> dict[Panel, Box]:
+def _boxes(panels: Sequence[ClipPanel], size: Size, sensors: int) -> dict[ClipPanel, PictureBox]:
     """Return the place of each panel: the world above, arrays and chart below.
 
     Raises:
         ConfigError: one is too small.
     """
     width, height = size[0] - 2 * PAD, size[1] - _CAPTION_PX - PAD
-    below = [panel for panel in (Panel.ARRAYS, Panel.CHART) if panel in panels]
+    below = [panel for panel in (ClipPanel.ARRAYS, ClipPanel.CHART) if panel in panels]
     strip = 0
     if below:
         strip = height
-        if Panel.WORLD in panels:
+        if ClipPanel.WORLD in panels:
             strip = min(max(round(size[1] * _STRIP_SHARE), 100), max(_STRIP_PX, round(size[1] * _STRIP_SHARE)))
-    boxes: dict[Panel, Box] = {}
-    if Panel.WORLD in panels:
-        boxes[Panel.WORLD] = Box(PAD, _CAPTION_PX, width, height - strip)
+    boxes: dict[ClipPanel, PictureBox] = {}
+    if ClipPanel.WORLD in panels:
+        boxes[ClipPanel.WORLD] = PictureBox(PAD, _CAPTION_PX, width, height - strip)
     left, top = PAD, size[1] - PAD - strip
-    if Panel.ARRAYS in below:
+    if ClipPanel.ARRAYS in below:
         wanted = sensors * (strip - _LABEL_PX + PAD)
-        taken = min(wanted, round(width * _ARRAYS_SHARE)) if Panel.CHART in below else width
-        boxes[Panel.ARRAYS] = Box(left, top, taken, strip)
+        taken = min(wanted, round(width * _ARRAYS_SHARE)) if ClipPanel.CHART in below else width
+        boxes[ClipPanel.ARRAYS] = PictureBox(left, top, taken, strip)
         left, width = left + taken, width - taken
-    if Panel.CHART in below:
-        boxes[Panel.CHART] = Box(left, top, width, strip)
+    if ClipPanel.CHART in below:
+        boxes[ClipPanel.CHART] = PictureBox(left, top, width, strip)
     for panel, box in boxes.items():
         if box.width < 60 or box.height < 50:
             raise ConfigError(f"{size[0]}x{size[1]} is too small", f"no room for the panel {panel}", key="--size")
     return boxes
 
 
-def _centred(box: Box, size: Size) -> Box:
-    return Box(box.left + (box.width - size[0]) // 2, box.top + (box.height - size[1]) // 2, *size)
+def _centred(box: PictureBox, size: Size) -> PictureBox:
+    return PictureBox(box.left + (box.width - size[0]) // 2, box.top + (box.height - size[1]) // 2, *size)
 
 
-def _chart(recorded: Recorded, columns: int, span_s: tuple[float, float]) -> Chart:
+def _chart(recorded: Recorded, columns: int, span_s: tuple[float, float]) -> ChartData:
     """Return the chart of the printed samples, at the times at which they were printed."""
     low, high = span_s
     return sample_chart(recorded.samples, columns, span_s if high > low else (low - 0.5, low + 0.5))
 
 
-def _caption(moment: Moment, box: Box) -> Drawing:
+def _caption(moment: ClipMoment, box: PictureBox) -> Drawing:
     """Return a line with the time and as many values as fit."""
     words: list[Shape] = []
     x = float(PAD)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from tuisim.charts.world_image import Viewport, WorldPainter, arrays_picture, pen_trace, sound_pose
 from tuisim.config.mat_cache import mat_pixels
 from tuisim.core.sensors.color import pixel_array
-from tuisim.movies.clip import Moment, Recorded
+from tuisim.movies.clip import ClipMoment, Recorded
 from tuisim.runs.recorded_run import Recording
 from tuisim.runs.run_folder import mat_files, open_mat
 from tuisim.runs.views import instant_of
@@ -33,7 +33,7 @@ class MovingWorld:
         self._traced = 0
         """Records whose pen traces are drawn."""
 
-    def at(self, moment: Moment) -> Image:
+    def at(self, moment: ClipMoment) -> Image:
         """Return the picture. The instants of successive calls must not decrease."""
         # From the last record that was drawn, so that the line goes on.
         new = self._recorded.telemetry[max(self._traced - 1, 0) : moment.tick + 1]
@@ -56,7 +56,7 @@ class SensorArrays:
         self._run = recorded.run
         self._mat, self._recording = open_mat(recorded.run), Recording(recorded.run)
 
-    def at(self, moment: Moment) -> list[tuple[str, Image]]:
+    def at(self, moment: ClipMoment) -> list[tuple[str, Image]]:
         """Return name and square picture of each sensor."""
         if sound_pose(moment.record) is None:
             return []

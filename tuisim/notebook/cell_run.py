@@ -15,7 +15,7 @@ from itertools import groupby, islice
 from types import FrameType
 from typing import Any, TypeVar
 
-from tuisim.charts.world_image import PenTrace, pen_trace
+from tuisim.charts.world_image import PenLines, pen_trace
 from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError, counted
@@ -88,7 +88,7 @@ class CellRun:
     speed: float
     """As in `RunOptions`."""
     refresh_s: float
-    traces: tuple[PenTrace, ...]
+    traces: tuple[PenLines, ...]
     """Pen traces of earlier runs on the mat."""
     listener: Listener
     images: ImageLog

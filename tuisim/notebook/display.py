@@ -15,7 +15,7 @@ from IPython.display import DisplayHandle, display
 from tuisim.charts.files import image_of
 from tuisim.charts.layout import laid_out
 from tuisim.charts.sample_chart import sample_chart
-from tuisim.charts.world_image import PenTrace, arrays_picture, world_picture
+from tuisim.charts.world_image import PenLines, arrays_picture, world_picture
 from tuisim.config.mat_cache import FieldFiles, mat_pixels, open_field
 from tuisim.config.options import Settings
 from tuisim.core.end_stops import flags_at_start
@@ -76,7 +76,7 @@ class Scene:
     """The program."""
     last: TickRecord
     """The tick to display."""
-    traces: Sequence[PenTrace] = ()
+    traces: Sequence[PenLines] = ()
     """Pen traces on the mat up to then."""
     samples: Sequence[Sample] = ()
     printed: Sequence[str] | None = None

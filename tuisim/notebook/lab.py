@@ -18,7 +18,7 @@ from tuisim.protocol import Wheels
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tuisim.charts.world_image import PenTrace
+    from tuisim.charts.world_image import PenLines
     from tuisim.config.mat_cache import FieldFiles
     from tuisim.config.options import Settings
     from tuisim.core.spec import RunSpec
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class _Plan:
+class _CellPlan:
     """The validated settings of a cell."""
 
     persistent: Mapping[str, Any]
@@ -66,7 +66,7 @@ class Lab:
         self._runs: list[StoredRun] = []
         self._last: StoredRun | None = None
         self._spec: RunSpec | None = None
-        self._traces: tuple[PenTrace, ...] = ()
+        self._traces: tuple[PenLines, ...] = ()
         """Pen traces on the mat, until it is cleared or replaced."""
 
     @property
@@ -227,7 +227,7 @@ class Lab:
             scene, status = self._scene(plan)
             stage.show(scene, f"nothing is running · {status}" if words.stop else status)
 
-    def _checked(self, words: MagicWords, text: str | None, prelude: str) -> _Plan:
+    def _checked(self, words: MagicWords, text: str | None, prelude: str) -> _CellPlan:
         from tuisim.config.build import build_run_spec
         from tuisim.config.options import settings_of
         from tuisim.config.program_file import ProgramSource
@@ -253,7 +253,7 @@ class Lab:
             if text is not None and found.decided.note:
                 print(f"tuisim: note: {found.decided.note}", file=sys.stderr)
         spec = build_run_spec(settings)
-        return _Plan(persistent, settings, spec, field_files(spec), program)
+        return _CellPlan(persistent, settings, spec, field_files(spec), program)
 
     def _listener(self, collaborative: bool) -> Listener:
         from tuisim.notebook.cell_run import Listener
@@ -269,7 +269,7 @@ class Lab:
 
         return Listener(responder, self._in_texts, None if handler is None else handled)
 
-    def _run(self, plan: _Plan, stage: Stage, words: MagicWords, listener: Listener) -> None:
+    def _run(self, plan: _CellPlan, stage: Stage, words: MagicWords, listener: Listener) -> None:
         from tuisim.charts.world_image import pen_trace
         from tuisim.notebook.cell_run import CellRun, run_cell
 
@@ -295,7 +295,7 @@ class Lab:
             if self._last is not None:
                 self._traces = (*self._traces, pen_trace(self._last.spec, self._last.telemetry.array()))
 
-    def _scene(self, plan: _Plan) -> tuple[Scene, str]:
+    def _scene(self, plan: _CellPlan) -> tuple[Scene, str]:
         """Return the scene while nothing runs, and its status line."""
         from tuisim.notebook.cell_run import end_text, shown_text
         from tuisim.notebook.display import Scene, start_record

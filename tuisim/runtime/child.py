@@ -22,7 +22,7 @@ from tuisim.runtime.channel import Channel
 from tuisim.runtime.control import ATTENTION, STOPPING, RunControl
 from tuisim.runtime.interrupts import Interrupts, die_with_host
 from tuisim.runtime.limits import STACK_BYTES, limit_memory, refuse_processes
-from tuisim.runtime.output import Output
+from tuisim.runtime.output import OutputRecorder
 from tuisim.runtime.patches.clock import (
     finish_pandas,
     finish_resource,
@@ -36,7 +36,7 @@ from tuisim.runtime.patches.file_waits import FileWaits
 from tuisim.runtime.patches.randomness import finish_random, finish_uuid, patch_urandom
 from tuisim.runtime.patches.replacement import PatchedModules, replace
 from tuisim.runtime.run_config import RunConfig, read_config
-from tuisim.runtime.session import Limits, Session
+from tuisim.runtime.session import RunLimits, Session
 from tuisim.runtime.stack import finish_inspect, finish_traceback
 from tuisim.runtime.tracebacks import own_files, remember_source
 
@@ -92,7 +92,7 @@ class Child:
     def __init__(self, config: RunConfig) -> None:
         self._config = config
         self._sim = simulation_of(config.spec, NoRecording())
-        self._output = Output()
+        self._output = OutputRecorder()
         self._session = session = Session(self._sim, open_field(config.field), self._output)
         turn = loop_hook(session, LOOP_TURNS, LOOP_COST_NS)
         self._interrupts = Interrupts(session, frozenset({turn.__code__}))
@@ -104,7 +104,7 @@ class Child:
         # Imported here: threads must be patched before anything else imports `threading`.
         from tuisim.runtime.patches.alarm import patch_signals
         from tuisim.runtime.patches.threads import patch_threads
-        from tuisim.runtime.program import Outcome, ProgramRunner
+        from tuisim.runtime.program import ProgramOutcome, ProgramRunner
         from tuisim.runtime.scheduler import Scheduler
         from tuisim.shim.files.open_files import OpenFiles
         from tuisim.shim.install import install
@@ -144,7 +144,7 @@ class Child:
         self._reads = FileReads()
         self._reads.patch()
 
-        def leave(outcome: Outcome) -> NoReturn:
+        def leave(outcome: ProgramOutcome) -> NoReturn:
             interrupts.remove()
             self._end(outcome.end, outcome.exit_code, outcome.summary, outcome.error, outcome.error_line)
 
@@ -168,7 +168,7 @@ class Child:
         self._telemetry, self._output.writer = TelemetryWriter(config.folder), OutputWriter(config.folder)
         self._sim.restart(config.spec, self._telemetry)
         steering = RunControl(channel, config.folder, config.live, config.speed, config.start_paused, config.actions)
-        limits = Limits(int(config.time_limit_s * NS_PER_S), config.stall_limit_s)
+        limits = RunLimits(int(config.time_limit_s * NS_PER_S), config.stall_limit_s)
         session.connect(channel, steering, limits, config.path or config.name)
         session.replies = config.replies
         for writer in (self._telemetry, self._output.writer):

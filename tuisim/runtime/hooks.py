@@ -12,7 +12,7 @@ from tuisim.errors import LogError
 from tuisim.runs.records import Stream
 from tuisim.runtime import wallclock
 from tuisim.runtime.loader import point_at_prelude
-from tuisim.runtime.output import LineStream, Output
+from tuisim.runtime.output import LineStream, OutputRecorder
 from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.session import Session, StopProgram
 from tuisim.runtime.tracebacks import ErrorReport, point_at_namesake, report_error
@@ -38,7 +38,7 @@ class ErrorHooks:
         source: Returns the program's text.
     """
 
-    def __init__(self, session: Session, output: Output, stderr: LineStream, source: Callable[[], str]) -> None:
+    def __init__(self, session: Session, output: OutputRecorder, stderr: LineStream, source: Callable[[], str]) -> None:
         self._session, self._output, self._stderr, self._source = session, output, stderr, source
 
     def install(self) -> None:

@@ -11,7 +11,7 @@ from tuisim.runs.records import MAX_OUTPUT_BYTES, TEXT_STREAMS, OutputWriter, St
 from tuisim.runtime.addresses import Addresses
 
 
-class Output:
+class OutputRecorder:
     """Rows of output, each with the time, tick and source line that wrote it."""
 
     writer: OutputWriter
@@ -67,7 +67,7 @@ class LineStream(io.TextIOBase):
     line_buffering = True
     write_through = False
 
-    def __init__(self, output: Output, stream: Stream = Stream.STDOUT) -> None:
+    def __init__(self, output: OutputRecorder, stream: Stream = Stream.STDOUT) -> None:
         self._output, self._stream = output, stream
         self._part = io.StringIO()
         """Text without a newline yet; a line may be the result of any number of prints."""

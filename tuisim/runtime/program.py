@@ -22,7 +22,7 @@ from tuisim.runs.records import Stream
 from tuisim.runtime.hooks import ErrorHooks, flush_streams, safe_text
 from tuisim.runtime.loader import LOOP_HOOK, MissingPart, compile_prelude, compile_program
 from tuisim.runtime.modules import find_modules_for
-from tuisim.runtime.output import LineStream, Output
+from tuisim.runtime.output import LineStream, OutputRecorder
 from tuisim.runtime.own_names import PROGRAM_BUILTINS, give_builtins, keep_modules
 from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.patches.traces import patch_traces, stop_traces
@@ -36,7 +36,7 @@ from tuisim.shim.waits import Wait, waits_for
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class ProgramOutcome:
     """How the program ended; fields as in `protocol.Ended`."""
 
     end: End
@@ -75,10 +75,10 @@ class ProgramRunner:
     def __init__(
         self,
         session: Session,
-        output: Output,
+        output: OutputRecorder,
         scheduler: Scheduler,
         loop_hook: Callable[[], None],
-        leave: Callable[[Outcome], NoReturn],
+        leave: Callable[[ProgramOutcome], NoReturn],
     ) -> None:
         self._session, self._output, self._scheduler = session, output, scheduler
         self._leave = leave
@@ -132,15 +132,15 @@ class ProgramRunner:
         self._answers = list(config.answers)
         sys.argv = [self._file, *config.arguments]
 
-    def run(self) -> Outcome:
+    def run(self) -> ProgramOutcome:
         """Run prelude and program to their end; never raises."""
         try:
             return self._run()
         except StopProgram as stop:
             # The last write had no space.
-            return Outcome(stop.end, 0, stop.summary, error_line=stop.line)
+            return ProgramOutcome(stop.end, 0, stop.summary, error_line=stop.line)
 
-    def _run(self) -> Outcome:
+    def _run(self) -> ProgramOutcome:
         outcome = self._outcome(self._execute)
         if self._session.stop_reason is None and outcome.end in (End.FINISHED, End.RAISED):
             # As in Python, also after an error or an exit of the main thread.
@@ -151,23 +151,23 @@ class ProgramRunner:
         self._finish_streams()
         # A stop in another thread, an exit function or a `__del__` need not have arrived here.
         stop = self._session.stop_reason
-        return outcome if stop is None or outcome.end is not End.FINISHED else Outcome(stop.end, 0, stop.summary)
+        return outcome if stop is None or outcome.end is not End.FINISHED else ProgramOutcome(stop.end, 0, stop.summary)
 
-    def _outcome(self, part: Callable[[], None]) -> Outcome:
+    def _outcome(self, part: Callable[[], None]) -> ProgramOutcome:
         try:
             part()
         except BaseException as error:  # any uncaught exception is an outcome of the program
             return self._outcome_of(error)
-        return Outcome(End.FINISHED)
+        return ProgramOutcome(End.FINISHED)
 
-    def _hold_at_end(self, outcome: Outcome) -> Outcome:
+    def _hold_at_end(self, outcome: ProgramOutcome) -> ProgramOutcome:
         """Let the debugger pause a program that ended before the requested instant."""
         if self._session.debugger is None or self._session.stop_reason is not None:
             return outcome
         try:
             self._session.debugger.at_end()
         except StopProgram as stop:
-            return Outcome(stop.end, 0, stop.summary, error_line=stop.line)
+            return ProgramOutcome(stop.end, 0, stop.summary, error_line=stop.line)
         return outcome
 
     def _shut_down(self) -> None:
@@ -241,21 +241,21 @@ class ProgramRunner:
 
     # Ends
 
-    def _outcome_of(self, error: BaseException) -> Outcome:
+    def _outcome_of(self, error: BaseException) -> ProgramOutcome:
         stop = self._session.stop_reason
         if stop is not None:
-            return Outcome(stop.end, 0, stop.summary, error_line=stop.line)
+            return ProgramOutcome(stop.end, 0, stop.summary, error_line=stop.line)
         match error:
             case SystemExit():
                 return self._exit_outcome(error.code)
             case LogError():
                 line = line_in(error.__traceback__, self._session.program_file)
-                return Outcome(End.OUTPUT_LIMIT, 0, error.message, error_line=line)
+                return ProgramOutcome(End.OUTPUT_LIMIT, 0, error.message, error_line=line)
             case MemoryError():
                 return self._raised(MemoryError("the program used up the memory it may have"), error.__traceback__)
         return self._raised(error, error.__traceback__)
 
-    def _raised(self, error: BaseException, trace: types.TracebackType | None) -> Outcome:
+    def _raised(self, error: BaseException, trace: types.TracebackType | None) -> ProgramOutcome:
         self.stdout.finish()
         try:
             report = self.hooks.show_uncaught(error.with_traceback(trace))
@@ -263,9 +263,9 @@ class ProgramRunner:
             return self._exit_outcome(left.code)
         end = End.DEADLOCK if isinstance(error, Deadlock) else End.RAISED
         code = _INTERRUPTED if isinstance(error, KeyboardInterrupt) else 1
-        return Outcome(end, code, report.summary, report.text, report.line)
+        return ProgramOutcome(end, code, report.summary, report.text, report.line)
 
-    def _exit_outcome(self, code: object) -> Outcome:
+    def _exit_outcome(self, code: object) -> ProgramOutcome:
         if code is None:
             number = 0
         elif isinstance(code, int):
@@ -275,7 +275,9 @@ class ProgramRunner:
         else:
             self.hooks.write(safe_text(str, code) + "\n")
             number = 1
-        return Outcome(End.FINISHED, number, f"the program ended itself with exit code {number}" if number else "")
+        return ProgramOutcome(
+            End.FINISHED, number, f"the program ended itself with exit code {number}" if number else ""
+        )
 
     def _exit_now(self, status: int) -> NoReturn:
         self._finish_streams()

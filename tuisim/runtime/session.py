@@ -21,7 +21,7 @@ from tuisim.runs.records import Stream
 from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.control import ATTENTION, DEBUG, LIVE, STOPPING, THREADS, RunControl
-from tuisim.runtime.output import Output
+from tuisim.runtime.output import OutputRecorder
 from tuisim.shim.waits import Wait, waits_for
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ CHUNK_TICKS = 2000
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class RunLimits:
     """What ends a headless run; 0 is no limit."""
 
     time_ns: int = 0
@@ -68,7 +68,7 @@ class Deadlock(RuntimeError):
     """Every thread of the program waits for another one."""
 
 
-class Debugger(Protocol):
+class DebugHooks(Protocol):
     """What session and control need of the debugger."""
 
     def begin(self, config: RunConfig) -> None:
@@ -120,10 +120,10 @@ class Session:
     """Pipes to the host."""
     steering: RunControl
     """Commands: pause, speed, user actions."""
-    limits: Limits
+    limits: RunLimits
     """Limits of the run."""
 
-    def __init__(self, sim: Simulation, field: Field, output: Output) -> None:
+    def __init__(self, sim: Simulation, field: Field, output: OutputRecorder) -> None:
         self.sim, self.output = sim, output
         self._field = field
         self._pen: PenMarks | None = None
@@ -150,15 +150,15 @@ class Session:
         self._stop_raised_at: int | None = None
         self.stop_raised_in: int | None = None
         """Identity of the thread that the stop was raised in first."""
-        self.debugger: Debugger | None = None
-        self.make_debugger: Callable[[], Debugger] | None = None
+        self.debugger: DebugHooks | None = None
+        self.make_debugger: Callable[[], DebugHooks] | None = None
         """Set once there is a program to debug."""
         self.sleep_threaded: Callable[[int, bool], None] | None = None
         """Set by the scheduler: blocks until a time (or a motor change) while other threads run."""
         self.spawn_daemon: Callable[[Callable[[], None]], None]
         """Set by the scheduler: runs a function in the background while the program continues."""
 
-    def connect(self, channel: Channel, steering: RunControl, limits: Limits, program_file: str) -> None:
+    def connect(self, channel: Channel, steering: RunControl, limits: RunLimits, program_file: str) -> None:
         """Connect it with the run that is about to begin; arguments as the attributes."""
         self.channel, self.steering, self.limits, self.program_file = channel, steering, limits, program_file
         self._limit_ns = self._quick_ns = limits.time_ns or 1 << 62
@@ -339,7 +339,7 @@ class Session:
         self.flags &= ~LIVE
         self._quick_ns = min(self._limit_ns, self.sim.due_ns(tick) - 1)
 
-    def debug(self) -> Debugger:
+    def debug(self) -> DebugHooks:
         """Return the debugger; it is created on first use."""
         if self.debugger is None:
             assert self.make_debugger is not None

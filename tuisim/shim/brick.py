@@ -21,12 +21,12 @@ from tuisim.core.spec import (
     RobotSpec,
 )
 from tuisim.errors import NotSimulated
-from tuisim.shim.device_files import Brick, SimDevice, refuse
+from tuisim.shim.device_files import DeviceFiles, SimDevice, refuse
 from tuisim.shim.leds import LED_CLASS, Lights, led_name
 from tuisim.shim.motor import KINDS, BrowserTacho, Tacho, TachoMotor
 from tuisim.shim.power import BATTERY, POWER_CLASS, Battery
 from tuisim.shim.sensors import DEVICES, ColorDevice, LegoSensor
-from tuisim.shim.session import Session
+from tuisim.shim.session import DeviceSession
 from tuisim.shim.unsupported.devices import PORT_MODES, of_driver, refusal
 
 PORT_CLASS, MOTOR_CLASS, SENSOR_CLASS = "lego-port", "tacho-motor", "lego-sensor"
@@ -81,7 +81,7 @@ def plugged_in(robot: RobotSpec) -> dict[str, Plugged]:
 class LegoPort:
     """One port, by its short name such as `in1`, and what is connected to it."""
 
-    def __init__(self, session: Session, port: str, plugged: Plugged | None) -> None:
+    def __init__(self, session: DeviceSession, port: str, plugged: Plugged | None) -> None:
         self._session, self._port, self._plugged = session, port, plugged
         self._kind = INPUT if port in INPUT_PORTS else OUTPUT
         self._mode = AUTO
@@ -132,13 +132,13 @@ class LegoPort:
             )
 
 
-def all_ports(session: Session) -> list[SimDevice]:
+def all_ports(session: DeviceSession) -> list[SimDevice]:
     """Return the brick's ports, inputs first."""
     plugged = plugged_in(session.sim.spec.robot)
     return [LegoPort(session, port, plugged.get(port)).device() for port in (*INPUT_PORTS, *OUTPUT_PORTS)]
 
 
-def ports_hint(session: Session, class_name: str) -> str:
+def ports_hint(session: DeviceSession, class_name: str) -> str:
     """Return which devices are on which ports, as a hint for a failed look-up; empty for other classes."""
     if class_name not in (MOTOR_CLASS, SENSOR_CLASS):
         return ""
@@ -149,13 +149,13 @@ def ports_hint(session: Session, class_name: str) -> str:
     return f"{there} Another robot: -r ROBOT; `tuisim robots --from PROGRAM --out FILE` writes the program's own."
 
 
-def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
+def build_brick(session: DeviceSession) -> tuple[DeviceFiles, dict[str, ColorDevice]]:
     """Build the brick and connect the robot's motors and sensors.
 
     Returns:
         The brick, and its colour sensors by device path.
     """
-    brick, robot, sim = Brick(CLASSES), session.sim.spec.robot, session.sim
+    brick, robot, sim = DeviceFiles(CLASSES), session.sim.spec.robot, session.sim
     motors = [*zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)]
     tachos: dict[str, Tacho] = {}
     # Sorted by port, so that a class without an address finds the first port.
@@ -184,14 +184,14 @@ def build_brick(session: Session) -> tuple[Brick, dict[str, ColorDevice]]:
     return brick, colors
 
 
-def board(session: Session) -> SimDevice:
+def board(session: DeviceSession) -> SimDevice:
     """Return the device that tells what kind of brick this is; asking it costs nothing."""
     told = dict(BOARD_INFO)
     told["uevent"] = "\n".join(f"BOARD_INFO_{name.upper()}={value}" for name, value in BOARD_INFO.items())
     return SimDevice(session, {name: partial(str, value) for name, value in told.items()}, {}, dict.fromkeys(told, 0))
 
 
-def tacho_of(session: Session, motor: Motor, port: str, kind: str) -> Tacho:
+def tacho_of(session: DeviceSession, motor: Motor, port: str, kind: str) -> Tacho:
     """Return the driver of a motor, by its motor law."""
     match motor:
         case BrickMotor():

@@ -12,8 +12,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from tuisim.core.profile import MS
-from tuisim.shim.device_files import Brick
-from tuisim.shim.session import Session
+from tuisim.shim.device_files import DeviceFiles
+from tuisim.shim.session import DeviceSession
 from tuisim.shim.waits import Wait, waits_for
 
 POLL_MS = 10
@@ -25,7 +25,7 @@ def round_half_up(number: float) -> int:
     return math.floor(number + 0.5)
 
 
-def speak_as_browser(session: Session, motor: Any, brick: Brick) -> None:
+def speak_as_browser(session: DeviceSession, motor: Any, brick: DeviceFiles) -> None:
     """Patch `ev3dev2.motor` after its import."""
     _patch_properties(motor.Motor, brick)
     motor.Motor.wait = _wait(session, motor.__name__)
@@ -44,7 +44,7 @@ def speak_as_browser(session: Session, motor: Any, brick: Brick) -> None:
     motor.Motor.__init__ = __init__
 
 
-def _patch_properties(motor_class: Any, brick: Brick) -> None:
+def _patch_properties(motor_class: Any, brick: DeviceFiles) -> None:
     devices = brick.by_path
 
     def reader(name: str) -> Callable[[Any], object]:
@@ -59,7 +59,7 @@ def _patch_properties(motor_class: Any, brick: Brick) -> None:
     motor_class.time_sp = property(reader("time_sp"), set_time)
 
 
-def _wait(session: Session, library: str) -> Callable[..., bool]:
+def _wait(session: DeviceSession, library: str) -> Callable[..., bool]:
     look_ns = POLL_MS * MS
 
     def now_s() -> float:

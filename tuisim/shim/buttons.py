@@ -15,7 +15,7 @@ from typing import Any
 from tuisim.core.profile import MS, NS_PER_S
 from tuisim.protocol import BUTTONS
 from tuisim.shim.files.entries import DeviceFile, OpenFile, refuse_ioctl
-from tuisim.shim.session import Session
+from tuisim.shim.session import DeviceSession
 from tuisim.shim.waits import Wait, waits_for
 
 POLL_NS = 10 * MS
@@ -68,7 +68,7 @@ class ButtonsFile(DeviceFile):
         path: One of the paths of the file.
     """
 
-    def __init__(self, session: Session, path: str) -> None:
+    def __init__(self, session: DeviceSession, path: str) -> None:
         super().__init__(path, stat.S_IFCHR | 0o660)
         self._session = session
 
@@ -116,20 +116,20 @@ class ButtonsFile(DeviceFile):
         raise refuse_ioctl(self.path, request, "EVIOCGKEY tells which buttons are pressed")
 
 
-def read_pressed(session: Session) -> list[str]:
+def read_pressed(session: DeviceSession) -> list[str]:
     """Return the names of the pressed buttons. Charges the cost of a read."""
     session.command()
     session.charge(session.sim.spec.profile.attribute_read_ns)
     return [name for name in BUTTONS if name in session.pressed]
 
 
-def patch_button_module(session: Session, module: types.ModuleType) -> None:
+def patch_button_module(session: DeviceSession, module: types.ModuleType) -> None:
     """Patch `ev3dev2.button` after its import: waiting by polling every `POLL_NS`."""
     button: Any = module
     button.ButtonEVIO._wait = _polling_wait(session)
 
 
-def _polling_wait(session: Session) -> Callable[..., bool]:
+def _polling_wait(session: DeviceSession) -> Callable[..., bool]:
     between_ns = max(0, POLL_NS - session.sim.spec.profile.attribute_read_ns)
 
     @waits_for(Wait.BUTTONS)

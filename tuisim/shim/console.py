@@ -10,7 +10,7 @@ from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, TextScreen, c
 from tuisim.runs.records import Stream
 from tuisim.shim.display import Screen
 from tuisim.shim.method_globals import rebind
-from tuisim.shim.session import Session
+from tuisim.shim.session import DeviceSession
 
 BLANK = (" ", False)
 """A cell: character, and whether it is in reverse video."""
@@ -131,7 +131,7 @@ def font_size(name: str) -> tuple[int, int] | None:
 class Terminal:
     """Prints the library's text on the screen and runs the screen commands."""
 
-    def __init__(self, session: Session, screen: Screen) -> None:
+    def __init__(self, session: DeviceSession, screen: Screen) -> None:
         self._session, self._screen = session, screen
         self._grid = TextGrid(DISPLAY_WIDTH // FONT_WIDTH, DISPLAY_HEIGHT // FONT_HEIGHT)
 

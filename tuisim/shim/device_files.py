@@ -1,6 +1,6 @@
 """Simulated devices: named attributes, which programs read and write as text.
 
-One table of devices, `Brick`, is behind everything that reaches them: `shim.files` shows it as the tree of
+One table of devices, `DeviceFiles`, is behind everything that reaches them: `shim.files` shows it as the tree of
 `/sys/class` to any code, and `shim.library` is a shorter way to the same attributes for the library.
 """
 
@@ -11,7 +11,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import partial, wraps
 from typing import Any
 
-from tuisim.shim.session import Session
+from tuisim.shim.session import DeviceSession
 from tuisim.shim.waits import Wait, waits_for
 
 Reader = Callable[[], object]
@@ -57,7 +57,7 @@ class SimDevice:
 
     def __init__(
         self,
-        session: Session,
+        session: DeviceSession,
         readers: Mapping[str, Reader],
         writers: Mapping[str, Writer],
         costs: Mapping[str, int] | None = None,
@@ -130,7 +130,7 @@ CLASSES_FOLDER = "/sys/class"
 """The folder of the classes of devices."""
 
 
-class Brick:
+class DeviceFiles:
     """All devices, by path, such as `/sys/class/tacho-motor/motor0`.
 
     Args:
@@ -163,7 +163,7 @@ def refuse(text: str) -> OSError:
     return OSError(errno.EINVAL, f"invalid value {text!r}")
 
 
-def free_of_charge(session: Session, function: Callable[..., Any]) -> Callable[..., Any]:
+def free_of_charge(session: DeviceSession, function: Callable[..., Any]) -> Callable[..., Any]:
     """Return `function` with the library's own look-ups inside it free of charge."""
 
     @wraps(function)

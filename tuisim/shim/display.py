@@ -14,7 +14,7 @@ from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, display_row
 from tuisim.runs.records import Stream
 from tuisim.shim.files.entries import DeviceFile, OpenFile, refuse_ioctl
 from tuisim.shim.fonts import plain_font
-from tuisim.shim.session import Session
+from tuisim.shim.session import DeviceSession
 
 BITS_A_PIXEL = 32
 """As the driver reports it; the display itself is black and white."""
@@ -41,7 +41,7 @@ VARIABLE_INFO = struct.pack(
 class Screen:
     """Records the contents of the brick's screen, images and text, each time they change."""
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: DeviceSession) -> None:
         self._session = session
         self._shown: tuple[str, Stream] | None = None
 
@@ -52,17 +52,17 @@ class Screen:
             self._session.show(row, stream)
 
 
-class FrameBuffer(mmap.mmap):
+class DisplayBuffer(mmap.mmap):
     """The memory of the display: bytes written there are displayed.
 
     Each pixel has four bytes: unused, red, green, blue.
     """
 
-    def __new__(cls, _session: Session, _screen: Screen) -> FrameBuffer:
+    def __new__(cls, _session: DeviceSession, _screen: Screen) -> DisplayBuffer:
         """Allocate anonymous memory instead of mapping a file."""
         return super().__new__(cls, NO_FILE, LINE_BYTES * DISPLAY_HEIGHT)
 
-    def __init__(self, session: Session, screen: Screen) -> None:
+    def __init__(self, session: DeviceSession, screen: Screen) -> None:
         self.session, self.screen = session, screen
         self.pixels, self.row = b"", ""
         super().__setitem__(slice(None), bytes([WHITE]) * len(self))
@@ -99,13 +99,13 @@ class FrameBuffer(mmap.mmap):
 class DisplayFile(DeviceFile):
     """The device file of the display's memory."""
 
-    def __init__(self, session: Session, screen: Screen) -> None:
+    def __init__(self, session: DeviceSession, screen: Screen) -> None:
         super().__init__(DISPLAY_PATH, stat.S_IFCHR | 0o660)
         self._session, self._screen = session, screen
 
     @cached_property
-    def _memory(self) -> FrameBuffer:
-        return FrameBuffer(self._session, self._screen)
+    def _memory(self) -> DisplayBuffer:
+        return DisplayBuffer(self._session, self._screen)
 
     def read(self, opened: OpenFile, size: int) -> bytes:
         """Read pixels."""

@@ -24,7 +24,7 @@ from tuisim.shim.leds import patch_led_module
 from tuisim.shim.library import connect, patch_motor_module, patch_sensor_module
 from tuisim.shim.older_library import MissingLibrary, finish_core, surroundings
 from tuisim.shim.robolab import glue_module, patch_lego_module
-from tuisim.shim.session import Session
+from tuisim.shim.session import DeviceSession
 from tuisim.shim.shell.commands import Shell
 from tuisim.shim.shell.processes import Replace, System, finish_asyncio
 from tuisim.shim.sound import Mixer, patch_sound_module
@@ -89,7 +89,7 @@ def finish_imports(
 
 
 def install(
-    session: Session,
+    session: DeviceSession,
     files: OpenFiles,
     more_finishers: Mapping[str, Finish],
     replace: Replace,

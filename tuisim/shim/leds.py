@@ -18,7 +18,7 @@ from tuisim.runs.brick_state import LED_NAMES, led_row
 from tuisim.runs.records import Stream
 from tuisim.shim.device_files import SimDevice, refuse
 from tuisim.shim.method_globals import rebind
-from tuisim.shim.session import Session
+from tuisim.shim.session import DeviceSession
 
 LED_CLASS = "leds"
 """The kernel's class of LEDs."""
@@ -39,7 +39,7 @@ def led_name(name: str) -> str:
 class Lights:
     """All LEDs, and the record of their changes."""
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: DeviceSession) -> None:
         self.session = session
         self.lights = {name: Light(self, green=name.endswith("green")) for name in LED_NAMES}
         self._shown = self._brightness()
@@ -157,7 +157,7 @@ class Light:
             lit = not lit
 
 
-def patch_led_module(session: Session, module: types.ModuleType) -> None:
+def patch_led_module(session: DeviceSession, module: types.ModuleType) -> None:
     """Patch `ev3dev2.led` after its import: its threads, and waiting for their end."""
     led: Any = module
     numbers = count(1)

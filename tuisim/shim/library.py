@@ -14,8 +14,8 @@ from typing import Any
 
 from tuisim.core.profile import MS, MotorLaw
 from tuisim.shim.browser_library import speak_as_browser
-from tuisim.shim.device_files import Brick, free_of_charge
-from tuisim.shim.session import Session
+from tuisim.shim.device_files import DeviceFiles, free_of_charge
+from tuisim.shim.session import DeviceSession
 from tuisim.shim.unsupported.devices import other_sensors_note, refused_device
 from tuisim.shim.waits import Wait, waits_for
 
@@ -47,7 +47,7 @@ class Patience:
 class MotorPoll:
     """Replaces `select.poll` in the library: waits for a motor in simulated time."""
 
-    def __init__(self, session: Session, patience: Patience) -> None:
+    def __init__(self, session: DeviceSession, patience: Patience) -> None:
         self._session, self._patience = session, patience
 
     def register(self, _file: object, _events: int = 0) -> None:
@@ -64,7 +64,7 @@ class MotorPoll:
         return []
 
 
-def connect(brick: Brick, hint: Callable[[str], str]) -> None:
+def connect(brick: DeviceFiles, hint: Callable[[str], str]) -> None:
     """Patch `ev3dev2` before any of its submodules is imported.
 
     Args:
@@ -102,7 +102,7 @@ def _patch_look_up(library: Any, hint: Callable[[str], str]) -> None:
     library.Device.__init__ = __init__
 
 
-def _device_lister(brick: Brick) -> Callable[..., Iterator[str]]:
+def _device_lister(brick: DeviceFiles) -> Callable[..., Iterator[str]]:
     def list_device_names(class_path: str, name_pattern: str, **wanted: str | list[str]) -> Iterator[str]:
         for name in brick.names(class_path):
             readers = brick.by_path[f"{class_path}/{name}"].readers
@@ -119,7 +119,7 @@ def _matches(value: str, pattern: str | list[str]) -> bool:
     return any(part in value for part in pattern) if isinstance(pattern, list) else pattern in value
 
 
-def _patch_device(device_class: Any, brick: Brick) -> None:
+def _patch_device(device_class: Any, brick: DeviceFiles) -> None:
     devices = brick.by_path
 
     def getter(convert: Callable[[Any], object]) -> Callable[..., tuple[Any, object]]:
@@ -157,7 +157,7 @@ def _patch_device(device_class: Any, brick: Brick) -> None:
             setattr(device_class, name, _in_place_of(getattr(device_class, name), replacement))
 
 
-def _set_directly(motor_class: Any, brick: Brick) -> None:
+def _set_directly(motor_class: Any, brick: DeviceFiles) -> None:
     """Shorten the path of the two attributes that a control loop sets in every iteration."""
     devices = brick.by_path
 
@@ -178,7 +178,7 @@ def _set_directly(motor_class: Any, brick: Brick) -> None:
     motor_class.command = motor_class.command.setter(give_command)
 
 
-def patch_motor_module(session: Session, module: types.ModuleType, brick: Brick) -> None:
+def patch_motor_module(session: DeviceSession, module: types.ModuleType, brick: DeviceFiles) -> None:
     """Patch `ev3dev2.motor` after its import."""
     motor: Any = module
     _set_directly(motor.Motor, brick)
@@ -191,7 +191,7 @@ def patch_motor_module(session: Session, module: types.ModuleType, brick: Brick)
         speak_as_browser(session, motor, brick)
 
 
-def patch_sensor_module(session: Session, module: types.ModuleType, brick: Brick) -> None:
+def patch_sensor_module(session: DeviceSession, module: types.ModuleType, brick: DeviceFiles) -> None:
     """Patch `ev3dev2.sensor` after its import: reading or setting the mode costs nothing."""
     devices = brick.by_path
     sensor: Any = module

@@ -13,7 +13,7 @@ from tuisim.core.motors import MEDIUM_MAX_SPEED_DPS, POSITION, STOPPED, TIMED
 from tuisim.core.profile import MS
 from tuisim.protocol import MotorRegisters
 from tuisim.shim.device_files import NumberWriter, Reader, SimDevice, Writer, plain, refuse
-from tuisim.shim.session import Session
+from tuisim.shim.session import DeviceSession
 
 COMMANDS = ("run-forever", "run-to-abs-pos", "run-to-rel-pos", "run-timed", "run-direct", "stop", "reset")
 STOP_ACTIONS = ("coast", "brake", "hold")
@@ -43,7 +43,7 @@ KINDS = {
 class Tacho(ABC):
     """One motor on an output port, such as `outB`; its kind is one of `KINDS`."""
 
-    def __init__(self, session: Session, port: str, kind: str) -> None:
+    def __init__(self, session: DeviceSession, port: str, kind: str) -> None:
         self._session, self._port, self._kind = session, port, KINDS[kind]
         self._stop_action, self._polarity = "coast", "normal"
         self._last_command = ""
@@ -94,7 +94,7 @@ class Tacho(ABC):
 class TachoMotor(Tacho):
     """One motor as the kernel driver exposes it."""
 
-    def __init__(self, session: Session, motor: BrickMotor, port: str, kind: str = "large") -> None:
+    def __init__(self, session: DeviceSession, motor: BrickMotor, port: str, kind: str = "large") -> None:
         super().__init__(session, port, kind)
         self._motor = motor
         self._numbers: dict[str, int] = {}
@@ -286,7 +286,7 @@ WITHOUT_EFFECT = (
 class BrowserTacho(Tacho):
     """One motor of the browser simulator: set points take effect at once, commands bypass the driver."""
 
-    def __init__(self, session: Session, motor: BrowserMotor, port: str, kind: str = "large") -> None:
+    def __init__(self, session: DeviceSession, motor: BrowserMotor, port: str, kind: str = "large") -> None:
         super().__init__(session, port, kind)
         self._motor = motor
         self._numbers = dict.fromkeys(WITHOUT_EFFECT, 0)

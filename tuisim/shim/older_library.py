@@ -14,7 +14,7 @@ from typing import Any
 
 from tuisim.shim.display import draw_with_the_bricks_font
 from tuisim.shim.leds import mend_trigger
-from tuisim.shim.session import Session
+from tuisim.shim.session import DeviceSession
 from tuisim.shim.unsupported.devices import refused_device
 
 NAME = "ev3dev"
@@ -63,7 +63,7 @@ def _resources() -> types.ModuleType:
     return module
 
 
-def finish_core(session: Session, module: types.ModuleType, hint: Callable[[str], str]) -> None:
+def finish_core(session: DeviceSession, module: types.ModuleType, hint: Callable[[str], str]) -> None:
     """Patch `ev3dev.core` after its import: the screen's font, and what it says about a missing device.
 
     Args:

@@ -12,7 +12,7 @@ from __future__ import annotations
 from tuisim.core.motors import STOPPED, Motor
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
 from tuisim.shim.device_files import SimDevice
-from tuisim.shim.session import Session
+from tuisim.shim.session import DeviceSession
 
 POWER_CLASS, BATTERY = "power_supply", "lego-ev3-battery"
 """Class and name of the battery, by their kernel names."""
@@ -30,7 +30,7 @@ S_PER_H = 3600
 class Battery:
     """The battery of one run."""
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: DeviceSession) -> None:
         self._session = session
         self._max_dps = session.sim.spec.profile.max_speed_dps
         self._records = 0

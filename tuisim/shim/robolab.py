@@ -15,12 +15,14 @@ from typing import Any
 
 from tuisim.core.profile import MotorLaw
 from tuisim.core.sensors.color import WHITE, percent
-from tuisim.shim.device_files import Brick, free_of_charge, plain
+from tuisim.shim.device_files import DeviceFiles, free_of_charge, plain
 from tuisim.shim.sensors import ColorDevice
-from tuisim.shim.session import Session
+from tuisim.shim.session import DeviceSession
 
 
-def patch_lego_module(session: Session, module: types.ModuleType, brick: Brick, colors: dict[str, ColorDevice]) -> None:
+def patch_lego_module(
+    session: DeviceSession, module: types.ModuleType, brick: DeviceFiles, colors: dict[str, ColorDevice]
+) -> None:
     """Add the course's properties to `ev3dev2.sensor.lego`; the colour sensors are given by device path."""
     lego: Any = module
     color_sensor = lego.ColorSensor
@@ -47,7 +49,7 @@ def patch_lego_module(session: Session, module: types.ModuleType, brick: Brick, 
     lego.GyroSensor.__init__ = free_of_charge(session, lego.GyroSensor.__init__)
 
 
-def glue_module(session: Session) -> types.ModuleType:
+def glue_module(session: DeviceSession) -> types.ModuleType:
     """Return the module `ev3dev2_glue` that course programs import."""
     glue = types.ModuleType("ev3dev2_glue", "Simulated time and messages, as the course has them.")
 

@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 from tuisim.core.sensors import SENSORS, color, gyro, infrared, touch, ultrasonic
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, InfraredSpec, TouchSpec, UltrasonicSpec
 from tuisim.shim.device_files import SimDevice, Writer, refuse
-from tuisim.shim.session import Session
+from tuisim.shim.session import DeviceSession
 from tuisim.shim.unsupported.devices import foreign_mode
 
 RAW_WHITE = 300
@@ -50,7 +50,7 @@ class LegoSensor:
     """
 
     def __init__(
-        self, session: Session, port: str, driver_name: str, modes: Mapping[str, Mode], default_mode: str
+        self, session: DeviceSession, port: str, driver_name: str, modes: Mapping[str, Mode], default_mode: str
     ) -> None:
         self._session = session
         self._port, self._driver_name = port, driver_name
@@ -116,7 +116,7 @@ class LegoSensor:
 class ColorDevice(LegoSensor):
     """A colour sensor, with the additional readings of the course's overlay."""
 
-    def __init__(self, session: Session, spec: ColorSensorSpec) -> None:
+    def __init__(self, session: DeviceSession, spec: ColorSensorSpec) -> None:
         profile = session.sim.spec.profile
         read = self._read_ns = profile.color_read_ns
 
@@ -166,7 +166,7 @@ class ColorDevice(LegoSensor):
         return self.channels()
 
 
-def ultrasonic_sensor(session: Session, spec: UltrasonicSpec, others: Sequence[LegoSensor]) -> LegoSensor:
+def ultrasonic_sensor(session: DeviceSession, spec: UltrasonicSpec, others: Sequence[LegoSensor]) -> LegoSensor:
     """Return an ultrasonic sensor.
 
     It hears those of the robot's sensors that ping; they include this one, and more may be added later.
@@ -202,7 +202,7 @@ def ultrasonic_sensor(session: Session, spec: UltrasonicSpec, others: Sequence[L
 class GyroDevice(LegoSensor):
     """A gyro; a calibration resets it to 0."""
 
-    def __init__(self, session: Session, spec: GyroSpec) -> None:
+    def __init__(self, session: DeviceSession, spec: GyroSpec) -> None:
         sim = session.sim
         read = sim.spec.profile.gyro_read_ns
 
@@ -236,7 +236,7 @@ class GyroDevice(LegoSensor):
             self._session.sim.reset_gyro()
 
 
-def touch_sensor(session: Session, spec: TouchSpec) -> LegoSensor:
+def touch_sensor(session: DeviceSession, spec: TouchSpec) -> LegoSensor:
     """Return a touch sensor."""
     sim = session.sim
 
@@ -247,7 +247,7 @@ def touch_sensor(session: Session, spec: TouchSpec) -> LegoSensor:
     return LegoSensor(session, spec.port, SENSORS["touch"].driver_name, modes, "TOUCH")
 
 
-def infrared_sensor(session: Session, spec: InfraredSpec) -> LegoSensor:
+def infrared_sensor(session: DeviceSession, spec: InfraredSpec) -> LegoSensor:
     """Return an infrared sensor."""
     sim = session.sim
     world, read = sim.spec.world, sim.spec.profile.ultrasonic_read_ns
@@ -265,7 +265,7 @@ def infrared_sensor(session: Session, spec: InfraredSpec) -> LegoSensor:
     return LegoSensor(session, spec.port, SENSORS["infrared"].driver_name, modes, "IR-PROX")
 
 
-DEVICES: Mapping[type, Callable[[Session, Any, Sequence[LegoSensor]], LegoSensor]] = {
+DEVICES: Mapping[type, Callable[[DeviceSession, Any, Sequence[LegoSensor]], LegoSensor]] = {
     ColorSensorSpec: lambda session, spec, _others: ColorDevice(session, spec),
     UltrasonicSpec: ultrasonic_sensor,
     GyroSpec: lambda session, spec, _others: GyroDevice(session, spec),

@@ -11,7 +11,7 @@ from tuisim.protocol import MotorRegisters
 from tuisim.runs.records import Stream
 
 
-class Session(Protocol):
+class DeviceSession(Protocol):
     """The program's clock and the simulation behind it."""
 
     sim: Simulation

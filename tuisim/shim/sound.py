@@ -10,7 +10,7 @@ from typing import Any
 
 from tuisim.core.profile import MS
 from tuisim.shim.method_globals import rebind
-from tuisim.shim.session import Session
+from tuisim.shim.session import DeviceSession
 from tuisim.shim.tones import Heard, Tone, heard_of, song_of
 
 LOUDEST = 100
@@ -29,7 +29,7 @@ class PlayedSound:
     stdin = stdout = stderr = None
     pid = NO_PID
 
-    def __init__(self, session: Session, command: str, length_ns: int) -> None:
+    def __init__(self, session: DeviceSession, command: str, length_ns: int) -> None:
         self.args = command
         self.returncode: int | None = None
         self._session, self._until = session, session.now + length_ns
@@ -115,7 +115,7 @@ class Mixer:
 class Loudspeaker:
     """Passes sounds to the session."""
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: DeviceSession) -> None:
         self._session = session
         self.song: list[Tone] | None = None
         """Collects the tones of a song while the library plays its notes."""
@@ -136,7 +136,7 @@ class Loudspeaker:
             self.song.append(Tone(0.0, seconds * 1000))
 
 
-def patch_sound_module(session: Session, module: types.ModuleType, mixer: Mixer) -> None:
+def patch_sound_module(session: DeviceSession, module: types.ModuleType, mixer: Mixer) -> None:
     """Patch `ev3dev2.sound` after its import."""
     sound: Any = module
     speaker = Loudspeaker(session)
@@ -147,7 +147,7 @@ def patch_sound_module(session: Session, module: types.ModuleType, mixer: Mixer)
         _mend(sound.Sound, mixer)
 
 
-def _patch_playing(session: Session, sound: Any, speaker: Loudspeaker) -> None:
+def _patch_playing(session: DeviceSession, sound: Any, speaker: Loudspeaker) -> None:
     give_command = sound.Sound._audio_command
     fixes_library = session.sim.spec.profile.mend_library
 

@@ -20,7 +20,7 @@ from textual_serve.download_manager import DownloadManager
 
 from tuisim.errors import SIGNALLED, ConfigError, counted
 from tuisim.web.gate import Gate
-from tuisim.web.session import END_WITHIN_S, Session
+from tuisim.web.session import END_WITHIN_S, WebSession
 from tuisim.web.visit import Visit
 
 HEARTBEAT_S = 15.0
@@ -34,7 +34,7 @@ _DEFAULT_SIZE = (80, 24)
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class ServerLimits:
     """What visitors may use."""
 
     visitors: int
@@ -56,7 +56,7 @@ class Server:
     """
 
     def __init__(
-        self, command: Sequence[str], gate: Gate, limits: Limits, report: Callable[[str], None] = lambda _: None
+        self, command: Sequence[str], gate: Gate, limits: ServerLimits, report: Callable[[str], None] = lambda _: None
     ) -> None:
         self._command, self._gate, self._limits, self._report = command, gate, limits, report
         self._downloads = DownloadManager()
@@ -107,7 +107,7 @@ class Server:
         if not await self._has_place():
             await socket.close(code=WSCloseCode.TRY_AGAIN_LATER, message=self._full.encode())
             return socket
-        visit = Visit(Session(self._command, socket, self._downloads), socket, self._limits.idle_s, self._report)
+        visit = Visit(WebSession(self._command, socket, self._downloads), socket, self._limits.idle_s, self._report)
         self._visits.add(visit)
         try:
             await visit.proceed(*_size(request))

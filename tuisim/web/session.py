@@ -29,7 +29,7 @@ _OF_A_TERMINAL = (
 _OF_A_BROWSER = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "LC_CTYPE": "C.UTF-8", "PYTHONUTF8": "1"}
 
 
-class Session(AppService):
+class WebSession(AppService):
     """Starts an app, connects it with a socket, and ends it.
 
     Args:

@@ -10,7 +10,7 @@ from contextlib import suppress
 from aiohttp import WSMsgType, web
 
 from tuisim.web.activity import Activity, is_done_by_a_person
-from tuisim.web.session import Session
+from tuisim.web.session import WebSession
 
 _MOST_REASON_BYTES = 123
 """The most that fits into the last message of a socket."""
@@ -28,7 +28,7 @@ class Visit:
     """
 
     def __init__(
-        self, session: Session, socket: web.WebSocketResponse, idle_s: float, report: Callable[[str], None]
+        self, session: WebSession, socket: web.WebSocketResponse, idle_s: float, report: Callable[[str], None]
     ) -> None:
         self._session, self._socket, self._idle_s, self._report = session, socket, idle_s, report
         self._activity = Activity()

@@ -9,14 +9,16 @@ from textual.app import App
 from textual.widgets import Input
 from textual.widgets._toast import Toast
 
-from tuisim.app.dialogs.chooser import Chooser, Group, files_here
+from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser, files_here
 
 
 async def test_what_is_typed_goes_into_the_field_and_is_chosen() -> None:
     chosen: list[str | None] = []
     app: App[None] = App()
     async with app.run_test() as pilot:
-        app.push_screen(Chooser("Open", [Group("Here", [("a.py", "a.py", "first")])], path_hint="path"), chosen.append)
+        app.push_screen(
+            Chooser("Open", [ChoiceGroup("Here", [("a.py", "a.py", "first")])], path_hint="path"), chosen.append
+        )
         await pilot.pause()
         await pilot.press(*"nope.py", "enter")
         await pilot.pause()
@@ -27,7 +29,9 @@ async def test_enter_without_typing_takes_the_list() -> None:
     chosen: list[str | None] = []
     app: App[None] = App()
     async with app.run_test() as pilot:
-        app.push_screen(Chooser("Open", [Group("", [("a.py", "a.py", "first")])], path_hint="path"), chosen.append)
+        app.push_screen(
+            Chooser("Open", [ChoiceGroup("", [("a.py", "a.py", "first")])], path_hint="path"), chosen.append
+        )
         await pilot.pause()
         assert not app.screen.query_one(Input).has_focus
         await pilot.press("down", "enter")
@@ -47,6 +51,6 @@ async def test_what_was_said_before_covers_no_row_of_it() -> None:
     async with app.run_test(notifications=True) as pilot:
         app.notify("said before")
         await pilot.pause()
-        app.push_screen(Chooser("Open", [Group("", [("a.py", "a.py", "first")])]))
+        app.push_screen(Chooser("Open", [ChoiceGroup("", [("a.py", "a.py", "first")])]))
         await pilot.pause()
         assert not app.screen.query(Toast)

@@ -23,7 +23,7 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import settings_of
 from tuisim.goals.files import load_goals
 from tuisim.goals.judgement import Change, GoalState, Judgement
-from tuisim.goals.spec import AllOf, Finish, Goal, Use
+from tuisim.goals.spec import AllOf, FinishCondition, Goal, UseCondition
 from tuisim.runs.handle import RunOptions, start_run
 
 GOALS = """\
@@ -80,15 +80,15 @@ def state(app: LabApp, name: str) -> str:
 
 
 MET = Judgement(
-    Goal("there", Finish(), "Drive to it.", 2), (Change(100, 1.0, GoalState.MET, 299.6, 80.2),), line=7
+    Goal("there", FinishCondition(), "Drive to it.", 2), (Change(100, 1.0, GoalState.MET, 299.6, 80.2),), line=7
 )  # fmt: skip
 MISSED = Judgement(
-    Goal("closed", Finish(), points=1.5, hint="Turn by 90."),
+    Goal("closed", FinishCondition(), points=1.5, hint="Turn by 90."),
     (Change(200, 2.0, GoalState.MISSED, 1.0, 2.0),),
     "It was 30 mm off.",
     9,
 )
-BY_TEXT = Judgement(Goal("part", Use(("f",)), points=0), (Change(0, 0.0, GoalState.MET, 1.0, 2.0),), line=3)
+BY_TEXT = Judgement(Goal("part", UseCondition(("f",)), points=0), (Change(0, 0.0, GoalState.MET, 1.0, 2.0),), line=3)
 OPEN = Judgement(Goal("both", AllOf(("there",)), "First the one, then the other."), (), "5 mm to go.")
 TEXTS = {
     "met": (

@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from tuisim.lessons.progress import LessonProgress, load_progress
-from tuisim.lessons.spec import Question as LessonQuestion
+from tuisim.lessons.spec import QuestionCheck as LessonQuestion
 
 if TYPE_CHECKING:
     from tuisim.app.panel_area import PanelArea
@@ -66,7 +66,7 @@ def reads_on(area: PanelArea) -> bool:
 
 def menu(workspace: Workspace) -> None:
     """Offer to read earlier steps again, to skip the step, to start over, and all lessons."""
-    from tuisim.app.dialogs.chooser import Chooser, Group
+    from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser
 
     lesson = workspace.lesson
     here = []
@@ -82,7 +82,7 @@ def menu(workspace: Workspace) -> None:
         for number, one in enumerate(lesson.lessons(), start=1)
     ]
     current = f"{_OPEN}{_wanted(workspace)}"
-    groups = [Group("This lesson", here), Group("All lessons", lessons)]
+    groups = [ChoiceGroup("This lesson", here), ChoiceGroup("All lessons", lessons)]
     workspace.app.push_screen(Chooser("Lessons", groups, current), partial(_chosen, workspace))
 
 

@@ -40,7 +40,7 @@ MAX_TRIED = 50
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class ChoiceGroup:
     """A part of the list."""
 
     title: str
@@ -48,7 +48,7 @@ class Group:
     """For each entry: value, name, and title, which may be empty."""
 
 
-def files_here(suffixes: Iterable[str], fits: Callable[[Path], object] | None = None) -> Group:
+def files_here(suffixes: Iterable[str], fits: Callable[[Path], object] | None = None) -> ChoiceGroup:
     """Return the files in the current folder.
 
     Args:
@@ -63,7 +63,7 @@ def files_here(suffixes: Iterable[str], fits: Callable[[Path], object] | None = 
     )
     if fits:
         found = [path for path in found[:MAX_TRIED] if _passes(fits, path)]
-    return Group(f"In {Path.cwd().name or '/'}", [(str(path), path.name, "") for path in found])
+    return ChoiceGroup(f"In {Path.cwd().name or '/'}", [(str(path), path.name, "") for path in found])
 
 
 def _passes(fits: Callable[[Path], object], path: Path) -> bool:
@@ -117,7 +117,7 @@ class Chooser(ListDialog):
 
     HINT: str = "Enter selects · Escape closes"
 
-    def __init__(self, title: str, groups: Sequence[Group], current: str = "", path_hint: str = "") -> None:
+    def __init__(self, title: str, groups: Sequence[ChoiceGroup], current: str = "", path_hint: str = "") -> None:
         super().__init__()
         self.TITLE_TEXT = title
         if path_hint:
@@ -160,13 +160,13 @@ def program_chooser() -> Chooser:
     examples, goals = programs(), goals_examples()
     known = {str(path.resolve()) for path in (*(path for _, path, _ in examples), *goals)}
     here = files_here([".py"])
-    own = Group(here.title, [entry for entry in here.entries if entry[0] not in known])
+    own = ChoiceGroup(here.title, [entry for entry in here.entries if entry[0] not in known])
     worlds = [entry for entry in files_here([".toml"], load_world).entries if entry[0] not in known]
     groups = [
         own,
-        Group("Worlds and goals" if own.entries else f"{here.title}: worlds and goals", worlds),
-        Group("Examples of goals", [(str(path), path.name, title_of(path)) for path in goals]),
-        Group("Examples", [(str(path), name, title) for name, path, title in examples]),
+        ChoiceGroup("Worlds and goals" if own.entries else f"{here.title}: worlds and goals", worlds),
+        ChoiceGroup("Examples of goals", [(str(path), path.name, title_of(path)) for path in goals]),
+        ChoiceGroup("Examples", [(str(path), name, title) for name, path, title in examples]),
     ]
     hint = "Path of a program, world or goals file, or choose below"
     return Chooser("Programs, worlds and goals", groups, path_hint=hint)
@@ -186,8 +186,8 @@ def robot_chooser(plan: NextRun) -> Chooser:
     )
     presets = [(name, name, _robot_title(name)) for name in ROBOTS]
     groups = [
-        Group("Built from the program", own),
-        Group("By name" if own else "", presets),
+        ChoiceGroup("Built from the program", own),
+        ChoiceGroup("By name" if own else "", presets),
         files_here([".toml", ".json"], lambda path: load_robot(str(path))),
     ]
     current = OF_PROGRAM if built is not None and plan.robot == built else plan.words.get("robot", "")
@@ -206,7 +206,7 @@ def obstacle_chooser(plan: NextRun) -> Chooser:
         (name, name, "; ".join(f"{b.width_mm:g}×{b.height_mm:g} at ({b.x_mm:g}, {b.y_mm:g})" for b in boxes) or "none")
         for name, boxes in OBSTACLES.items()
     ]
-    groups = [Group("", presets), files_here([".toml", ".json"], lambda path: load_obstacles(str(path)))]
+    groups = [ChoiceGroup("", presets), files_here([".toml", ".json"], lambda path: load_obstacles(str(path)))]
     return Chooser("Obstacles", groups, plan.words.get("obstacles", ""), "Path of a .toml or .json file")
 
 
@@ -216,7 +216,7 @@ def profile_chooser(plan: NextRun) -> Chooser:
         (name, name, f"{p.tick_hz} ticks a second, {'solid' if p.solid else 'nothing is solid'}")
         for name, p in PROFILES.items()
     ]
-    groups = [Group("", presets), files_here([".toml"], lambda path: load_profile(str(path)))]
+    groups = [ChoiceGroup("", presets), files_here([".toml"], lambda path: load_profile(str(path)))]
     return Chooser("Profiles", groups, plan.words.get("profile", ""), "Path of a profile's .toml file")
 
 

@@ -13,7 +13,7 @@ from textual.binding import Binding, BindingType
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
-from tuisim.app.dialogs.chooser import Chooser, Group
+from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser
 from tuisim.app.dialogs.dialog import Dialog, name_and_title
 from tuisim.app.dialogs.question import LinePrompt
 from tuisim.config.options import FileValue
@@ -115,7 +115,7 @@ class SettingsScreen(Dialog[None]):
             return
         names = self._themes if one.path == THEME else one.in_file.choices
         if names and not isinstance(one.in_file.usual, int | float):
-            group = Group("", [(name, name, "") for name in map(str, names)])
+            group = ChoiceGroup("", [(name, name, "") for name in map(str, names)])
             self.app.push_screen(Chooser(one.path, [group], in_words(value)), self._chosen)
             return
         self.app.push_screen(LinePrompt(one.path, self._typed, in_words(value), text=about(one)), self._entered)

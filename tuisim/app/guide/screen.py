@@ -20,7 +20,7 @@ from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.guide.topics import KeyPage, Topic
 from tuisim.charts.text_runs import Line
 from tuisim.guide.catalogue import CONTENTS, pages
-from tuisim.guide.search import Found, search
+from tuisim.guide.search import SearchResult, search
 from tuisim.guide.text import NO_WORDS, headings_in, linked_names, page_lines
 
 _SIDE_BY_SIDE, _PREVIEW = 100, 66
@@ -69,7 +69,7 @@ class _Contents(Tree[Place | None]):
         for other in linked_names(page):
             node.add_leaf(f"→ {pages()[other].title}", (other, ""))
 
-    def show_found(self, found: list[Found]) -> None:
+    def show_found(self, found: list[SearchResult]) -> None:
         """Show the results of a search."""
         self.clear()
         for one in found:
@@ -238,10 +238,10 @@ class GuideScreen(Dialog[None]):
             self._now_answered(question)
             return
         # The first search loads every command, for its page.
-        work: Callable[[], list[Found]] = partial(search, question)
+        work: Callable[[], list[SearchResult]] = partial(search, question)
         background.run(self, work, partial(self._answer, question), group="search", exclusive=True)
 
-    def _answer(self, question: str, found: list[Found]) -> None:
+    def _answer(self, question: str, found: list[SearchResult]) -> None:
         if question != self._question or self.is_closed:
             return
         self._contents.show_found(found)

@@ -15,7 +15,7 @@ from textual.widgets import Static
 
 from tuisim.app.action import action_link
 from tuisim.app.form import Choice, Row
-from tuisim.app.setup.fields import Field, FieldGroup, find, sections, step
+from tuisim.app.setup.fields import FieldGroup, FormField, find, sections, step
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import Snapshot
 
@@ -38,7 +38,7 @@ class Settings(VerticalScroll, can_focus=False):
         """Posted when the user has entered a value, or asks for another choice."""
 
         row: Row
-        edit: Field
+        edit: FormField
         text: str
         by: int
         """Steps to another choice, from the one that is current when the message arrives."""
@@ -117,7 +117,7 @@ class Settings(VerticalScroll, can_focus=False):
             self.post_message(self.Edited(event.row, edit, event.text, event.by))
 
 
-def _new_row(edit: Field) -> Row:
+def _new_row(edit: FormField) -> Row:
     row = Row(edit.id, edit.label, bool(edit.choices))
     row.add_class("form")
     return row

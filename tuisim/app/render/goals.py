@@ -11,7 +11,7 @@ from rich.style import Style
 
 from tuisim.charts.text_runs import Line, cut
 from tuisim.goals.judgement import GoalState, Judgement
-from tuisim.goals.spec import Goal, Kind
+from tuisim.goals.spec import ConditionKind, Goal
 
 _NAME = Style(color="#ffffff", bold=True)
 _PLAIN = Style(color="#d8dee6")
@@ -156,7 +156,7 @@ def _detail(judgement: Judgement, state: GoalState, width: int) -> Iterator[Line
 
 def _when(judgement: Judgement) -> str:
     """Return when and where a goal was decided."""
-    if all(part.KIND is Kind.FIXED for part in judgement.goal.parts):
+    if all(part.KIND is ConditionKind.FIXED for part in judgement.goal.parts):
         return "by the program's text"
     if (event := judgement.event) is None:
         return ""

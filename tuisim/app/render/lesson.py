@@ -15,7 +15,18 @@ from tuisim.charts.text_runs import Line, cut
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.lessons.markdown import markdown_lines
 from tuisim.lessons.progress import StepState
-from tuisim.lessons.spec import Break, Export, Lesson, Note, Question, Run, Show, Step, Visit, Watch
+from tuisim.lessons.spec import (
+    BreakCheck,
+    ExportCheck,
+    Lesson,
+    LessonStep,
+    NoteCheck,
+    QuestionCheck,
+    RunCheck,
+    ShowCheck,
+    VisitCheck,
+    WatchCheck,
+)
 
 _NAME = Style(color="#ffffff", bold=True)
 _PLAIN = Style(color="#d8dee6")
@@ -57,7 +68,7 @@ class LessonView:
     """How many runs have passed the step so far, if it needs several."""
     elsewhere: str = ""
     """Why the last run does not count, in a sentence: it did not begin in the lesson's world; empty if it did."""
-    done: Step | None = None
+    done: LessonStep | None = None
     """The step that has just been done."""
     story: str = ""
     """What the run did that has passed it; empty if it was not about a run."""
@@ -143,7 +154,7 @@ def _page(view: LessonView, page: int, width: int, away: Away) -> Iterator[Line]
             yield from _wrapped(view.remark, width, _BAD)
             yield []
     yield from markdown_lines(step.text, width)
-    if isinstance(step.check, Question):
+    if isinstance(step.check, QuestionCheck):
         yield []
         yield from _question(step.check, width)
     if not is_current:
@@ -176,7 +187,7 @@ def _escape(away: Away) -> str:
     return "" if away is Away.NO else "escape, then "
 
 
-def _done(step: Step, story: str, width: int, away: Away) -> Iterator[Line]:
+def _done(step: LessonStep, story: str, width: int, away: Away) -> Iterator[Line]:
     """Yield that a step has just been done, by what, why that was right, and how to read it again."""
     yield from _wrapped(f"✓ {step.title}", width, _GOOD)
     yield from _wrapped(story, width, _PALE)
@@ -185,15 +196,15 @@ def _done(step: Step, story: str, width: int, away: Away) -> Iterator[Line]:
     yield []
 
 
-def _question(question: Question, width: int) -> Iterator[Line]:
+def _question(question: QuestionCheck, width: int) -> Iterator[Line]:
     yield from _wrapped(question.ask, width, _NAME)
     for number, choice in enumerate(question.choices, start=1):
         yield from _wrapped(f"{number}  {choice}", width, _PLAIN, "   ")
 
 
-def _result(view: LessonView, step: Step, width: int) -> Iterator[Line]:
+def _result(view: LessonView, step: LessonStep, width: int) -> Iterator[Line]:
     """Yield how the last run did on the goals of a step."""
-    if not isinstance(step.check, Run) or not view.judgements:
+    if not isinstance(step.check, RunCheck) or not view.judgements:
         return
     if view.elsewhere and not step.check.anywhere:
         yield from _wrapped(view.elsewhere, width, _BAD)
@@ -215,25 +226,25 @@ def _result(view: LessonView, step: Step, width: int) -> Iterator[Line]:
     yield []
 
 
-def _to_do(view: LessonView, step: Step, away: Away) -> str:
+def _to_do(view: LessonView, step: LessonStep, away: Away) -> str:
     """Return what the step waits for, or the keys that do it."""
     match step.check:
-        case Run(times=times, seeds=seeds):
+        case RunCheck(times=times, seeds=seeds):
             count = f" {view.good_runs} of {times} runs{' with other seeds' if seeds else ''}." if times > 1 else ""
             words = f"{_RUN_KEYS[away]}.{count}"
-        case Question(choices=choices):
+        case QuestionCheck(choices=choices):
             words = f"{_escape(away)}Q types {'the number of your choice' if choices else 'your answer'}."
-        case Watch(expression=expression):
+        case WatchCheck(expression=expression):
             words = f"Next: watch {expression}."
-        case Break():
+        case BreakCheck():
             words = "Next: let a run stop at the breakpoint."
-        case Export(suffix=suffix):
+        case ExportCheck(suffix=suffix):
             words = f"Next: export to a {suffix} file."
-        case Note():
+        case NoteCheck():
             words = "Next: write your note."
-        case Visit(from_s=from_s, to_s=to_s):
+        case VisitCheck(from_s=from_s, to_s=to_s):
             words = f"Next: go to an instant between {from_s:g} and {to_s:g} s."
-        case Show(panel=panel):
+        case ShowCheck(panel=panel):
             words = f"Next: open the panel {PANELS[panel].title}."
     return words
 

@@ -42,7 +42,7 @@ MAX_LABEL = 12
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class FormField:
     """An editable value of the plan."""
 
     id: str
@@ -61,7 +61,7 @@ class FieldGroup:
     """Fields under one heading."""
 
     title: str
-    edits: tuple[Field, ...]
+    edits: tuple[FormField, ...]
 
 
 def sections(plan: NextRun) -> list[FieldGroup]:
@@ -70,7 +70,7 @@ def sections(plan: NextRun) -> list[FieldGroup]:
         sensor.name: sensor for sensor in (*plan.robot.spec.color_sensors, *plan.robot_choice.spec.color_sensors)
     }
     return [
-        FieldGroup("Program", (Field("arguments", "Arguments", _arguments, _with_arguments),)),
+        FieldGroup("Program", (FormField("arguments", "Arguments", _arguments, _with_arguments),)),
         FieldGroup("Robot", _robot_fields()),
         *(FieldGroup(f"Sensor {name}", _color_sensor_fields(name, sensor, plan)) for name, sensor in sensors.items()),
         FieldGroup("Ultrasonic", _ultrasonic_fields(plan)),
@@ -106,11 +106,11 @@ def _robot_field(
     read: Callable[[RobotSpec], str],
     change: Callable[[RobotSpec, str], RobotSpec],
     choices: tuple[str, ...] = (),
-) -> Field:
+) -> FormField:
     def write(plan: NextRun, text: str) -> NextRun:
         return with_robot_edited(plan, change(plan.robot_choice.spec, text))
 
-    return Field(edit_id, label, lambda plan: read(plan.spec.robot), write, choices)
+    return FormField(edit_id, label, lambda plan: read(plan.spec.robot), write, choices)
 
 
 Part = TypeVar("Part", RobotSpec, PenSpec, SensorSpec)
@@ -121,7 +121,7 @@ def _with(part: Part, key: str, value: Any) -> Part:
     return replace(part, **changed)
 
 
-def _length(key: str, label: str) -> Field:
+def _length(key: str, label: str) -> FormField:
     def change(robot: RobotSpec, text: str) -> RobotSpec:
         return _with(robot, key, _number(text))
 
@@ -149,7 +149,7 @@ def _weighed(robot: RobotSpec, text: str) -> RobotSpec:
         raise RobotError(reason(error), f"or {', '.join(ROBOT_WEIGHTS)}") from None
 
 
-def _motor_port_field(key: str, label: str) -> Field:
+def _motor_port_field(key: str, label: str) -> FormField:
     """Return the field for the port of a wheel's motor; a motor that already uses the port gets the freed one."""
     other = "right_port" if key == "left_port" else "left_port"
 
@@ -162,14 +162,14 @@ def _motor_port_field(key: str, label: str) -> Field:
     return _robot_field(key, label, lambda robot: str(getattr(robot, key)), change, OUTPUT_PORTS)
 
 
-def _motor_kind_field(key: str, label: str) -> Field:
+def _motor_kind_field(key: str, label: str) -> FormField:
     def change(robot: RobotSpec, kind: str) -> RobotSpec:
         return _with(robot, key, kind)
 
     return _robot_field(key, label, lambda robot: str(getattr(robot, key)), change, MOTOR_KINDS)
 
 
-def _reversed_field(key: str, label: str) -> Field:
+def _reversed_field(key: str, label: str) -> FormField:
     """Return the field for a motor that is mounted the other way round."""
 
     def change(robot: RobotSpec, word: str) -> RobotSpec:
@@ -183,9 +183,9 @@ def _robot_word(plan: NextRun) -> str:
     return f"{word}, edited" if plan.robot_is_edited else word
 
 
-def _robot_fields() -> tuple[Field, ...]:
+def _robot_fields() -> tuple[FormField, ...]:
     return (
-        Field("preset", "", _robot_word, with_robot, tuple(ROBOTS)),
+        FormField("preset", "", _robot_word, with_robot, tuple(ROBOTS)),
         _robot_field("name", "Name", lambda robot: robot.name, _named),
         _length("wheel_diameter_mm", "Wheel ⌀ mm"),
         _length("wheel_spacing_mm", "Spacing mm"),
@@ -219,7 +219,7 @@ def _with_sensors(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
     return replace(robot, **found)
 
 
-def _sensor_field(name: str, key: str, label: str, parse: Callable[[str], Any] = _number) -> Field:
+def _sensor_field(name: str, key: str, label: str, parse: Callable[[str], Any] = _number) -> FormField:
     def change(robot: RobotSpec, text: str) -> RobotSpec:
         return _with_sensors(robot, _with(_sensors(robot)[name], key, parse(text)))
 
@@ -230,7 +230,7 @@ def _sensor_field(name: str, key: str, label: str, parse: Callable[[str], Any] =
     return _robot_field(f"{name}.{key}", label, read, change, {"strategy": STRATEGIES}.get(key, ()))
 
 
-def _sensor_port_field(name: str) -> Field:
+def _sensor_port_field(name: str) -> FormField:
     """Return the field for a sensor's port; a sensor that already uses the port gets the freed one."""
 
     def change(robot: RobotSpec, port: str) -> RobotSpec:
@@ -241,7 +241,7 @@ def _sensor_port_field(name: str) -> Field:
     return _robot_field(f"{name}.port", "Port", lambda robot: _sensors(robot)[name].port, change, INPUT_PORTS)
 
 
-def _presence_field(name: str, change: Callable[[RobotSpec, str], RobotSpec]) -> Field:
+def _presence_field(name: str, change: Callable[[RobotSpec, str], RobotSpec]) -> FormField:
     return _robot_field(f"{name}.used", "Used", lambda robot: ON if name in _sensors(robot) else OFF, change, SWITCHED)
 
 
@@ -262,7 +262,7 @@ def _placed(plan: NextRun, text: str, name: str) -> NextRun:
     return with_robot_edited(plan, replace(robot, color_sensors=tuple(sensors)), moved=True)
 
 
-def _color_sensor_fields(name: str, sensor: ColorSensorSpec, plan: NextRun) -> tuple[Field, ...]:
+def _color_sensor_fields(name: str, sensor: ColorSensorSpec, plan: NextRun) -> tuple[FormField, ...]:
     def switched(robot: RobotSpec, word: str) -> RobotSpec:
         others = tuple(other for other in robot.color_sensors if other.name != name)
         if word == OFF:
@@ -277,7 +277,7 @@ def _color_sensor_fields(name: str, sensor: ColorSensorSpec, plan: NextRun) -> t
     used = _presence_field(name, switched)
     if name not in _sensors(plan.robot_choice.spec):
         return (used,)
-    x = Field(
+    x = FormField(
         f"{name}.x_mm", "x mm", lambda now: _sensor_field(name, "x_mm", "").read(now), partial(_placed, name=name)
     )
     return (
@@ -290,7 +290,7 @@ def _color_sensor_fields(name: str, sensor: ColorSensorSpec, plan: NextRun) -> t
     )
 
 
-def _single_used(name: str, field: str, fresh: SensorSpec) -> Field:
+def _single_used(name: str, field: str, fresh: SensorSpec) -> FormField:
     """Return the field that adds or removes the ultrasonic sensor or the gyro."""
 
     def switched(robot: RobotSpec, word: str) -> RobotSpec:
@@ -310,7 +310,7 @@ def _angles(text: str) -> tuple[float, ...]:
     return angles
 
 
-def _ultrasonic_fields(plan: NextRun) -> tuple[Field, ...]:
+def _ultrasonic_fields(plan: NextRun) -> tuple[FormField, ...]:
     mounted = plan.robot_choice.spec.ultrasonic
     fresh = mounted or plan.robot.spec.ultrasonic or UltrasonicSpec()
     used = _single_used(fresh.name, "ultrasonic", fresh)
@@ -337,14 +337,14 @@ def _ultrasonic_fields(plan: NextRun) -> tuple[Field, ...]:
     )
 
 
-def _gyro_fields(plan: NextRun) -> tuple[Field, ...]:
+def _gyro_fields(plan: NextRun) -> tuple[FormField, ...]:
     gyro = plan.robot_choice.spec.gyro
     fresh = gyro or plan.robot.spec.gyro or GyroSpec()
     used = _single_used(fresh.name, "gyro", fresh)
     return (used,) if gyro is None else (used, _sensor_port_field(gyro.name))
 
 
-def _further_fields(part: SensorSpec) -> tuple[Field, ...]:
+def _further_fields(part: SensorSpec) -> tuple[FormField, ...]:
     keys = [field.name for field in fields(part) if type(getattr(part, field.name)) is float]
     labels = [key.replace("_deg", " °").replace("_", " ")[:MAX_LABEL] for key in keys]
     return (
@@ -356,8 +356,8 @@ def _further_fields(part: SensorSpec) -> tuple[Field, ...]:
 # Pen and world
 
 
-def _pen_fields() -> tuple[Field, ...]:
-    def place(key: str) -> Field:
+def _pen_fields() -> tuple[FormField, ...]:
+    def place(key: str) -> FormField:
         def change(robot: RobotSpec, text: str) -> RobotSpec:
             return replace(robot, pen=_with(robot.pen, key, _number(text)))
 
@@ -369,17 +369,17 @@ def _pen_fields() -> tuple[Field, ...]:
 
     return (
         _switch("pen.down", "Down", lambda plan: plan.spec.robot.pen.down, "pen_down"),
-        Field("pen.color", "Colour", lambda plan: plan.spec.robot.pen.color,
+        FormField("pen.color", "Colour", lambda plan: plan.spec.robot.pen.color,
              lambda plan, text: with_values(plan, pen_color=pen_color(text.strip(), ""))),
-        Field("pen.width_mm", "Width mm", lambda plan: _shown(plan.spec.robot.pen.width_mm), width),
+        FormField("pen.width_mm", "Width mm", lambda plan: _shown(plan.spec.robot.pen.width_mm), width),
         place("x_mm"),
         place("y_mm"),
         _switch("pen.marks", "Marks mat", lambda plan: plan.spec.world.pen_marks, "pen_marks"),
     )  # fmt: skip
 
 
-def _switch(id_: str, label: str, read: Callable[[NextRun], bool], field: str) -> Field:
-    return Field(
+def _switch(id_: str, label: str, read: Callable[[NextRun], bool], field: str) -> FormField:
+    return FormField(
         id_,
         label,
         lambda plan: ON if read(plan) else OFF,
@@ -388,15 +388,15 @@ def _switch(id_: str, label: str, read: Callable[[NextRun], bool], field: str) -
     )
 
 
-def _world_fields() -> tuple[Field, ...]:
+def _world_fields() -> tuple[FormField, ...]:
     def profile(plan: NextRun) -> str:
         return Path(plan.words.get("profile", plan.spec.profile.name)).name
 
     return (
-        Field("profile", "Profile", profile, with_profile, tuple(PROFILES)),
+        FormField("profile", "Profile", profile, with_profile, tuple(PROFILES)),
         _switch("solid", "Solid", lambda plan: plan.spec.world.solid, "solid"),
         _switch("walls", "Walls", lambda plan: plan.spec.world.walls, "walls"),
-        Field("background_fit", "Image fit", lambda plan: plan.spec.world.background_fit,
+        FormField("background_fit", "Image fit", lambda plan: plan.spec.world.background_fit,
              lambda plan, word: with_values(plan, background_fit=word), BACKGROUND_FITS),
     )  # fmt: skip
 
@@ -412,12 +412,12 @@ def _with_arguments(plan: NextRun, text: str) -> NextRun:
         raise ConfigError("a quote is not closed", "put an argument with spaces in '…' or \"…\"") from None
 
 
-def find(plan: NextRun, edit_id: str) -> Field | None:
+def find(plan: NextRun, edit_id: str) -> FormField | None:
     """Return a field by its id, None if this robot has no such field."""
     return next((edit for section in sections(plan) for edit in section.edits if edit.id == edit_id), None)
 
 
-def step(edit: Field, plan: NextRun, by: int) -> str:
+def step(edit: FormField, plan: NextRun, by: int) -> str:
     """Return the choice `by` steps after the current one."""
     now, choices = edit.read(plan), edit.choices
     return choices[(choices.index(now) + by) % len(choices)] if now in choices else choices[0]

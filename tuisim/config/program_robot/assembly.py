@@ -8,12 +8,12 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from tuisim.config.options import RobotChoice
-from tuisim.config.program_robot.library import Kind
+from tuisim.config.program_robot.library import DeviceKind
 from tuisim.config.program_robot.mechanics import Mechanics, mechanics_in
 from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.config.program_robot.places import Body, NewSensors, places_for, say_other_sides, with_sides
 from tuisim.config.program_robot.sizes import Size, sizes_in
-from tuisim.config.program_robot.wheels import Wheels, wheels_of
+from tuisim.config.program_robot.wheels import WheelMotors, wheels_of
 from tuisim.config.program_robot.words import side_of
 from tuisim.core.spec import (
     INPUT_PORTS,
@@ -29,21 +29,27 @@ from tuisim.core.spec import (
 )
 from tuisim.errors import RobotError
 
-KINDS: Mapping[type, Kind] = {
-    ColorSensorSpec: Kind.COLOR,
-    UltrasonicSpec: Kind.ULTRASONIC,
-    GyroSpec: Kind.GYRO,
-    TouchSpec: Kind.TOUCH,
-    InfraredSpec: Kind.INFRARED,
+KINDS: Mapping[type, DeviceKind] = {
+    ColorSensorSpec: DeviceKind.COLOR,
+    UltrasonicSpec: DeviceKind.ULTRASONIC,
+    GyroSpec: DeviceKind.GYRO,
+    TouchSpec: DeviceKind.TOUCH,
+    InfraredSpec: DeviceKind.INFRARED,
 }
 """The kind of each sensor, by the class of its spec."""
-_USUAL_PORTS = {Kind.TOUCH: "in1", Kind.INFRARED: "in1", Kind.GYRO: "in4", Kind.ULTRASONIC: "in1", Kind.COLOR: "in3"}
+_USUAL_PORTS = {
+    DeviceKind.TOUCH: "in1",
+    DeviceKind.INFRARED: "in1",
+    DeviceKind.GYRO: "in4",
+    DeviceKind.ULTRASONIC: "in1",
+    DeviceKind.COLOR: "in3",
+}
 """Where a sensor goes of which the program does not say the port; the infrared one in place of the ultrasonic one."""
 _MAX_NAME = 80
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class RobotPart:
     """A part of the robot that differs from the default one, or that a line of the program asks for."""
 
     what: str
@@ -61,7 +67,7 @@ class BuiltRobot:
     """A robot that was built for a program."""
 
     choice: RobotChoice
-    parts: tuple[Part, ...]
+    parts: tuple[RobotPart, ...]
     doubts: tuple[str, ...] = ()
     """Where the program can be read in another way: what was taken, in words."""
     keeps_ports: bool = False
@@ -102,7 +108,7 @@ class _Builder:
     mentions: Mentions
     mechanics: Mechanics
     usual: RobotSpec
-    parts: list[Part] = field(default_factory=list)
+    parts: list[RobotPart] = field(default_factory=list)
     doubts: list[str] = field(default_factory=list)
 
     # Motors
@@ -112,7 +118,7 @@ class _Builder:
         kinds = self._kinds([*self._of_pairs(), *(one for one in self.mentions.devices if one.kind.is_motor)])
         where = {one.port: one.where for one in (*self.mentions.devices, *self._of_pairs()) if one.port}
         wheels = wheels_of(self.mentions, kinds, self.usual)
-        left, right = (kinds.get(port, Kind.LARGE) for port in (wheels.left, wheels.right))
+        left, right = (kinds.get(port, DeviceKind.LARGE) for port in (wheels.left, wheels.right))
         changes: dict[str, Any] = {"left_port": wheels.left, "right_port": wheels.right}
         changes |= {"left_motor": _motor_kind(left), "right_motor": _motor_kind(right)}
         changes |= self._sizes(wheels.pair)
@@ -127,25 +133,25 @@ class _Builder:
             ends = [f"{end:g}°" for end in (motor.low_deg, motor.high_deg) if end is not None]
             stops = f" with {'end stops' if ends[1:] else 'an end stop'} at {' and '.join(ends)}" if ends else ""
             said = where.get(motor.port) or self._first(further_kinds[motor.port])
-            self.parts.append(Part(f"{motor.kind} motor on {motor.port}{stops}", f"motors.{motor.port}", said))
+            self.parts.append(RobotPart(f"{motor.kind} motor on {motor.port}{stops}", f"motors.{motor.port}", said))
         if wheels.doubt:
             self.doubts.append(wheels.doubt)
         return changes
 
-    def _further(self, port: str, kind: Kind) -> MotorSpec:
+    def _further(self, port: str, kind: DeviceKind) -> MotorSpec:
         """Return a motor that drives no wheel, with the end stops that the program relies on."""
         known = any(one.port == port for one in self.mentions.devices)
         low_deg, high_deg = self.mechanics.range_of(port if known else "")
         return MotorSpec(port, _motor_kind(kind), low_deg, high_deg)
 
-    def _reversed(self, wheels: Wheels) -> dict[str, bool]:
+    def _reversed(self, wheels: WheelMotors) -> dict[str, bool]:
         """Return which wheels the program says to be mounted the other way round."""
         turned = self.mechanics.reversed
         sides = [side for side, port in (("left", wheels.left), ("right", wheels.right)) if port in turned]
         if sides:
             what = "both wheel motors" if len(sides) == 2 else f"the {sides[0]} wheel's motor"
             where = turned[wheels.left if "left" in sides else wheels.right]
-            self.parts.append(Part(f"{what} the other way round", f"{sides[0]}_reversed", where))
+            self.parts.append(RobotPart(f"{what} the other way round", f"{sides[0]}_reversed", where))
         return {f"{side}_reversed": True for side in sides}
 
     def with_presses(self, changes: dict[str, Any]) -> dict[str, Any]:
@@ -159,10 +165,10 @@ class _Builder:
             if motor is None or getattr(motor, f"{end}_deg") is None or at is None or touches[at].pressed_by:
                 continue
             touches[at] = replace(touches[at], pressed_by=motor.port, pressed_at=end)
-            what = f"{Kind.TOUCH} on {touches[at].port} pressed by {motor.port}"
+            what = f"{DeviceKind.TOUCH} on {touches[at].port} pressed by {motor.port}"
             path = _path(touches[at])
             self.parts[:] = [part for part in self.parts if part.path != path]
-            self.parts.append(Part(what, path, press.stop.where))
+            self.parts.append(RobotPart(what, path, press.stop.where))
         return {**changes, "touch_sensors": tuple(touches)}
 
     def _of_pairs(self) -> list[Mention]:
@@ -170,18 +176,20 @@ class _Builder:
             Mention(pair.kind, port, pair.where) for pair in self.mentions.pairs for port in (pair.left, pair.right)
         ]
 
-    def _first(self, kind: Kind) -> Where | None:
+    def _first(self, kind: DeviceKind) -> Where | None:
         return next((one.where for one in self.mentions.devices if one.kind is kind), None)
 
-    def _free_motors(self, kinds: dict[str, Kind], wheels: tuple[str, str]) -> None:
+    def _free_motors(self, kinds: dict[str, DeviceKind], wheels: tuple[str, str]) -> None:
         """Add the motors that the program makes without saying the port, on free ports."""
-        unknown = sum(one.kind is Kind.MEDIUM and not one.port and not one.is_any for one in self.mentions.devices)
-        has_any = any(one.kind is Kind.MEDIUM and one.is_any for one in self.mentions.devices)
-        medium = Kind.MEDIUM in kinds.values()
+        unknown = sum(
+            one.kind is DeviceKind.MEDIUM and not one.port and not one.is_any for one in self.mentions.devices
+        )
+        has_any = any(one.kind is DeviceKind.MEDIUM and one.is_any for one in self.mentions.devices)
+        medium = DeviceKind.MEDIUM in kinds.values()
         missing = unknown + (1 if has_any and not medium and not unknown else 0)
         for port in ("outA", "outD", "outB", "outC"):
             if missing and port not in kinds and port not in wheels:
-                kinds[port] = Kind.MEDIUM
+                kinds[port] = DeviceKind.MEDIUM
                 missing -= 1
 
     def _sizes(self, pair: Pair | None) -> dict[str, float]:
@@ -211,22 +219,24 @@ class _Builder:
     def _tell_sizes(self, sizes: Mapping[str, float], where: Mapping[str, Where | None]) -> None:
         for key, words in (("wheel_diameter_mm", "wheels of {:g} mm"), ("wheel_spacing_mm", "{:g} mm apart")):
             if key in sizes:
-                self.parts.append(Part(words.format(sizes[key]), key, where[key]))
+                self.parts.append(RobotPart(words.format(sizes[key]), key, where[key]))
 
-    def _tell_wheels(self, wheels: Wheels, changes: Mapping[str, Any]) -> None:
+    def _tell_wheels(self, wheels: WheelMotors, changes: Mapping[str, Any]) -> None:
         moved = (wheels.left, wheels.right) != (self.usual.left_port, self.usual.right_port)
         kinds = [changes["left_motor"], changes["right_motor"]]
         medium = " (medium motors)" if kinds == ["medium"] * 2 else ""
         what = f"wheels on {wheels.left} (left) and {wheels.right}{medium}" if wheels.left != NO_PORT else "no wheels"
-        self.parts.append(Part(what, "left_port", wheels.where, moved or bool(medium)))
+        self.parts.append(RobotPart(what, "left_port", wheels.where, moved or bool(medium)))
         self._tell_sizes(changes, dict.fromkeys(changes, wheels.where))
 
-    def _kinds(self, mentions: Iterable[Mention]) -> dict[str, Kind]:
+    def _kinds(self, mentions: Iterable[Mention]) -> dict[str, DeviceKind]:
         """Return the kind of device on each port that is named; of several the one that is named most often."""
-        votes: dict[str, Counter[Kind]] = {}
+        votes: dict[str, Counter[DeviceKind]] = {}
         for one in mentions:
             if one.port:
-                votes.setdefault(one.port, Counter())[one.kind] += 0 if one.kind in (Kind.MOTOR, Kind.SENSOR) else 1
+                votes.setdefault(one.port, Counter())[one.kind] += (
+                    0 if one.kind in (DeviceKind.MOTOR, DeviceKind.SENSOR) else 1
+                )
         found = {}
         for port, count in votes.items():
             (kind, _), *others = count.most_common()
@@ -253,10 +263,14 @@ class _Builder:
         by_side = say_other_sides(by_port, usual)
         placed: dict[str, SensorSpec] = {}
         for port, kind in kinds.items():
-            is_there = port in usual and kind in (KINDS[type(usual[port])], Kind.SENSOR)
-            if is_there and not (by_side and kind is Kind.COLOR and side_of(by_port[port].names) != usual[port].name):
+            is_there = port in usual and kind in (KINDS[type(usual[port])], DeviceKind.SENSOR)
+            if is_there and not (
+                by_side and kind is DeviceKind.COLOR and side_of(by_port[port].names) != usual[port].name
+            ):
                 placed[port] = usual[port]
-        waiting = {port: one for port, one in by_port.items() if port not in placed and one.kind is not Kind.SENSOR}
+        waiting = {
+            port: one for port, one in by_port.items() if port not in placed and one.kind is not DeviceKind.SENSOR
+        }
         wanted = [*waiting.items(), *self._without_port(mentions, kinds, placed, {*placed, *waiting})]
         if by_side:
             wanted.sort(key=lambda one: not side_of(one[1].names))
@@ -264,7 +278,7 @@ class _Builder:
         new = NewSensors()
         for port, mention in wanted:
             alike = [sensor for sensor in left if KINDS[type(sensor)] is mention.kind]
-            if by_side and mention.kind is Kind.COLOR and (side := side_of(mention.names)):
+            if by_side and mention.kind is DeviceKind.COLOR and (side := side_of(mention.names)):
                 alike = [sensor for sensor in alike if sensor.name == side]
             if alike:
                 chosen = new.likeliest(alike, mention)
@@ -285,11 +299,15 @@ class _Builder:
         return Body((spacing_mm + width_mm) / 2, self.usual.back_mm)
 
     def _without_port(
-        self, mentions: list[Mention], kinds: Mapping[str, Kind], placed: Mapping[str, SensorSpec], taken: set[str]
+        self,
+        mentions: list[Mention],
+        kinds: Mapping[str, DeviceKind],
+        placed: Mapping[str, SensorSpec],
+        taken: set[str],
     ) -> list[tuple[str, Mention]]:
         """Return the sensors that a program makes without saying the port, with ports for them."""
         found: list[tuple[str, Mention]] = []
-        for kind in dict.fromkeys(one.kind for one in mentions if not one.port and one.kind is not Kind.SENSOR):
+        for kind in dict.fromkeys(one.kind for one in mentions if not one.port and one.kind is not DeviceKind.SENSOR):
             of_kind = [one for one in mentions if one.kind is kind and not one.port]
             unknown = [one for one in of_kind if not one.is_any]
             needed = unknown or ([] if kind in kinds.values() else of_kind[:1])
@@ -328,16 +346,16 @@ class _Builder:
             kind = KINDS[type(sensor)]
             where = by_port[port].where if port in by_port else first.get(kind) if usual.get(port) != sensor else None
             if where or usual.get(port) != sensor:
-                self.parts.append(Part(f"{kind} on {port}", _path(sensor), where, usual.get(port) != sensor))
+                self.parts.append(RobotPart(f"{kind} on {port}", _path(sensor), where, usual.get(port) != sensor))
         names = {sensor.name for sensor in placed.values()}
         for sensor in self.usual.sensors:
             if sensor.name not in names:
-                self.parts.append(Part(f"no {_called(sensor)}", _path(sensor)))
+                self.parts.append(RobotPart(f"no {_called(sensor)}", _path(sensor)))
 
 
 def _called(sensor: SensorSpec) -> str:
     kind = KINDS[type(sensor)]
-    return f"{sensor.name} {kind}" if kind is Kind.COLOR else str(kind)
+    return f"{sensor.name} {kind}" if kind is DeviceKind.COLOR else str(kind)
 
 
 def _path(sensor: SensorSpec) -> str:
@@ -353,8 +371,8 @@ def _path(sensor: SensorSpec) -> str:
     return sensor.name
 
 
-def _motor_kind(kind: Kind) -> str:
-    return "medium" if kind is Kind.MEDIUM else "large"
+def _motor_kind(kind: DeviceKind) -> str:
+    return "medium" if kind is DeviceKind.MEDIUM else "large"
 
 
 def _on_port(sensor: Any, port: str) -> SensorSpec:

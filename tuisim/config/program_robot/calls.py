@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from tuisim.config.program_robot.scopes import Scope
-from tuisim.config.program_robot.values import Table, Value
+from tuisim.config.program_robot.values import SourceCollection, Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class Evaluator(Protocol):
 
     def values(self, node: ast.expr, scope: Scope, /) -> Sequence[Value]: ...
 
-    def looked_up(self, table: Table, wanted: Sequence[Value], /) -> Iterable[Value]: ...
+    def looked_up(self, table: SourceCollection, wanted: Sequence[Value], /) -> Iterable[Value]: ...
 
 
 def argument_node(call: Call, name: str, at: int | None) -> ast.expr | None:
@@ -47,12 +47,12 @@ def argument_of(call: Call, name: str, at: int | None, evaluator: Evaluator) -> 
     for keyword in call.node.keywords:
         if keyword.arg is None:
             for table in evaluator.values(keyword.value, call.scope):
-                if isinstance(table, Table) and (found := list(evaluator.looked_up(table, [name]))):
+                if isinstance(table, SourceCollection) and (found := list(evaluator.looked_up(table, [name]))):
                     return found
     for before, starred in enumerate(call.node.args):
         if isinstance(starred, ast.Starred) and at is not None and at >= before:
             for table in evaluator.values(starred.value, call.scope):
-                if isinstance(table, Table) and not table.keys:
+                if isinstance(table, SourceCollection) and not table.keys:
                     return list(evaluator.looked_up(table, [at - before]))
             return ()
     return None

@@ -19,9 +19,9 @@ from tuisim.config.program_robot.values import (
     Options,
     OwnClass,
     OwnFunction,
-    OwnModule,
     Parent,
-    Table,
+    SourceCollection,
+    SourceModule,
     Value,
 )
 from tuisim.source import LIBRARIES
@@ -84,7 +84,7 @@ class Evaluation:
             case ast.Subscript(value=base, slice=index):
                 yield from self._item(base, index, scope)
             case ast.List() | ast.Tuple() | ast.Set() | ast.Dict():
-                yield Table(node, scope)
+                yield SourceCollection(node, scope)
             case ast.IfExp(body=one, orelse=other):
                 yield from (*self.values(one, scope), *self.values(other, scope))
             case ast.BoolOp(values=parts):
@@ -102,9 +102,9 @@ class Evaluation:
                 yield from self._joined(parts, scope)
             case ast.ListComp(elt=item) | ast.SetComp(elt=item) | ast.GeneratorExp(elt=item):
                 # Its items are alike: one stands for all.
-                yield Table(ast.List([item]), scope)
+                yield SourceCollection(ast.List([item]), scope)
             case ast.DictComp(key=key, value=item):
-                yield Table(ast.Dict([key], [item]), scope)
+                yield SourceCollection(ast.Dict([key], [item]), scope)
             case ast.Call():
                 yield from self._called(node, scope)
 
@@ -153,7 +153,7 @@ class Evaluation:
 
     def _module(self, name: str) -> Iterator[Value]:
         if name in self.modules:
-            yield OwnModule(name)
+            yield SourceModule(name)
         elif name.split(".")[0] in LIBRARIES:
             yield LibraryModule(name)
 
@@ -166,9 +166,9 @@ class Evaluation:
             for found in self._module(module):
                 yield from self.attribute(found, name)
             if f"{module}.{name}" in self.modules:
-                yield OwnModule(f"{module}.{name}")
+                yield SourceModule(f"{module}.{name}")
             elif not module and name in self.modules:
-                yield OwnModule(name)
+                yield SourceModule(name)
         finally:
             self._open.discard(key)
 
@@ -182,12 +182,12 @@ class Evaluation:
                     yield LibraryClass(name)
                 elif name.islower():
                     yield LibraryModule(f"{module}.{name}")
-            case OwnModule(name=module):
+            case SourceModule(name=module):
                 scope = self.modules[module]
                 if name in scope.names:
                     yield from self._named(name, scope)
                 elif f"{module}.{name}" in self.modules:
-                    yield OwnModule(f"{module}.{name}")
+                    yield SourceModule(f"{module}.{name}")
                 else:
                     yield from self._from_stars(scope, name)
             case OwnClass(scope=scope):
@@ -253,14 +253,14 @@ class Evaluation:
     # Parts of values
 
     def _items(self, value: Value) -> Iterator[Value]:
-        if isinstance(value, Table):
+        if isinstance(value, SourceCollection):
             keys = [key for key in value.keys if key is not None]
             for item in keys or value.items:
                 for inside in self.values(item, value.scope):
                     yield from self._items(inside) if isinstance(item, ast.Starred) else (inside,)
 
     def _at(self, value: Value, index: int) -> Iterator[Value]:
-        if isinstance(value, Table) and not value.keys:
+        if isinstance(value, SourceCollection) and not value.keys:
             items = value.items
             if isinstance(value.node, ast.List) and len(items) == 1 and index:
                 index = 0
@@ -271,7 +271,7 @@ class Evaluation:
         wanted = self.values(index, scope)
         for value in self.values(base, scope):
             match value:
-                case Table():
+                case SourceCollection():
                     yield from self.looked_up(value, wanted)
                 case OwnClass(scope=inner):
                     # An enumeration by name.
@@ -279,7 +279,7 @@ class Evaluation:
                         if isinstance(name, str):
                             yield from self._of_class(inner, name, is_bound=False)
 
-    def looked_up(self, table: Table, wanted: Sequence[Value]) -> Iterator[Value]:
+    def looked_up(self, table: SourceCollection, wanted: Sequence[Value]) -> Iterator[Value]:
         """Yield what is in a table under one of these keys; everything if they are unknown."""
         keys = table.keys
         for key, item in zip(keys or range(len(table.items)), table.items, strict=True):
@@ -316,7 +316,7 @@ class Evaluation:
                 yield Parent(scope.owner)
                 return
             case ast.Name(id="dict") if not node.args:
-                yield Table(node, scope)
+                yield SourceCollection(node, scope)
                 return
             case ast.Name(id="getattr") if len(node.args) >= 2:
                 for base in self.values(node.args[0], scope):
@@ -351,14 +351,16 @@ class Evaluation:
             # The text of a file stands for the file.
             yield from (value for value in self.values(base, scope) if isinstance(value, File))
         elif name == "get" and node.args:
-            tables = [value for value in self.values(base, scope) if isinstance(value, Table)]
+            tables = [value for value in self.values(base, scope) if isinstance(value, SourceCollection)]
             for table in tables:
                 yield from self.looked_up(table, self.values(node.args[0], scope))
             # Also of `os.environ`.
             if len(node.args) > 1 and (tables or not self.values(base, scope)):
                 yield from self.values(node.args[1], scope)
         elif name in ("keys", "values", "items", "copy"):
-            yield from (self._view(name, value) for value in self.values(base, scope) if isinstance(value, Table))
+            yield from (
+                self._view(name, value) for value in self.values(base, scope) if isinstance(value, SourceCollection)
+            )
         elif name == "format" and node.args:
             for text in self.values(base, scope):
                 for value in self.values(node.args[0], scope):
@@ -380,16 +382,16 @@ class Evaluation:
                     if isinstance(value, str | File):
                         yield value if isinstance(value, str) else value.name
 
-    def _view(self, name: str, table: Table) -> Table:
+    def _view(self, name: str, table: SourceCollection) -> SourceCollection:
         keys = [key for key in table.keys if key is not None]
         if name == "copy" or not keys:
             return table
         if name == "keys":
-            return Table(ast.List(keys), table.scope)
+            return SourceCollection(ast.List(keys), table.scope)
         if name == "values":
-            return Table(ast.List(table.items), table.scope)
+            return SourceCollection(ast.List(table.items), table.scope)
         pairs: list[ast.expr] = [ast.Tuple([key, item]) for key, item in zip(keys, table.items, strict=False)]
-        return Table(ast.List(pairs), table.scope)
+        return SourceCollection(ast.List(pairs), table.scope)
 
     def returned(self, function: OwnFunction) -> Iterator[Value]:
         """Yield what a function of the program can return or yield."""
@@ -426,10 +428,10 @@ class Evaluation:
         for call in self.calls.get(parameter.function, ()):
             if parameter.argument is parameter.function.args.vararg:
                 rest = call.node.args[len(names) - (1 if call.is_bound else 0) :]
-                found.append((Table(ast.Tuple(rest), call.scope), call))
+                found.append((SourceCollection(ast.Tuple(rest), call.scope), call))
                 continue
             if parameter.argument is parameter.function.args.kwarg:
-                found.append((Table(ast.Call(call.node.func, [], call.node.keywords), call.scope), call))
+                found.append((SourceCollection(ast.Call(call.node.func, [], call.node.keywords), call.scope), call))
                 continue
             at = names.index(name) - (1 if call.is_bound else 0) if name in names else None
             given = argument_of(call, name, at, self)
@@ -440,7 +442,7 @@ class Evaluation:
         return found or usual
 
 
-def _from_end(index: object, table: Table) -> int:
+def _from_end(index: object, table: SourceCollection) -> int:
     return index - len(table.items) if isinstance(index, int) else 0
 
 

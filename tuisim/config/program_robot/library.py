@@ -15,7 +15,7 @@ from tuisim.core.spec import INPUT_PORTS, OUTPUT_PORTS
 COURSE_MODULE = "ev3dev2_glue"
 
 
-class Kind(StrEnum):
+class DeviceKind(StrEnum):
     """What a program asks for on a port; the value is what people call it."""
 
     LARGE = "large motor"
@@ -33,21 +33,21 @@ class Kind(StrEnum):
     @property
     def is_motor(self) -> bool:
         """Whether it belongs on an output port."""
-        return self in (Kind.LARGE, Kind.MEDIUM, Kind.MOTOR)
+        return self in (DeviceKind.LARGE, DeviceKind.MEDIUM, DeviceKind.MOTOR)
 
 
-DEVICES: Mapping[str, Kind] = {
-    "LargeMotor": Kind.LARGE,
-    "MediumMotor": Kind.MEDIUM,
-    "Motor": Kind.MOTOR,
-    "ColorSensor": Kind.COLOR,
-    "UltrasonicSensor": Kind.ULTRASONIC,
-    "GyroSensor": Kind.GYRO,
-    "TouchSensor": Kind.TOUCH,
-    "InfraredSensor": Kind.INFRARED,
-    "Sensor": Kind.SENSOR,
-    "RemoteControl": Kind.INFRARED,
-    "BeaconSeeker": Kind.INFRARED,
+DEVICES: Mapping[str, DeviceKind] = {
+    "LargeMotor": DeviceKind.LARGE,
+    "MediumMotor": DeviceKind.MEDIUM,
+    "Motor": DeviceKind.MOTOR,
+    "ColorSensor": DeviceKind.COLOR,
+    "UltrasonicSensor": DeviceKind.ULTRASONIC,
+    "GyroSensor": DeviceKind.GYRO,
+    "TouchSensor": DeviceKind.TOUCH,
+    "InfraredSensor": DeviceKind.INFRARED,
+    "Sensor": DeviceKind.SENSOR,
+    "RemoteControl": DeviceKind.INFRARED,
+    "BeaconSeeker": DeviceKind.INFRARED,
 }
 """The classes of devices that are simulated, in both libraries."""
 
@@ -66,9 +66,9 @@ class PairClass:
     """Names of the two arguments."""
     rank: int = 1
     """Of several pairs in a program, the one with the highest rank is the wheels."""
-    kind: Kind = Kind.LARGE
+    kind: DeviceKind = DeviceKind.LARGE
     """Of its motors, unless the argument `motor_class` says otherwise."""
-    needs: tuple[Kind, ...] = ()
+    needs: tuple[DeviceKind, ...] = ()
     """What else it makes, without a port."""
     usual: tuple[str, str] = ("", "")
     """The ports where the arguments are missing."""
@@ -84,12 +84,12 @@ PAIRS: Mapping[str, PairClass] = {
     "MoveSteering": PairClass(*_PORTS, rank=2),
     "MoveJoystick": PairClass(*_PORTS, rank=2),
     "WebControlledTank": PairClass(*_HELPER, rank=2),
-    "RemoteControlledTank": PairClass(*_PORTS, rank=2, needs=(Kind.INFRARED,), reverses=True),
-    "GyroBalancer": PairClass(*_PORTS, needs=(Kind.GYRO, Kind.TOUCH), usual=("outD", "outA")),
+    "RemoteControlledTank": PairClass(*_PORTS, rank=2, needs=(DeviceKind.INFRARED,), reverses=True),
+    "GyroBalancer": PairClass(*_PORTS, needs=(DeviceKind.GYRO, DeviceKind.TOUCH), usual=("outD", "outA")),
     "Tank": PairClass(*_HELPER, rank=2),
     "LargeMotorPair": PairClass(*_HELPER),
     "MotorPair": PairClass(*_HELPER),
-    "MediumMotorPair": PairClass(*_HELPER, rank=0, kind=Kind.MEDIUM),
+    "MediumMotorPair": PairClass(*_HELPER, rank=0, kind=DeviceKind.MEDIUM),
 }
 """The classes that drive two motors together."""
 
@@ -124,24 +124,24 @@ CONSTANTS: Mapping[str, str] = {
 CLASSES = frozenset({*DEVICES, *PAIRS, *WHEELS, MOTOR_SET, WHEEL})
 """Every class of the libraries that says something about the robot."""
 
-_DRIVERS: Mapping[str, Kind] = {
-    "lego-ev3-l-motor": Kind.LARGE,
-    "lego-ev3-m-motor": Kind.MEDIUM,
-    "lego-ev3-color": Kind.COLOR,
-    "lego-ev3-us": Kind.ULTRASONIC,
-    "lego-ev3-gyro": Kind.GYRO,
-    "lego-ev3-touch": Kind.TOUCH,
-    "lego-ev3-ir": Kind.INFRARED,
+_DRIVERS: Mapping[str, DeviceKind] = {
+    "lego-ev3-l-motor": DeviceKind.LARGE,
+    "lego-ev3-m-motor": DeviceKind.MEDIUM,
+    "lego-ev3-color": DeviceKind.COLOR,
+    "lego-ev3-us": DeviceKind.ULTRASONIC,
+    "lego-ev3-gyro": DeviceKind.GYRO,
+    "lego-ev3-touch": DeviceKind.TOUCH,
+    "lego-ev3-ir": DeviceKind.INFRARED,
 }
-_MODES: Mapping[str, Kind] = {
-    "COL-": Kind.COLOR,
-    "REF-RAW": Kind.COLOR,
-    "RGB-RAW": Kind.COLOR,
-    "US-": Kind.ULTRASONIC,
-    "GYRO-": Kind.GYRO,
-    "TILT-": Kind.GYRO,
-    "TOUCH": Kind.TOUCH,
-    "IR-": Kind.INFRARED,
+_MODES: Mapping[str, DeviceKind] = {
+    "COL-": DeviceKind.COLOR,
+    "REF-RAW": DeviceKind.COLOR,
+    "RGB-RAW": DeviceKind.COLOR,
+    "US-": DeviceKind.ULTRASONIC,
+    "GYRO-": DeviceKind.GYRO,
+    "TILT-": DeviceKind.GYRO,
+    "TOUCH": DeviceKind.TOUCH,
+    "IR-": DeviceKind.INFRARED,
 }
 _PORT = re.compile(r"(?:ev3-ports:)?(out[A-D]|in[1-4])")
 
@@ -152,12 +152,12 @@ def port_of(text: object) -> str:
     return match[1] if match else ""
 
 
-def kind_of_driver(text: object) -> Kind | None:
+def kind_of_driver(text: object) -> DeviceKind | None:
     """Return the kind of device that a driver is for; None if it is not simulated."""
     return _DRIVERS.get(text) if isinstance(text, str) else None
 
 
-def kind_of_mode(text: object) -> Kind | None:
+def kind_of_mode(text: object) -> DeviceKind | None:
     """Return the kind of sensor that has a mode."""
     if not isinstance(text, str):
         return None

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from tuisim.config.program_robot import library
 from tuisim.config.program_robot.evaluation import Evaluation
-from tuisim.config.program_robot.library import Kind
+from tuisim.config.program_robot.library import DeviceKind
 from tuisim.config.program_robot.mentions import Mentions, Pair, Where
 from tuisim.config.program_robot.scopes import FUNCTIONS, Bound, Scope
 from tuisim.config.program_robot.values import Instance, OwnClass, OwnFunction, Value
@@ -30,7 +30,7 @@ _MOST_REACH_DEG = 20_000.0
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
+class EndStop:
     """A motor that drives against an end stop."""
 
     where: Where
@@ -39,13 +39,13 @@ class Stop:
 
 
 @dataclass(frozen=True, slots=True)
-class Press:
+class StopPress:
     """A motor that presses a touch sensor at its end."""
 
     touch: str
     """The port of the sensor; empty if the program does not say it."""
     motor: str
-    stop: Stop
+    stop: EndStop
 
 
 @dataclass(slots=True)
@@ -53,8 +53,8 @@ class Mechanics:
     """What a program says about its motors, by port; the port is empty if the program does not say it."""
 
     reversed: dict[str, Where] = field(default_factory=dict)
-    stops: dict[str, Stop] = field(default_factory=dict)
-    presses: list[Press] = field(default_factory=list)
+    stops: dict[str, EndStop] = field(default_factory=dict)
+    presses: list[StopPress] = field(default_factory=list)
     reach_deg: dict[str, float] = field(default_factory=dict)
     """The farthest that the program turns a motor, from where it stands or from its end stop."""
     endless: set[str] = field(default_factory=set)
@@ -76,11 +76,11 @@ def mechanics_in(mentions: Mentions) -> Mechanics:
     """Return what a program says about how its motors are mounted."""
     if mentions.evaluation is None:
         return Mechanics()
-    return _Reader(mentions, mentions.evaluation).read()
+    return _MechanicsReader(mentions, mentions.evaluation).read()
 
 
 @dataclass(slots=True)
-class _Reader:
+class _MechanicsReader:
     mentions: Mentions
     evaluation: Evaluation
     found: Mechanics = field(default_factory=Mechanics)
@@ -212,7 +212,7 @@ class _Reader:
     def _stall(self, base: ast.expr, scope: Scope, node: ast.AST) -> None:
         for port in self._motors(base, scope):
             forwards = next(self._directions(scope.body, [port], scope), None)
-            self.found.stops.setdefault(port, Stop(_where(node, scope), forwards))
+            self.found.stops.setdefault(port, EndStop(_where(node, scope), forwards))
 
     # Movements
 
@@ -287,7 +287,7 @@ class _Reader:
                 pass
             case _:
                 return
-        touches = self._devices(base, scope, Kind.TOUCH)
+        touches = self._devices(base, scope, DeviceKind.TOUCH)
         nodes = [inner for statement in statements for inner in ast.walk(statement)]
         moved = {
             port
@@ -298,7 +298,7 @@ class _Reader:
         }  # fmt: skip
         if len(moved) == 1 and touches:
             forwards = next(self._directions([*nodes, *scope.body], moved, scope), None)
-            self.found.presses.append(Press(touches[0], moved.pop(), Stop(_where(last, scope), forwards)))
+            self.found.presses.append(StopPress(touches[0], moved.pop(), EndStop(_where(last, scope), forwards)))
 
     # Devices
 
@@ -309,9 +309,9 @@ class _Reader:
         return [] if in_turn else self._motors(node, scope)
 
     def _motors(self, node: ast.expr, scope: Scope) -> list[str]:
-        return self._devices(node, scope, Kind.LARGE, Kind.MEDIUM, Kind.MOTOR)
+        return self._devices(node, scope, DeviceKind.LARGE, DeviceKind.MEDIUM, DeviceKind.MOTOR)
 
-    def _devices(self, node: ast.expr, scope: Scope, *kinds: Kind) -> list[str]:
+    def _devices(self, node: ast.expr, scope: Scope, *kinds: DeviceKind) -> list[str]:
         """Return the ports of the devices of some kinds that an expression can be."""
         if isinstance(node, ast.Attribute) and node.attr in ("left_motor", "right_motor"):
             pairs = self._pairs(node.value, scope)

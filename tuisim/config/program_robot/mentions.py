@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from tuisim.config.program_robot import library
 from tuisim.config.program_robot.calls import Call, argument_node, argument_of
 from tuisim.config.program_robot.evaluation import Evaluation
-from tuisim.config.program_robot.library import Kind, PairClass
+from tuisim.config.program_robot.library import DeviceKind, PairClass
 from tuisim.config.program_robot.reach import reachable, skipped
 from tuisim.config.program_robot.scopes import FUNCTIONS, Function, Parameter, Scope, scope_of
 from tuisim.config.program_robot.source import DataFiles, Module
@@ -18,7 +18,7 @@ from tuisim.config.program_robot.values import (
     OwnClass,
     OwnFunction,
     Parent,
-    Table,
+    SourceCollection,
     Value,
 )
 
@@ -43,7 +43,7 @@ class Where:
 class Mention:
     """A device that a program makes."""
 
-    kind: Kind
+    kind: DeviceKind
     port: str
     """Its short name, such as `outA`; empty if the program does not say it."""
     where: Where
@@ -64,7 +64,7 @@ class Pair:
     left: str
     right: str
     """Their ports."""
-    kind: Kind
+    kind: DeviceKind
     rank: int
     """The higher, the likelier these are the wheels."""
     where: Where
@@ -270,7 +270,7 @@ class _Reader:
             if not told or told[0] is None:
                 return
             kind = told[0]
-        elif kind is Kind.SENSOR:
+        elif kind is DeviceKind.SENSOR:
             kind = self._kind_by_mode(call) or kind
         names = self._called(call)
         owner = call.scope.owner
@@ -325,13 +325,13 @@ class _Reader:
 
     def _flat(self, values: Sequence[Value]) -> Iterator[Value]:
         for value in values:
-            if isinstance(value, Table):
+            if isinstance(value, SourceCollection):
                 for item in value.items:
                     yield from self.evaluation.values(item, value.scope)
             else:
                 yield value
 
-    def _kind_by_mode(self, call: Call) -> Kind | None:
+    def _kind_by_mode(self, call: Call) -> DeviceKind | None:
         """Return the kind of a sensor whose mode the program sets."""
         names = self.hints.get(call.node, ())
         for scope in self.scopes:
@@ -349,7 +349,7 @@ class _Reader:
     def _motor_set(self, call: Call) -> Iterator[Mention]:
         owner, where = call.scope.owner, _where(call)
         for table in argument_of(call, "motor_specs", 0, self.evaluation) or ():
-            if isinstance(table, Table) and isinstance(table.node, ast.Dict):
+            if isinstance(table, SourceCollection) and isinstance(table.node, ast.Dict):
                 for key, item in zip(table.keys, table.items, strict=True):
                     ports = self.evaluation.values(key, table.scope) if key is not None else ()
                     kinds = [kind for one in self.evaluation.values(item, table.scope) if (kind := _motor_of(one))]
@@ -384,7 +384,7 @@ class _Reader:
                     call.scope.owner, polarities[0] if polarities else "",
                 )  # fmt: skip
 
-    def _motor_kind(self, name: str, known: PairClass, call: Call) -> Kind:
+    def _motor_kind(self, name: str, known: PairClass, call: Call) -> DeviceKind:
         given = argument_of(call, library.MOTOR_CLASS, library.MOTOR_CLASS_AT.get(name), self.evaluation)
         return next((kind for value in given or () if (kind := _motor_of(value))), known.kind)
 
@@ -426,7 +426,7 @@ def _where(call: Call) -> Where:
     return Where(call.scope.module.file, call.node.lineno)
 
 
-def _motor_of(value: Value) -> Kind | None:
+def _motor_of(value: Value) -> DeviceKind | None:
     """Return the kind of motor that a class of the library is for."""
     kind = library.DEVICES.get(value.name) if isinstance(value, LibraryClass) else None
     return kind if kind and kind.is_motor else None

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from tuisim.config.program_robot.library import Kind
+from tuisim.config.program_robot.library import DeviceKind
 from tuisim.config.program_robot.mentions import Mention
 from tuisim.config.program_robot.words import Side, side_of
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, InfraredSpec, SensorSpec, TouchSpec, UltrasonicSpec
@@ -34,7 +34,7 @@ _DOWN: Mapping[Side, tuple[float, float]] = {
 
 def with_sides(mentions: Sequence[Mention]) -> list[Mention]:
     """Return mentions with the sides of three colour sensors that one line makes: in a row, from left to right."""
-    calls = [one.call for one in mentions if one.kind is Kind.COLOR and one.port]
+    calls = [one.call for one in mentions if one.kind is DeviceKind.COLOR and one.port]
     rows = [call for call in calls if call is not None and calls.count(call) == len(_ROW)]
     unsaid = [one for one in mentions if one.call in rows and side_of(one.names) is Side.NONE]
     sides = dict(zip(unsaid, _ROW, strict=True)) if len(unsaid) == len(_ROW) else {}
@@ -48,7 +48,7 @@ def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorS
         mentions: What the program makes, by port.
         usual: The sensors of the usual robot, by port.
     """
-    colors = {port: one for port, one in mentions.items() if one.kind is Kind.COLOR}
+    colors = {port: one for port, one in mentions.items() if one.kind is DeviceKind.COLOR}
     known = {port: usual[port].name for port in colors if isinstance(usual.get(port), ColorSensorSpec)}
     said = {port: side_of(colors[port].names) for port in known}
     return len(known) < len(colors) and any(side and side != known[port] for port, side in said.items())
@@ -90,7 +90,7 @@ def places_for(
         mentions = {port: one for port, one in sorted(new.by_port.items()) if one.kind is kind}
         known = [*placed.values(), *found.values()]
         names = {sensor.name for sensor in known}
-        if kind is Kind.GYRO:
+        if kind is DeviceKind.GYRO:
             mounted = any(isinstance(sensor, GyroSpec) for sensor in known)
             for port in list(mentions)[0 if mounted else 1 :]:
                 doubts.append(f"a robot has one gyro: that on {port} is not built")
@@ -103,29 +103,29 @@ def places_for(
     return found
 
 
-_SPECS: Mapping[Kind, type] = {
-    Kind.COLOR: ColorSensorSpec,
-    Kind.ULTRASONIC: UltrasonicSpec,
-    Kind.GYRO: GyroSpec,
-    Kind.TOUCH: TouchSpec,
-    Kind.INFRARED: InfraredSpec,
+_SPECS: Mapping[DeviceKind, type] = {
+    DeviceKind.COLOR: ColorSensorSpec,
+    DeviceKind.ULTRASONIC: UltrasonicSpec,
+    DeviceKind.GYRO: GyroSpec,
+    DeviceKind.TOUCH: TouchSpec,
+    DeviceKind.INFRARED: InfraredSpec,
 }
-_ORDERS: Mapping[Kind, tuple[Side, ...]] = {
-    Kind.COLOR: (Side.MIDDLE, Side.FRONT, Side.LEFT, Side.RIGHT),
-    Kind.ULTRASONIC: (Side.FRONT, Side.RIGHT, Side.LEFT, Side.BACK),
-    Kind.INFRARED: (Side.FRONT, Side.RIGHT, Side.LEFT, Side.BACK),
-    Kind.TOUCH: (Side.LEFT, Side.RIGHT, Side.BACK, Side.FRONT),
-    Kind.GYRO: (Side.MIDDLE,),
+_ORDERS: Mapping[DeviceKind, tuple[Side, ...]] = {
+    DeviceKind.COLOR: (Side.MIDDLE, Side.FRONT, Side.LEFT, Side.RIGHT),
+    DeviceKind.ULTRASONIC: (Side.FRONT, Side.RIGHT, Side.LEFT, Side.BACK),
+    DeviceKind.INFRARED: (Side.FRONT, Side.RIGHT, Side.LEFT, Side.BACK),
+    DeviceKind.TOUCH: (Side.LEFT, Side.RIGHT, Side.BACK, Side.FRONT),
+    DeviceKind.GYRO: (Side.MIDDLE,),
 }
 """The sides of sensors of which no name says the side, in turn."""
 
 
-def _sides(mentions: Mapping[str, Mention], *, first_free: bool, kind: Kind) -> dict[str, Side]:
+def _sides(mentions: Mapping[str, Mention], *, first_free: bool, kind: DeviceKind) -> dict[str, Side]:
     """Return the side of each sensor: that of its name, else the next one that is free."""
     found = {port: side_of(mention.names) for port, mention in mentions.items()}
-    if kind is Kind.TOUCH and first_free and len(found) == 1 and Side.NONE in found.values():
+    if kind is DeviceKind.TOUCH and first_free and len(found) == 1 and Side.NONE in found.values():
         return dict.fromkeys(found, Side.FRONT)
-    taken = {*found.values()} | (set() if first_free or kind in (Kind.TOUCH, Kind.COLOR) else {Side.FRONT})
+    taken = {*found.values()} | (set() if first_free or kind in (DeviceKind.TOUCH, DeviceKind.COLOR) else {Side.FRONT})
     for port, side in found.items():
         if side is Side.NONE or [*found.values()].count(side) > 1:
             free = [one for one in _ORDERS[kind] if one not in taken]
@@ -168,10 +168,10 @@ def _gyro(port: str, _side: Side, names: set[str], _body: Body) -> SensorSpec:
     return GyroSpec(_name("gyro", Side.NONE, names), port)
 
 
-_MAKERS: Mapping[Kind, Callable[[str, Side, set[str], Body], Any]] = {
-    Kind.COLOR: _color,
-    Kind.ULTRASONIC: _ultrasonic,
-    Kind.GYRO: _gyro,
-    Kind.TOUCH: _touch,
-    Kind.INFRARED: _infrared,
+_MAKERS: Mapping[DeviceKind, Callable[[str, Side, set[str], Body], Any]] = {
+    DeviceKind.COLOR: _color,
+    DeviceKind.ULTRASONIC: _ultrasonic,
+    DeviceKind.GYRO: _gyro,
+    DeviceKind.TOUCH: _touch,
+    DeviceKind.INFRARED: _infrared,
 }

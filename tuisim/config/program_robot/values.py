@@ -24,7 +24,7 @@ class LibraryClass:
 
 
 @dataclass(frozen=True, slots=True)
-class OwnModule:
+class SourceModule:
     """A module of the program."""
 
     name: str
@@ -78,7 +78,7 @@ class File:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class SourceCollection:
     """A list, tuple, set or dict that is written out."""
 
     node: ast.List | ast.Tuple | ast.Set | ast.Dict | ast.Call
@@ -111,12 +111,12 @@ Value: TypeAlias = (
     Constant
     | LibraryModule
     | LibraryClass
-    | OwnModule
+    | SourceModule
     | OwnClass
     | OwnFunction
     | Instance
     | Parent
     | Options
     | File
-    | Table
+    | SourceCollection
 )

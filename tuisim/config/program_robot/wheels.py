@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from tuisim.config.program_robot.library import Kind
+from tuisim.config.program_robot.library import DeviceKind
 from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.config.program_robot.words import Side, means_tool, side_of
 from tuisim.core.spec import NO_PORT, OUTPUT_PORTS, RobotSpec
@@ -15,7 +15,7 @@ _USUAL = (("outB", "outC"), ("outA", "outD"), ("outA", "outB"), ("outC", "outD")
 
 
 @dataclass(frozen=True, slots=True)
-class Wheels:
+class WheelMotors:
     """The motors that drive the wheels."""
 
     left: str
@@ -28,7 +28,7 @@ class Wheels:
     """Which other reading there is, in words; empty for none."""
 
 
-def wheels_of(mentions: Mentions, kinds: Mapping[str, Kind], usual: RobotSpec) -> Wheels:
+def wheels_of(mentions: Mentions, kinds: Mapping[str, DeviceKind], usual: RobotSpec) -> WheelMotors:
     """Return the motors that drive the wheels; none if every port is taken by a motor that does something else.
 
     Args:
@@ -40,23 +40,23 @@ def wheels_of(mentions: Mentions, kinds: Mapping[str, Kind], usual: RobotSpec) -
     )
 
 
-def _of_pairs(pairs: Sequence[Pair]) -> Wheels | None:
+def _of_pairs(pairs: Sequence[Pair]) -> WheelMotors | None:
     if not pairs:
         return None
-    likely = sorted(pairs, key=lambda pair: (means_tool(pair.names), -pair.rank, pair.kind is Kind.MEDIUM))
+    likely = sorted(pairs, key=lambda pair: (means_tool(pair.names), -pair.rank, pair.kind is DeviceKind.MEDIUM))
     chosen = likely[0]
     others = [pair for pair in likely if {pair.left, pair.right} != {chosen.left, chosen.right}]
     doubt = f"{others[0].class_name} on {others[0].left} and {others[0].right} is taken for no wheels" if others else ""
-    return Wheels(chosen.left, chosen.right, chosen.where, chosen, doubt)
+    return WheelMotors(chosen.left, chosen.right, chosen.where, chosen, doubt)
 
 
-def _of_single(devices: Sequence[Mention], kinds: Mapping[str, Kind]) -> Wheels | None:
+def _of_single(devices: Sequence[Mention], kinds: Mapping[str, DeviceKind]) -> WheelMotors | None:
     """Return two motors that are made one by one, and that names, a class or their number show to be the wheels."""
     by_port: dict[str, Mention] = {}
     for device in devices:
         if device.kind.is_motor and device.port:
             by_port.setdefault(device.port, device)
-    large = [one for port, one in by_port.items() if kinds[port] is not Kind.MEDIUM]
+    large = [one for port, one in by_port.items() if kinds[port] is not DeviceKind.MEDIUM]
     wheels = [one for one in large if not means_tool(one.names)]
     for motors in (wheels, [*by_port.values()] if not large else []):
         for of_class in (True, False):
@@ -69,17 +69,17 @@ def _of_single(devices: Sequence[Mention], kinds: Mapping[str, Kind]) -> Wheels 
     return None
 
 
-def _by_side(motors: Sequence[Mention], *, of_class: bool) -> Wheels | None:
+def _by_side(motors: Sequence[Mention], *, of_class: bool) -> WheelMotors | None:
     for one in motors:
         for other in motors:
             if of_class and one.owner is not other.owner:
                 continue
             if side_of(one.names) is Side.LEFT and side_of(other.names) is Side.RIGHT:
-                return Wheels(one.port, other.port, one.where)
+                return WheelMotors(one.port, other.port, one.where)
     return None
 
 
-def _in_order(motors: Sequence[Mention]) -> Wheels:
+def _in_order(motors: Sequence[Mention]) -> WheelMotors:
     """Return the usual two of some motors, the left one first unless a name says otherwise."""
     by_port = {one.port: one for one in motors}
     left, right = next(pair for pair in _USUAL if by_port.keys() >= set(pair))
@@ -87,28 +87,30 @@ def _in_order(motors: Sequence[Mention]) -> Wheels:
         left, right = right, left
     rest = ", ".join(port for port in by_port if port not in (left, right))
     doubt = f"of the large motors, those on {left} and {right} are taken for the wheels, not {rest}" if rest else ""
-    return Wheels(left, right, by_port[left].where, doubt=doubt)
+    return WheelMotors(left, right, by_port[left].where, doubt=doubt)
 
 
-def _left_over(devices: Sequence[Mention], kinds: Mapping[str, Kind], usual: RobotSpec) -> Wheels:
+def _left_over(devices: Sequence[Mention], kinds: Mapping[str, DeviceKind], usual: RobotSpec) -> WheelMotors:
     """Return the usual wheels, on other ports if the program needs theirs."""
     ports = (usual.left_port, usual.right_port)
-    if all(port in ports and kind is not Kind.MEDIUM for port, kind in kinds.items()):
-        return Wheels(*ports)
+    if all(port in ports and kind is not DeviceKind.MEDIUM for port, kind in kinds.items()):
+        return WheelMotors(*ports)
     tools = {one.port for one in devices if one.kind.is_motor and means_tool(one.names)}
-    stay = [port for port in ports if kinds.get(port, Kind.LARGE) is not Kind.MEDIUM and port not in tools]
+    stay = [port for port in ports if kinds.get(port, DeviceKind.LARGE) is not DeviceKind.MEDIUM and port not in tools]
     free = [*stay, *(port for port in OUTPUT_PORTS if port not in kinds and port not in stay)]
     if len(free) >= 2:
         left = usual.left_port if usual.left_port in free else _other(free, usual.right_port)
         right = usual.right_port if usual.right_port in free else _other(free, left)
-        return Wheels(left, right)
+        return WheelMotors(left, right)
     loose = [port for port in kinds if port not in tools]
     alike = [pair for pair in _USUAL if {*pair} <= {*loose} and kinds[pair[0]] is kinds[pair[1]]]
     pairs = alike or [pair for pair in _USUAL if {*pair} <= {*loose}]
     if not pairs:
-        return Wheels(NO_PORT, NO_PORT)
+        return WheelMotors(NO_PORT, NO_PORT)
     left, right = pairs[0]
-    return Wheels(left, right, doubt=f"no two ports are free for wheels: the motors on {left} and {right} drive them")
+    return WheelMotors(
+        left, right, doubt=f"no two ports are free for wheels: the motors on {left} and {right} drive them"
+    )
 
 
 def _other(ports: Iterable[str], taken: str) -> str:

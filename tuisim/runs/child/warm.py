@@ -105,7 +105,7 @@ def _continue_parent_of(pid: int) -> None:
             os.kill(int(parent), signal.SIGCONT)
 
 
-class ForkServer:
+class ForkClient:
     """A process that forks children.
 
     Args:
@@ -192,11 +192,11 @@ class ForkServer:
             self._process.wait()
 
 
-class Template(ForkServer):
+class Template(ForkClient):
     """A process that is prepared for a robot and a world, and forks children for them."""
 
 
-class WarmProcess(ForkServer):
+class WarmProcess(ForkClient):
     """A process that has imported the runtime. It is started with the first child, and ends with this process.
 
     Args:

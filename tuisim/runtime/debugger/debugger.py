@@ -15,7 +15,7 @@ from tuisim.runtime.control import ATTENTION, DEBUG, LIVE
 from tuisim.runtime.debugger.code_lines import CodeLines
 from tuisim.runtime.debugger.conditions import Condition, Watcher
 from tuisim.runtime.debugger.fork import apart
-from tuisim.runtime.debugger.inspection import Looker
+from tuisim.runtime.debugger.inspection import Inspector
 from tuisim.runtime.debugger.steps import NEXT_LINE, Step, step_from
 from tuisim.runtime.debugger.tracer import Tracer
 from tuisim.runtime.scheduler import Scheduler
@@ -53,7 +53,7 @@ class Debugger:
         self._session, self._scheduler = session, scheduler
         self._lines = CodeLines(code)
         self._tracer = Tracer(session, scheduler, self._at_line)
-        self._looker = Looker(session, scheduler, self._tracer, module, prepared)
+        self._looker = Inspector(session, scheduler, self._tracer, module, prepared)
         self._watcher = Watcher(session)
         self._by_line: dict[int, list[tuple[Breakpoint, Condition | None]]] = {}
         self._step: Step | None = None

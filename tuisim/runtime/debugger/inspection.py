@@ -50,7 +50,7 @@ class _Place:
         return self.frames[self.at] if self.frames else None
 
 
-class Looker:
+class Inspector:
     """Inspects a paused run.
 
     Args:

@@ -24,7 +24,7 @@ from tuisim.shim.buttons import (
     read_pressed,
 )
 from tuisim.shim.evdev.codes import codes_module
-from tuisim.shim.session import Session
+from tuisim.shim.session import DeviceSession
 from tuisim.shim.waits import Wait, waits_for
 
 _INSTEAD = "to drive by hand, use the brick's buttons or RemoteControlledTank"
@@ -85,7 +85,7 @@ class InputDevice:
         NotSimulated: `dev` is not the path of the buttons.
     """
 
-    def __init__(self, session: Session, dev: object) -> None:
+    def __init__(self, session: DeviceSession, dev: object) -> None:
         path = os.fspath(dev) if isinstance(dev, os.PathLike) else dev
         if path not in DEVICE_PATHS:
             raise NotSimulated(f"evdev.InputDevice({path!r}): gamepads and keyboards are not simulated", _INSTEAD)
@@ -202,7 +202,7 @@ def point_at_gamepads(error: BaseException) -> None:
         error.add_note(ONLY_BUTTONS)
 
 
-def evdev_modules(session: Session) -> dict[str, types.ModuleType]:
+def evdev_modules(session: DeviceSession) -> dict[str, types.ModuleType]:
     """Return the module `evdev` with its submodules, by name; its only device is the brick's buttons."""
 
     class Device(InputDevice):

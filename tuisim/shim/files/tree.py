@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterable
 from typing import Any
 
-from tuisim.shim.device_files import CLASSES_FOLDER, Brick
+from tuisim.shim.device_files import CLASSES_FOLDER, DeviceFiles
 from tuisim.shim.files.entries import AttributeFile, DeviceFile, Folder
 
 INPUT_FOLDER = "/dev/input"
@@ -27,7 +27,7 @@ class DeviceTree:
         files: The files that are no attributes of devices.
     """
 
-    def __init__(self, brick: Brick, files: Iterable[DeviceFile]) -> None:
+    def __init__(self, brick: DeviceFiles, files: Iterable[DeviceFile]) -> None:
         self._brick = brick
         self._files = {file.path: file for file in files}
         self._attributes: dict[str, AttributeFile] = {}

@@ -12,8 +12,8 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from tuisim.shim.console import Terminal
-from tuisim.shim.session import Session
-from tuisim.shim.shell.syntax import NOT_THERE, Line, NotUnderstood, read_line
+from tuisim.shim.session import DeviceSession
+from tuisim.shim.shell.syntax import NOT_THERE, NotUnderstood, ShellLine, read_line
 from tuisim.shim.sound import Mixer
 from tuisim.shim.tones import Heard, beep_heard, file_heard, speech_heard
 
@@ -41,7 +41,7 @@ class Flow:
 
 
 @dataclass(frozen=True, slots=True)
-class Use:
+class CommandUse:
     """One invocation of a command."""
 
     words: Sequence[str]
@@ -55,7 +55,7 @@ class Use:
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
+class CommandResult:
     """Outcome of a command."""
 
     status: int = 0
@@ -91,7 +91,7 @@ class Streams:
 class Shell:
     """Runs lines of commands."""
 
-    def __init__(self, session: Session, terminal: Terminal, mixer: Mixer) -> None:
+    def __init__(self, session: DeviceSession, terminal: Terminal, mixer: Mixer) -> None:
         self.session, self.terminal, self.mixer = session, terminal, mixer
 
     def line(self, text: str, streams: Streams, folder: str = "") -> Steps:
@@ -105,17 +105,17 @@ class Shell:
 
     def program(self, words: Sequence[str], streams: Streams, folder: str) -> Steps:
         """Run one command without a shell."""
-        return (yield from self._run(Line((tuple(words),)), streams, folder, in_shell=False))
+        return (yield from self._run(ShellLine((tuple(words),)), streams, folder, in_shell=False))
 
-    def _run(self, line: Line, streams: Streams, folder: str, in_shell: bool) -> Steps:
-        flow, result = Flow(), Result()
+    def _run(self, line: ShellLine, streams: Streams, folder: str, in_shell: bool) -> Steps:
+        flow, result = Flow(), CommandResult()
         heard: tuple[Heard, ...] = ()
         for at, words in enumerate(line.calls):
             if at == 0 and _reads(words):
                 while streams.given is None:
                     yield NEEDS_INPUT
                 flow = streams.given
-            result = self._result(Use(words[1:], flow, folder, in_shell), words[0])
+            result = self._result(CommandUse(words[1:], flow, folder, in_shell), words[0])
             if line.file and at == len(line.calls) - 1 and not result.status:
                 result = _written(result, line.file)
             if result.errors:
@@ -131,23 +131,23 @@ class Shell:
             yield one.length_ns
         return result.status
 
-    def _result(self, use: Use, name: str) -> Result:
+    def _result(self, use: CommandUse, name: str) -> CommandResult:
         command = COMMANDS.get(os.path.basename(name))
         if command is None:
             there = ", ".join(COMMANDS)
-            return Result(
+            return CommandResult(
                 NOT_THERE, errors=f"{name}: not found (return code 127): the simulated brick has only {there}"
             )
         return command(self, use)
 
 
-def _written(result: Result, file: str) -> Result:
+def _written(result: CommandResult, file: str) -> CommandResult:
     """Write a command's output to a device file; return what that makes of its result."""
     try:
         with open(file, "wb", 0) as device:
             device.write(result.output.data)
     except OSError as error:
-        return Result(FAILED, errors=f"sh: cannot write {file}: {error.strerror}")
+        return CommandResult(FAILED, errors=f"sh: cannot write {file}: {error.strerror}")
     return replace(result, output=Flow())
 
 
@@ -166,7 +166,7 @@ class Running:
         several: Whether more sounds may follow the first one, so that progress must not depend on calls of `poll`.
     """
 
-    def __init__(self, session: Session, steps: Steps, several: bool = False) -> None:
+    def __init__(self, session: DeviceSession, steps: Steps, several: bool = False) -> None:
         self._session, self._steps = session, steps
         self.status: int | None = None
         """Exit status; None while they run."""
@@ -219,34 +219,34 @@ class Running:
 # Commands
 
 
-def _setfont(shell: Shell, use: Use) -> Result:
+def _setfont(shell: Shell, use: CommandUse) -> CommandResult:
     names = [word for word in use.words if not word.startswith("-")]
     errors = shell.terminal.set_font(os.path.basename(names[-1]) if names else PLAIN_FONT)
-    return Result(FAILED if errors else 0, errors=errors)
+    return CommandResult(FAILED if errors else 0, errors=errors)
 
 
-def _clear(shell: Shell, _use: Use) -> Result:
+def _clear(shell: Shell, _use: CommandUse) -> CommandResult:
     shell.terminal.clear()
-    return Result()
+    return CommandResult()
 
 
-def _stty(shell: Shell, use: Use) -> Result:
+def _stty(shell: Shell, use: CommandUse) -> CommandResult:
     if list(use.words) == ["size"]:
-        return Result(output=Flow(shell.terminal.size.encode()))
+        return CommandResult(output=Flow(shell.terminal.size.encode()))
     # Settings such as echo have no effect: the brick's buttons write nothing on this screen.
-    return Result()
+    return CommandResult()
 
 
-def _amixer(shell: Shell, use: Use) -> Result:
+def _amixer(shell: Shell, use: CommandUse) -> CommandResult:
     words = [word for word in use.words if word != "-q"]
     try:
         output = shell.mixer.do(words)
     except ValueError as error:
-        return Result(FAILED, errors=f"amixer: {error}")
-    return Result(output=Flow(output.encode() if len(words) == len(use.words) else b""))
+        return CommandResult(FAILED, errors=f"amixer: {error}")
+    return CommandResult(output=Flow(output.encode() if len(words) == len(use.words) else b""))
 
 
-def _echo(_shell: Shell, use: Use) -> Result:
+def _echo(_shell: Shell, use: CommandUse) -> CommandResult:
     """The shell's built-in interprets escapes and knows -n; the program of that name interprets them with -e."""
     words, end, escapes = list(use.words), "\n", use.in_shell
     options = "n" if use.in_shell else "neE"
@@ -260,10 +260,10 @@ def _echo(_shell: Shell, use: Use) -> Result:
     if escapes:
         text, cut, _ = _unescaped(text).partition("\0c")
         end = "" if cut else end
-    return Result(output=Flow((text + end).encode("utf-8", "surrogateescape")))
+    return CommandResult(output=Flow((text + end).encode("utf-8", "surrogateescape")))
 
 
-def _cat(_shell: Shell, use: Use) -> Result:
+def _cat(_shell: Shell, use: CommandUse) -> CommandResult:
     data, errors = b"", []
     for word in _sorted_out("cat", use.words)[1] or ["-"]:
         if word == "-":
@@ -274,7 +274,7 @@ def _cat(_shell: Shell, use: Use) -> Result:
                 data += file.read()
         except OSError as error:
             errors.append(f"cat: {word}: {error.strerror}")
-    return Result(FAILED if errors else 0, Flow(data), "\n".join(errors))
+    return CommandResult(FAILED if errors else 0, Flow(data), "\n".join(errors))
 
 
 _ESCAPES = {"n": "\n", "t": "\t", "\\": "\\", "a": "\a", "b": "\b", "e": "\x1b", "r": "\r", "c": "\0c", "v": "\v"}
@@ -284,39 +284,41 @@ def _unescaped(text: str) -> str:
     return re.sub(r"\\([ntabcerv\\])", lambda found: _ESCAPES[found[1]], text)
 
 
-def _beep(_shell: Shell, use: Use) -> Result:
+def _beep(_shell: Shell, use: CommandUse) -> CommandResult:
     heard = beep_heard(use.words)
-    return Result(FAILED if heard.refused else 0, heard=(heard,))
+    return CommandResult(FAILED if heard.refused else 0, heard=(heard,))
 
 
-def _espeak(_shell: Shell, use: Use) -> Result:
+def _espeak(_shell: Shell, use: CommandUse) -> CommandResult:
     options, words = _sorted_out("espeak", use.words)
     if "-w" in options:
-        return Result(FAILED, errors="espeak: -w is not simulated: it says what it is given, or sends it to aplay")
+        return CommandResult(
+            FAILED, errors="espeak: -w is not simulated: it says what it is given, or sends it to aplay"
+        )
     if "-f" in options:
         try:
             with open(os.path.join(use.folder, options["-f"]), "rb") as file:
                 text = file.read().decode("utf-8", "replace")
         except OSError as error:
-            return Result(FAILED, errors=f"espeak: cannot read {options['-f']}: {error.strerror}")
+            return CommandResult(FAILED, errors=f"espeak: cannot read {options['-f']}: {error.strerror}")
     else:
         text = words[0] if words else use.given.data.decode("utf-8", "replace")
     if not words and not text.strip():
-        return Result(FAILED, errors="espeak: there is no text to say")
+        return CommandResult(FAILED, errors="espeak: there is no text to say")
     heard = speech_heard(" ".join(text.split("\n")).strip(), options.get("-s", ""))
     if "--stdout" in options:
-        return Result(output=Flow(sound=heard))
-    return Result(heard=() if "-q" in options else (heard,))
+        return CommandResult(output=Flow(sound=heard))
+    return CommandResult(heard=() if "-q" in options else (heard,))
 
 
-def _aplay(_shell: Shell, use: Use) -> Result:
+def _aplay(_shell: Shell, use: CommandUse) -> CommandResult:
     files = [word for word in _sorted_out("aplay", use.words)[1] if word != "-"]
     if files:
         heard = tuple(file_heard(file, use.folder) for file in files)
-        return Result(FAILED if any(one.refused for one in heard) else 0, heard=heard)
+        return CommandResult(FAILED if any(one.refused for one in heard) else 0, heard=heard)
     if use.given.sound is None:
-        return Result(FAILED, errors="aplay: takes a WAV file, or what `espeak --stdout` sends through a pipe")
-    return Result(heard=(use.given.sound,))
+        return CommandResult(FAILED, errors="aplay: takes a WAV file, or what `espeak --stdout` sends through a pipe")
+    return CommandResult(heard=(use.given.sound,))
 
 
 _OPTIONS = {
@@ -347,7 +349,7 @@ def _reads(words: Sequence[str]) -> bool:
     return "-f" not in options if name == "espeak" and not rest else not set(rest) - {"-"}
 
 
-COMMANDS: Mapping[str, Callable[[Shell, Use], Result]] = {
+COMMANDS: Mapping[str, Callable[[Shell, CommandUse], CommandResult]] = {
     "setfont": _setfont, "clear": _clear, "beep": _beep, "echo": _echo, "espeak": _espeak, "aplay": _aplay,
     "amixer": _amixer, "stty": _stty, "cat": _cat,
 }  # fmt: skip

@@ -13,7 +13,7 @@ from typing import IO, Any, NoReturn
 
 from tuisim.core.profile import MS
 from tuisim.errors import NotSimulated
-from tuisim.shim.session import Session
+from tuisim.shim.session import DeviceSession
 from tuisim.shim.shell.commands import Flow, Running, Shell, Sink, Steps, Streams, own_errors, own_output
 from tuisim.shim.sound import NO_PID
 
@@ -196,7 +196,7 @@ class Process:
 class System:
     """State shared by all processes of a run."""
 
-    def __init__(self, session: Session, shell: Shell) -> None:
+    def __init__(self, session: DeviceSession, shell: Shell) -> None:
         self.session, self.shell = session, shell
         self.module: Any = None
         """The module `subprocess`, once it is imported."""

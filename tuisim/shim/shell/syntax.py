@@ -44,7 +44,7 @@ class NotUnderstood(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class ShellLine:
     """A line of the shell."""
 
     calls: tuple[tuple[str, ...], ...]
@@ -53,7 +53,7 @@ class Line:
     """The device file that standard output is written to; empty for none."""
 
 
-def read_line(text: str) -> Line:
+def read_line(text: str) -> ShellLine:
     """Return what a command line says.
 
     Raises:
@@ -77,7 +77,7 @@ def read_line(text: str) -> Line:
         raise NotUnderstood("syntax error: a command is missing", NOT_SHELL)
     if len(calls) > 1 and os.path.basename(calls[1][0]) != PLAYER:
         raise _complaint(f"| {calls[1][0]}")
-    return Line(tuple(map(tuple, filter(None, calls))), file)
+    return ShellLine(tuple(map(tuple, filter(None, calls))), file)
 
 
 def _complaint(rest: str) -> NotUnderstood:
