@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import signal
@@ -278,6 +279,25 @@ def test_a_signal_ends_a_marking_in_good_order(
     finally:
         signal.signal(number, before)
     assert "--resume goes on" in capsys.readouterr().err
+
+
+def test_a_program_that_this_machine_cannot_read_is_missing_in_the_marks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_class(tmp_path / "class", _few("ada.py"))
+    (tmp_path / "class" / "eve.py").write_text("print(1)")
+    opened = Path.open
+
+    def fails(path: Path, *how: Any) -> Any:
+        if path.name == "eve.py":
+            raise OSError(errno.EIO, os.strerror(errno.EIO))
+        return opened(path, *how)
+
+    monkeypatch.setattr(Path, "open", fails)
+    assert run_command(["mark", str(GOALS), str(tmp_path / "class"), "--seeds", "0", "--keep", "none"]) == 1
+    said = capsys.readouterr()
+    assert "ada      10      100%" in said.out
+    assert "the marks are without eve: eve.py: cannot be read: Input/output error" in said.err
 
 
 def test_a_run_that_could_not_be_started_is_missing_in_the_marks_until_it_is_resumed(

@@ -128,7 +128,7 @@ def mark(**given: Any) -> int:
         # First, so that marks are seen also if a file cannot be written.
         _print(sheet, found.ignored)
         _write(sheet, task.goals, students, found.ignored, arguments)
-    return _tell_missing(outcomes)
+    return max(_tell_unread(students), _tell_missing(outcomes))
 
 
 def _isolates(arguments: Arguments) -> bool:
@@ -170,6 +170,14 @@ def _tell_so_far(
 
 def _gave_up(outcomes: Sequence[Outcome]) -> bool:
     return bool(outcomes) and outcomes[0].gave_up
+
+
+def _tell_unread(students: Sequence[Student]) -> int:
+    """Tell whose programs this machine could not read; return the exit code."""
+    unread = [student for student in students if student.is_unread]
+    for student in unread:
+        echo_error(f"tuisim: the marks are without {printable(student.name)}: {student.problem}")
+    return 1 if unread else 0
 
 
 def _tell_missing(outcomes: Mapping[str, Sequence[Outcome]]) -> int:

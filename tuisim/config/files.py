@@ -164,7 +164,7 @@ def read_bytes(
     except (FileNotFoundError, NotADirectoryError):
         raise error(missing, neighbours(path), file=file) from None
     except (OSError, ValueError) as reason:
-        raise error(f"cannot be read: {getattr(reason, 'strerror', None) or reason}", file=file) from None
+        raise error(f"cannot be read: {getattr(reason, 'strerror', None) or reason}", file=file) from reason
 
 
 def _text(path: Path, error: type[ConfigError]) -> str:

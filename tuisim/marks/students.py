@@ -35,6 +35,8 @@ class Student:
     """The main program; None if there is none that could be run."""
     problem: str = ""
     """Why there is none, one sentence."""
+    is_unread: bool = False
+    """Whether this machine could not read what the student has handed in, which is not the student's fault."""
 
     @property
     def text(self) -> str:
@@ -130,7 +132,8 @@ def _student(path: Path, program: str) -> Student:
             return Student(name, path, problem=refused)
         main = _main_of(path, program)
     except (ConfigError, OSError) as error:
-        return Student(name, path, problem=str(error).replace(f"{path}{os.sep}", ""))
+        problem = str(error).replace(f"{path}{os.sep}", "")
+        return Student(name, path, problem=problem, is_unread=isinstance(error, OSError))
     return _read(Student(name, path, main), path / main)
 
 
@@ -187,7 +190,8 @@ def _read(student: Student, path: Path) -> Student:
         source = read_program(path, as_python=True)
         return replace(student, source=replace(source, program=replace(source.program, name=_shown(path.name))))
     except ConfigError as error:
-        return replace(student, problem=printable(str(error).replace(str(path), path.name)))
+        problem = printable(str(error).replace(str(path), path.name))
+        return replace(student, problem=problem, is_unread=isinstance(error.__cause__, OSError))
 
 
 def _main_of(folder: Path, program: str) -> str:
