@@ -376,6 +376,16 @@ READINGS = {
         reason="Line 3 printed 'Edge: 46 %': a sample is the name, a colon, and the number, and nothing else",
     ),
     "log once": Case("log = { name = 'n', levels = [2], once = true }", (*COUNTED, wait(1)), "met"),
+    "log often": Case(
+        "log = { name = 'a', levels = [1, 2], apart_mm = 120 }", (says("a: 1"), ahead(100), says("a: 2")), "met"
+    ),
+    "log too rarely": Case(
+        "log = { name = 'a', levels = [1, 2], apart_mm = 80 }",
+        (says("a: 1"), ahead(100), says("a: 2", 3)),
+        "missed",
+        reason="the robot went 100 mm without a sample a; at most 80 mm are asked for.",
+        line=3,
+    ),
     "log more than once": Case(
         "log = { name = 'a', levels = [100], once = true }",
         PRINTED,
@@ -455,6 +465,13 @@ READINGS = {
     ),
     "when no number": Case("when = 'x_mm < far'", (wait(1),), "missed", reason="x_mm < far: 'far' is not a number"),
     "read": Case("read = { reading = 'color', times = 2 }", (wait(0.05, 2),), "met", 0.02, line=2, text=LOOKS),
+    "read in a line that also pauses": Case(
+        "read = { reading = 'color', times = 2 }",
+        (wait(0.05, 2),),
+        "missed",
+        reason="The program read the colour sensor 1 time; 2 are needed.",
+        text="import time\nx = colorLeft.reflected_light_intensity_pc; time.sleep(1)\n",
+    ),
     "read too rarely": Case(
         "read = { reading = 'color', times = 9 }",
         (wait(0.05, 2),),

@@ -288,10 +288,10 @@ def test_a_program_that_this_machine_cannot_read_is_missing_in_the_marks(
     (tmp_path / "class" / "eve.py").write_text("print(1)")
     opened = Path.open
 
-    def fails(path: Path, *how: Any) -> Any:
+    def fails(path: Path, *how: Any, **more: Any) -> Any:
         if path.name == "eve.py":
             raise OSError(errno.EIO, os.strerror(errno.EIO))
-        return opened(path, *how)
+        return opened(path, *how, **more)
 
     monkeypatch.setattr(Path, "open", fails)
     assert run_command(["mark", str(GOALS), str(tmp_path / "class"), "--seeds", "0", "--keep", "none"]) == 1

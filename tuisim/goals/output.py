@@ -200,6 +200,8 @@ def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan)
         at = place + 1
         last = max(last, place)
     number, sample = samples[last]
+    if condition.apart_mm and (gap := _gap(condition, [one for _, one in samples], evidence)):
+        return gap
     if condition.once and len(samples) > len(condition.levels):
         wanted = f"{len(condition.levels)} {'is' if len(condition.levels) == 1 else 'are'}"
         reason = f"{len(samples):,} samples {condition.name} were printed, {wanted} asked for."
@@ -212,6 +214,17 @@ def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan)
 def _printed_at(moment: EvidencePoint, line: int, once: bool, evidence: Evidence) -> Occurrence:
     """Return that what was asked for was printed; that it came only once, the end of the run decides."""
     return Occurrence(evidence.last, line=line, happened=moment) if once else Occurrence(moment, line=line)
+
+
+def _gap(condition: LogCondition, samples: list[Sample], evidence: Evidence) -> Occurrence | None:
+    """Return where samples are too far apart; None if they are nowhere."""
+    for before, after in pairwise(samples):
+        way_mm = math.dist(evidence.place_mm(before.tick), evidence.place_mm(after.tick))
+        if way_mm > condition.apart_mm:
+            when = f"Between {before.time_ns / NS_PER_S:.2f} s and {after.time_ns / NS_PER_S:.2f} s"
+            reason = f"{when} the robot went {way_mm:.0f} mm without a sample {condition.name}"
+            return Occurrence(None, f"{reason}; at most {condition.apart_mm:g} mm are asked for.", after.line)
+    return None
 
 
 def _not_measured(condition: LogCondition, count: int, sample: Sample, evidence: Evidence) -> str:

@@ -75,6 +75,11 @@ class Provenance:
         nodes = (node for node in ast.walk(self._tree) if isinstance(node, ast.Attribute) and node.attr in self._wanted)
         return frozenset(line for node in nodes for line in range(node.lineno, (node.end_lineno or node.lineno) + 1))
 
+    def pausing_lines(self) -> frozenset[int]:
+        """Return those of `lines` that also pause or drive: the time that passes in them is not that of readings."""
+        pauses = [node.lineno for node in ast.walk(self._tree) if isinstance(node, ast.Call) and _pauses(node)]
+        return self.lines() & frozenset(pauses)
+
     def gives(self, line: int) -> bool:
         """Return whether what a line prints is computed from a reading; also if the line is not known."""
         return all(value for value, _ in self._printed_at(line))
@@ -213,6 +218,11 @@ def _names(node: ast.AST) -> set[str]:
 
 def _calls(node: ast.AST) -> list[ast.Call]:
     return [part for part in ast.walk(node) if isinstance(part, ast.Call)]
+
+
+def _pauses(call: ast.Call) -> bool:
+    """Return whether a call lets time pass besides readings, by its name."""
+    return _called(call).startswith(("sleep", "wait", "on_for", "run_to", "run_timed", "play", "speak", "beep"))
 
 
 def _called(call: ast.Call) -> str:

@@ -13,7 +13,7 @@ from tuisim.errors import counted, nearest
 from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.goals.found import Occurrence, share_words
 from tuisim.goals.places import line_of_motion
-from tuisim.goals.provenance import provenance_of
+from tuisim.goals.provenance import Provenance, provenance_of
 from tuisim.goals.spec import FollowCondition, Range, ReadCondition, Reading, WhenCondition
 from tuisim.runs.frames import quiet_color_columns
 
@@ -46,9 +46,18 @@ def read_ticks(reading: Reading, evidence: Evidence) -> Array:
     name = f"{reading} is read"
     if name not in evidence.memo:
         known = provenance_of(evidence.program.text, reading)
-        lines = sorted(known.lines()) if known else []
-        evidence.memo[name] = np.flatnonzero(np.isin(evidence.records["line"], lines))
+        evidence.memo[name] = np.flatnonzero(_reads(known, evidence) if known else [])
     found: Array = evidence.memo[name]
+    return found
+
+
+def _reads(known: Provenance, evidence: Evidence) -> Array:
+    """Return whether a reading was taken in each tick; where a line also pauses, in the first of its ticks."""
+    import numpy as np
+
+    lines = evidence.records["line"]
+    came = np.concatenate(([True], lines[1:] != lines[:-1]))
+    found: Array = np.isin(lines, sorted(known.lines())) & (came | ~np.isin(lines, sorted(known.pausing_lines())))
     return found
 
 

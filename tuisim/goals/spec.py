@@ -285,6 +285,8 @@ class LogCondition:
     """The name of other samples: the value must be how many of them were printed before; empty: any value."""
     once: bool = False
     """Whether the run must end without a further sample of the variable."""
+    apart_mm: Annotated[float, Meta(ge=0, le=1e6)] = 0.0
+    """How far the robot may go at most between two samples of the variable; 0: as far as it likes."""
 
     def __post_init__(self) -> None:
         if self.as_read and self.reading is not Reading.COLOR:
