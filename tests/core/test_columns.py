@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import os
+import shutil
+import site
+import subprocess
 from pathlib import Path
+from venv import EnvBuilder
 
 import pytest
 
+from tests.conftest import ROOT
 from tests.goals.recorded import goals_of
+from tests.running import PATIENCE_S
 from tuisim.app.timeline import Timeline, find
 from tuisim.cli import run_command
 from tuisim.config.build import build_run_spec
@@ -72,6 +79,54 @@ def test_the_name_of_a_trace_is_a_breakpoint_a_watch_and_an_event(
     assert values[-1] == value_of(run, name)
     assert run_command(["log", "events", "1", "--when", f"{name} > -1", "--json"]) == 0
     assert capsys.readouterr().out == "[]\n"
+
+
+NEW = """\
+    Column("right_speed_dps"),
+    Column("speed_mm_s", lambda moved, robot: (moved[5] + moved[6]) * robot.wheel_diameter_mm * 3.14159 / 720, True),
+"""
+
+
+@pytest.mark.slow
+def test_a_new_value_is_added_by_one_line(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "tuisim", tmp_path / "tuisim", ignore=shutil.ignore_patterns("__pycache__"))
+    table = tmp_path / "tuisim" / "core" / "columns.py"
+    before = table.read_text()
+    assert before.count(NEW.splitlines()[0]) == 1
+    table.write_text(before.replace(f"{NEW.splitlines()[0]}\n", NEW))
+    (tmp_path / "a.py").write_text("tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 1)\n")
+    (tmp_path / "g.toml").write_text('[[goal]]\nname = "fast"\nwhen = "speed_mm_s > 100"\n')
+
+    # An environment of its own: the processes of programs know no PYTHONPATH.
+    python = tmp_path / "venv" / "bin" / "python"
+    EnvBuilder(symlinks=True).create(tmp_path / "venv")
+    (folder,) = (tmp_path / "venv").glob("lib/python*/site-packages")
+    (folder / "copy.pth").write_text("\n".join((str(tmp_path), *map(str, site.getsitepackages()))))
+
+    def said(*words: str) -> str:
+        environment = {**os.environ, "TUISIM_HOME": str(tmp_path / "home"), "TUISIM_ASSETS": str(ROOT)}
+        done = subprocess.run(
+            [python, "-m", "tuisim", *words],
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE_S,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        return done.stdout + done.stderr
+
+    run = said("run", "a.py", "--break", "speed_mm_s > 100", "--break-then", "go", "--watch", "speed_mm_s")
+    assert "break speed_mm_s > 100" in run
+    assert "speed_mm_s → 1" in run
+    assert "rises" in said("log", "events", "last", "--when", "speed_mm_s > 100")
+    said("log", "export", "last", "--variable", "speed_mm_s", "--out", "speed.csv")
+    assert (tmp_path / "speed.csv").read_text().startswith("time,line,speed_mm_s\n")
+    said("log", "export", "last", "--telemetry", "--out", "all.csv")
+    assert "speed_mm_s" not in (tmp_path / "all.csv").read_text()
+    assert "1 of 1 goal" in said("goals", "check", "g.toml", "last")
+    assert "speed_mm_s" in said("guide", "breakpoints")
 
 
 @pytest.mark.parametrize(

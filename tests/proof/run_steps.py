@@ -174,8 +174,8 @@ def _break(model: RunModel, random: Random) -> None:
     if run := model.one_live(random):
         run.send(SetBreaks(tuple(random.sample(BREAKS, random.randint(0, 3)))))
         with suppress(TuisimError):
-            run.send(SetBreaks(("left.nothing < 3",)))
-            raise FaultError("a breakpoint on a sensor that is not there was taken")
+            run.send(SetBreaks(("left_red_pc <",)))
+            raise FaultError("a breakpoint without a number was taken")
 
 
 def _shown(model: RunModel, run: RunHandle) -> tuple[object, ...]:

@@ -37,18 +37,18 @@ _MEANINGS = {
     "line": "the source line that printed the sample, or that spent the time of the tick",
 }
 _COLOR = {
+    **dict.fromkeys(("red", "green", "blue"), "{part} light that the {sensor} colour sensor sees, 0 to 255"),
     "red_pc": "red light that the {sensor} colour sensor sees: `reflected_light_intensity_pc`",
     "mean_pc": "mean of red, green and blue that the {sensor} colour sensor sees",
     "color": "colour that the {sensor} colour sensor sees, in breakpoints by its name, such as Blue",
 }
-_CHANNEL = "{part} light that the {sensor} colour sensor sees, 0 to 255"
 
 
 def _meaning(name: str) -> str:
     if name in _MEANINGS:
         return _MEANINGS[name]
     sensor, _, part = name.partition("_")
-    return _COLOR.get(part, _CHANNEL).format(sensor=sensor, part=part)
+    return _COLOR.get(part, name.replace("_", " ")).format(sensor=sensor, part=part)
 
 
 def _columns(names: tuple[str, ...]) -> Table:

@@ -20,6 +20,7 @@ class Unit(NamedTuple):
 
 _LEVEL = Unit("", "mean of 0 to 255")
 UNITS = {
+    "_mm_s": Unit("mm/s", "mm per second"),
     "_rate_dps": Unit("°/s", "degrees per second, clockwise"),
     "_dps": Unit("°/s", "degrees per second"),
     "_mm": Unit("mm", "mm"),
