@@ -25,6 +25,8 @@ CHILD_MAY_NOT_LOAD = (*HELP_MAY_NOT_LOAD, "argparse", "click")
 PRINTS = {"echo.py": "the one place", "relay.py": "passes on what a program prints"}
 """Files of the commands that may write to the terminal by themselves."""
 TEXTUAL_CALLS = re.compile(r"compose|content|render|(on|action)_\w+")
+VALUE_METHODS = re.compile(r"allowed|metavar|choices|check|from_data|from_text|to_text|key_of")
+"""What `Value` and `Spec` explain for all of their subclasses."""
 UNFINISHED = "|".join(("TO" + "DO", "FIX" + "ME", "XX" + "X", "NotImplemented" + "Error"))
 PLACES = "|".join(f"/{place}/" for place in ("work", "farm", "root", "home"))
 LEFT_OPEN = re.compile(rf"\b({UNFINISHED})\b|(?<![\w.$])({PLACES})")
@@ -138,12 +140,12 @@ def public(body: list[ast.stmt], prefix: str = "") -> Iterator[tuple[str, Functi
 
 def explained_elsewhere(node: ast.stmt) -> bool:
     """Whether this is a member of a Protocol that repeats another class, the setter of a property, or a method that
-    Textual or a dialog calls by its name, which says when."""
+    Textual, a dialog, `Value` or `Spec` calls by its name, which says when."""
     match node:
         case (
             ast.FunctionDef(name=name, args=ast.arguments(args=[ast.arg(arg="self"), *_]))
             | ast.AsyncFunctionDef(name=name, args=ast.arguments(args=[ast.arg(arg="self"), *_]))
-        ) if TEXTUAL_CALLS.fullmatch(name):
+        ) if TEXTUAL_CALLS.fullmatch(name) or VALUE_METHODS.fullmatch(name):
             return True
         case ast.FunctionDef(body=[ast.Expr(value=ast.Constant(value=value))]) if value is Ellipsis:
             return True

@@ -18,7 +18,8 @@ from tuisim.config.robots import load_robot, save_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.sensors import SENSORS, SensorKind, with_kinds
-from tuisim.core.spec import MOUNTS, Mount, RobotSpec, RunSpec, SensorSpec, WorldSpec, from_plain, to_plain
+from tuisim.core.spec import MOUNTS, Mount, RobotSpec, RunSpec, SensorSpec, WorldSpec
+from tuisim.core.tree import from_plain, to_plain
 from tuisim.protocol import Resume
 from tuisim.runs.frames import MOTION_COLUMNS, telemetry_frame
 from tuisim.runs.handle import RunOptions, start_run
@@ -152,7 +153,7 @@ def test_the_panels_show_it(kind: SensorKind) -> None:
     instant, field = instant_of(last, run.spec, run.spec.world.noise), open_mat(run)
     (sensor,) = run.spec.robot.sensors
     now = snapshot_of(instant, run.spec, field, state=RunPhase.ENDED, end=None, line=0, speed=1.0, pen_down=False)
-    if mount_of(kind).usual:
+    if mount_of(kind).standard:
         shown: dict[str, object] = {"color": now.colors, "ultrasonic": now.ultrasonic_mm, "gyro": now.spec.robot.gyro}
         assert shown[next(name for name, one in SENSORS.items() if one is kind)]
     else:

@@ -88,7 +88,7 @@ def _by_name() -> dict[str, Option]:
 
 
 def choices_of(choices: Mapping[str, Any]) -> dict[str, Any]:
-    """Convert keyword arguments to fields of `Settings`.
+    """Convert keyword arguments to settings by path.
 
     Args:
         choices: Values by the long name of an option, such as `background` or `x`; None is ignored.
@@ -103,7 +103,7 @@ def choices_of(choices: Mapping[str, Any]) -> dict[str, Any]:
         option = known[name]
         if value is None:
             continue
-        found[option.field] = option.converted(value, name)
+        found[option.path] = option.from_python(value, name)
     return found
 
 
@@ -153,8 +153,8 @@ def simulate(
     given = choices_of(choices)
     found = program_settings(source, _in_world(world, given), given, in_world=world is not None)
     settings = found.settings
-    prelude = settings.preload or source.program.prelude
-    started = replace(source.program, prelude=prelude, arguments=tuple(arguments) or settings.arguments)
+    prelude = settings["preload"] or source.program.prelude
+    started = replace(source.program, prelude=prelude, arguments=tuple(arguments) or settings["arguments"])
     store = RunStore()
     options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers))
     handle = start_run(started, build_run_spec(settings), options, store)
@@ -225,8 +225,8 @@ def experiment(
         of_task = bool(task and world is None and task.settings)
         found = program_settings(source, in_world, given, in_world=of_task or world is not None, of_task=of_task)
         settings = found.settings
-        prelude = settings.preload or source.program.prelude
-        started = replace(source.program, prelude=prelude, arguments=tuple(arguments) or settings.arguments)
+        prelude = settings["preload"] or source.program.prelude
+        started = replace(source.program, prelude=prelude, arguments=tuple(arguments) or settings["arguments"])
         subjects.append(Subject(started, settings, frozenset(given)))
     if not subjects:
         raise ConfigError("no program is named", key="program")

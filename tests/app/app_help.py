@@ -34,7 +34,7 @@ def program(text: str) -> Program:
 
 
 def settings(text: str | None = None, background: str = "Grey_bands", **more: Any) -> AppSettings:
-    spec = build_run_spec(Settings(background=background))
+    spec = build_run_spec(Settings({"background": background}))
     return AppSettings(spec=spec, program=program(text) if text else None, **more)
 
 

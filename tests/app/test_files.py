@@ -44,7 +44,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def with_file(path: Path, **changes: Any) -> AppSettings:
     """What the command makes of `tuisim PROGRAM`."""
-    chosen = Settings(background="Grey_bands", **changes)
+    chosen = Settings({"background": "Grey_bands", **changes})
     given = Program(path.name, path.read_text(), "preloaded", str(path))
     return AppSettings(spec=build_run_spec(chosen), settings=chosen, program=given)
 

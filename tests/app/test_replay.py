@@ -33,7 +33,7 @@ pytestmark = pytest.mark.usefixtures("home")
 
 def stored(text: str = LOGS, **choices: Any) -> str:
     """Carry a program out and return the run's id."""
-    spec = build_run_spec(replace(Settings(background="Grey_bands", seed=5), **choices))
+    spec = build_run_spec(replace(Settings({"background": "Grey_bands", "seed": 5}), **choices))
     options = RunOptions(actions=(UserAction(100, SetNoise(20, 0)), UserAction(200, SetNoise(0, 0))))
     run = start_run(program(text), spec, options)
     assert run.wait(PATIENCE_S)
@@ -194,6 +194,6 @@ def test_the_namespace_of_the_command_has_the_run() -> None:
 
     run_id = stored("print('A: 1')\n")
     run, prepared = prepare_replay(run_id, [], Arguments(world=None, settings={"rays": True}), NO_CONFIG)
-    assert (run.id, prepared.settings.rays) == (run_id, True)
+    assert (run.id, prepared.settings["rays"]) == (run_id, True)
     assert prepared.program is not None
     assert prepared.program.text == "print('A: 1')\n"

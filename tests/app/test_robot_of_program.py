@@ -12,7 +12,7 @@ from tuisim.app.app import AppSettings, LabApp
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.program_file import read_program
-from tuisim.config.program_settings import PROGRAM_FIELDS, Decided, program_settings
+from tuisim.config.program_settings import PROGRAM_PATHS, Decided, program_settings
 
 CLAW = "from ev3dev2.motor import MediumMotor\nclaw = MediumMotor('outA')\nclaw.on_for_degrees(20, 90)\n"
 
@@ -69,7 +69,7 @@ async def test_it_follows_the_text_of_the_program(claw: Path) -> None:
 
 
 async def test_opening_a_program_gives_it_its_robot(claw: Path) -> None:
-    settings, decided = Settings(), Decided(free=frozenset(PROGRAM_FIELDS))
+    settings, decided = Settings(), Decided(free=frozenset(PROGRAM_PATHS))
     start = AppSettings(spec=build_run_spec(settings), settings=settings, decided=decided)
     async with LabApp(start).run_test(size=(120, 40)) as pilot:
         await ready(pilot)

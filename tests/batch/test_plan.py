@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +18,8 @@ from tuisim.source import Program
 HERE = Path("--set")
 
 
-def subject(name: str = "a.py", given: tuple[str, ...] = (), **settings: Any) -> Subject:
-    return Subject(Program(name, "pass"), Settings(**settings), frozenset(given))
+def subject(name: str = "a.py", given: tuple[str, ...] = (), settings: Mapping[str, Any] | None = None) -> Subject:
+    return Subject(Program(name, "pass"), Settings(settings or {}), frozenset(given))
 
 
 def plan(choices: dict[str, Any], *subjects: Subject, **how: Any) -> Plan:
@@ -36,7 +37,7 @@ def test_every_combination_is_a_task_and_the_seed_varies_fastest() -> None:
 
 
 def test_without_parameters_there_is_one_task_with_the_chosen_seed() -> None:
-    (task,) = plan({}, subject(seed=4)).tasks()
+    (task,) = plan({}, subject(settings={"seed": 4})).tasks()
     assert (task.spec.seed, dict(task.parameters)) == (4, {})
 
 
@@ -70,7 +71,9 @@ def test_samples_are_whole_where_the_key_takes_whole_numbers(name: str, whole: b
 def test_a_mat_brings_its_start_pose_unless_one_is_chosen() -> None:
     mats = {"background": ("Lollipop", "Loop")}
     own = [task.spec.world.start for task in plan(mats).tasks()]
-    chosen = [task.spec.world.start for task in plan(mats, subject(given=("x_mm",), x_mm=321.0)).tasks()]
+    chosen = [
+        task.spec.world.start for task in plan(mats, subject("a.py", ("start.x_mm",), {"start.x_mm": 321.0})).tasks()
+    ]
     assert own[0] != own[1]
     assert [(pose.x_mm, pose.y_mm) for pose in chosen] == [(321.0, pose.y_mm) for pose in own]
 
@@ -81,7 +84,7 @@ def test_a_mat_brings_its_start_pose_unless_one_is_chosen() -> None:
         pytest.param({"noise.motr": (1,)}, (), "--set: noise.motr: no such key .did you mean motor", id="misspelt"),
         pytest.param({"noise.motor": (0, 501)}, (), "noise.motor: must be a whole number from 0", id="too large"),
         pytest.param({"seed": (-1,)}, (), "seed: .*whole number from 0", id="seed"),
-        pytest.param({"noise.motor": (1,)}, ("motor_noise",), "noise.motor varies what an option sets", id="option"),
+        pytest.param({"noise.motor": (1,)}, ("noise.motor",), "noise.motor varies what an option sets", id="option"),
         pytest.param({"seed": (1,)}, ("seed",), "seed varies what an option sets", id="option for the seed"),
         pytest.param(
             {"noise.motor": SampleValues(RandomDraw.RANDOM, 600, 700, 2)}, (), "noise.motor: must be", id="sample"
@@ -99,7 +102,7 @@ def test_wrong_parameters_are_found_before_anything_is_run(choices: Any, given: 
         pytest.param(plan({"seed": (1, 2)}), True, id="equal"),
         pytest.param(plan({"seed": (1, 3)}), False, id="other seeds"),
         pytest.param(plan({"noise.motor": (0,), "seed": (1, 2)}), False, id="another parameter"),
-        pytest.param(plan({"seed": (1, 2)}, subject(light_noise=3)), False, id="other settings"),
+        pytest.param(plan({"seed": (1, 2)}, subject(settings={"noise.light": 3})), False, id="other settings"),
         pytest.param(plan({"seed": (1, 2)}, Subject(Program("a.py", "print()"), Settings())), False, id="other text"),
         pytest.param(plan({"seed": (1, 2)}, options_of=lambda _: RunOptions(time_limit_s=5)), False, id="other limit"),
     ],

@@ -58,7 +58,7 @@ time.sleep(600)
 
 
 def task(text: str, index: int = 0, prelude: str = "preloaded", **changes: object) -> Task:
-    spec = replace(build_run_spec(Settings(light_noise=20, motor_noise=50)), seed=index)
+    spec = replace(build_run_spec(Settings({"noise.light": 20, "noise.motor": 50})), seed=index)
     program = Program("p.py", text, prelude=prelude, working_directory=os.getcwd())
     return replace(Task(index, program, spec), **changes)  # type: ignore[arg-type]
 

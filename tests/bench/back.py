@@ -27,7 +27,9 @@ QUIET_S = 1.0
 def back(effort: Effort) -> Iterator[Figure]:
     """Yield the time that it takes to see an instant of a ten-minute run."""
     for words, noise in (("without noise", 0), ("with noise", 20)):
-        spec = build_run_spec(Settings(background="Grey_bands", light_noise=noise, motor_noise=noise, pen_down=True))
+        spec = build_run_spec(
+            Settings({"background": "Grey_bands", "noise.light": noise, "noise.motor": noise, "pen.down": True})
+        )
         run = start_run(Program("bench.py", LOG, "preloaded"), spec, RunOptions(time_limit_s=RUN_S))
         run.wait()
         with Terminal(["open", "--run", run.run_id, *PANELS]) as terminal:

@@ -206,7 +206,7 @@ def cells(effort: Effort) -> Iterator[Figure]:
     last: Pixels | None = None
     for name in mats():
         try:
-            last = np.asarray(prepare_mat(build_run_spec(Settings(background=name))).pixels)
+            last = np.asarray(prepare_mat(build_run_spec(Settings({"background": name}))).pixels)
         except BackgroundError:
             # Its image is not part of this project.
             continue

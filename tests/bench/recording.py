@@ -68,7 +68,7 @@ def recording(effort: Effort) -> Iterator[Figure]:
 
 def _cost(effort: Effort) -> Iterator[Figure]:
     for name, load in LOADS.items():
-        spec = build_run_spec(Settings(background=load.mat))
+        spec = build_run_spec(Settings({"background": load.mat}))
         run_s = load.simulated_s * effort.simulated
         kept, dropped = (partial(_simulating_cpu_s, load.text, spec, run_s, module) for module in (RECORDED, DROPPED))
         samples = in_turns(kept, dropped, effort)
@@ -104,7 +104,9 @@ def _child_cpu_s(text: str, spec: RunSpec, run_s: float, module: str) -> float:
 def _packing(effort: Effort) -> Iterator[Figure]:
     for name, (text, mat) in DRIVES.items():
         for (words, (light, motor)), most in zip(NOISES.items(), PACKED[name], strict=False):
-            run = _recorded(text, build_run_spec(Settings(background=mat, light_noise=light, motor_noise=motor)))
+            run = _recorded(
+                text, build_run_spec(Settings({"background": mat, "noise.light": light, "noise.motor": motor}))
+            )
             start = time.process_time()
             _, size = compact_run(run)
             used_s = time.process_time() - start

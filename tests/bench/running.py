@@ -55,7 +55,7 @@ def unpacked_store() -> RunStore:
 
 def spec_of(mat: str = "Grey_bands", profile: str = "robolab") -> RunSpec:
     """Return what a program is run with."""
-    return build_run_spec(Settings(background=mat, profile=profile))
+    return build_run_spec(Settings({"background": mat, "profile": profile}))
 
 
 def begin(

@@ -33,7 +33,7 @@ class Asking:
     """
 
     def __init__(self, noise: int) -> None:
-        spec = build_run_spec(Settings(background="Grey_bands", light_noise=noise, motor_noise=noise))
+        spec = build_run_spec(Settings({"background": "Grey_bands", "noise.light": noise, "noise.motor": noise}))
         run = start_run(Program("bench.py", LOG, "preloaded"), spec, RunOptions(time_limit_s=RUN_S))
         run.wait()
         self.recording = Recording(load_run(run.run_id))

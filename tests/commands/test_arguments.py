@@ -100,7 +100,7 @@ def test_wrong_arguments_in_a_world_file(folder: Path, here: Command, value: str
 
 def test_a_world_is_saved_with_the_arguments(folder: Path) -> None:
     save_world(build_run_spec(Settings()), folder / "new.toml", "log_greys", ("A", "B 'C"))
-    assert settings_of(load_world(folder / "new.toml").settings).arguments == ("A", "B 'C")
+    assert settings_of(load_world(folder / "new.toml").settings)["arguments"] == ("A", "B 'C")
 
 
 def test_arguments_are_shown_with_the_run(folder: Path, here: Command) -> None:
@@ -229,7 +229,7 @@ def test_on_the_brick_a_program_starts_in_its_own_folder(folder: Path, here: Com
 def shows(folder: Path, *arguments: str) -> AppSettings:
     """The app with the program that shows its arguments."""
     path = str(folder / "p.py")
-    settings = Settings(arguments=arguments, speed=0.0)
+    settings = Settings({"arguments": arguments, "speed": 0.0})
     return AppSettings(build_run_spec(settings), settings, program=Program("p.py", SHOWS, path=path), speed=0.0)
 
 
@@ -249,4 +249,4 @@ async def test_the_app_gives_arguments_that_can_be_edited(folder: Path) -> None:
         assert not app.loader.attempt(lambda plan: edit.write(plan, "'open"))
         (folder / "q.py").write_text(SHOWS)
         app.loader.open_file(str(folder / "q.py"))
-        assert app.run_controller.next_run.settings.arguments == ()
+        assert app.run_controller.next_run.settings["arguments"] == ()

@@ -58,8 +58,11 @@ class Stop(Exception):
 def plain(value: Any) -> Any:
     """A value as JSON has it; of a dataclass, the fields that are not at their defaults."""
     match value:
-        case Settings() | MagicWords():
-            defaults = type(value)() if isinstance(value, Settings) else MagicWords({})
+        case Settings():
+            bare = Settings()
+            return {path: plain(value[path]) for path in value.given if value[path] != bare[path]}
+        case MagicWords():
+            defaults = MagicWords({})
             items = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
             return {name: plain(one) for name, one in items.items() if one != getattr(defaults, name)}
         case str() | int() | float() | bool() | None:

@@ -12,7 +12,8 @@ from tuisim.config.robots import ROBOTS
 from tuisim.config.shared_options import parse_words
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, RobotSpec, from_plain, to_plain
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, RobotSpec
+from tuisim.core.tree import from_plain, to_plain
 from tuisim.errors import BackgroundError, ConfigError, ObstacleError, ProfileError, RobotError
 
 SHIPPED = {name: mat for name, mat in catalogue().items() if mat.shipped}
@@ -20,13 +21,13 @@ SHIPPED = {name: mat for name, mat in catalogue().items() if mat.shipped}
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_the_robot_starts_where_solid_walls_let_it_turn(name: str) -> None:
-    spec = build_run_spec(Settings(background=name, profile="ev3"))
+    spec = build_run_spec(Settings({"background": name, "profile": "ev3"}))
     reach, start, mat = outline_of(spec.robot).reach_mm, spec.world.start, SHIPPED[name].start
     assert reach <= start.x_mm <= FIELD_WIDTH_MM - reach
     assert reach <= start.y_mm <= FIELD_HEIGHT_MM - reach
     assert start.heading_deg == mat.heading_deg
-    assert build_run_spec(Settings(background=name)).world.start == mat
-    assert build_run_spec(Settings(background=name, profile="ev3", x_mm=90.0)).world.start.x_mm == 90.0
+    assert build_run_spec(Settings({"background": name})).world.start == mat
+    assert build_run_spec(Settings({"background": name, "profile": "ev3", "start.x_mm": 90.0})).world.start.x_mm == 90.0
 
 
 def test_default_robot_is_the_default_of_the_specification() -> None:
@@ -91,14 +92,16 @@ def test_start_pose_is_the_mats_unless_given(words: str, start: Pose) -> None:
 
 
 def test_sensors_are_moved_on_the_mat_that_wants_it_and_nowhere_else() -> None:
-    moved = build_run_spec(Settings(background="Radial_grey")).robot
+    moved = build_run_spec(Settings({"background": "Radial_grey"})).robot
     assert [sensor.x_mm for sensor in moved.color_sensors] == [-60, 60]
-    assert build_run_spec(Settings(background="Grey_bands")).robot.color_sensors == RobotSpec().color_sensors
+    assert build_run_spec(Settings({"background": "Grey_bands"})).robot.color_sensors == RobotSpec().color_sensors
 
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_every_mat_makes_a_run_that_survives_its_plain_form(name: str) -> None:
-    spec = build_run_spec(Settings(background=name, seed=7, light_noise=20, motor_noise=50, pen_down=True))
+    spec = build_run_spec(
+        Settings({"background": name, "seed": 7, "noise.light": 20, "noise.motor": 50, "pen.down": True})
+    )
     assert from_plain(to_plain(spec)) == spec
     assert (spec.world.background, spec.seed, spec.robot.pen.down) == (name, 7, True)
     assert (spec.world.noise.light, spec.world.noise.motor) == (20, 50)
@@ -107,11 +110,11 @@ def test_every_mat_makes_a_run_that_survives_its_plain_form(name: str) -> None:
 @pytest.mark.parametrize(
     ("settings", "error", "said"),
     [
-        (Settings(background="Grey_band"), BackgroundError, "Grey_bands"),
-        (Settings(background="qqqq"), BackgroundError, "Empty_Map"),
-        (Settings(robot="small_robot"), RobotError, "Small_Robot"),
-        (Settings(obstacles="Post"), ObstacleError, "Central_post"),
-        (Settings(profile="robolap"), ProfileError, "robolab"),
+        (Settings({"background": "Grey_band"}), BackgroundError, "Grey_bands"),
+        (Settings({"background": "qqqq"}), BackgroundError, "Empty_Map"),
+        (Settings({"robot": "small_robot"}), RobotError, "Small_Robot"),
+        (Settings({"obstacles": "Post"}), ObstacleError, "Central_post"),
+        (Settings({"profile": "robolap"}), ProfileError, "robolab"),
     ],
     ids=["near mat", "far mat", "robot", "obstacles", "profile"],
 )

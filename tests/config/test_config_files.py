@@ -17,9 +17,9 @@ from tests.config.makers import boxes, mm, presses, robots
 from tuisim.batch.batch_file import load_batch
 from tuisim.config.build import build_run_spec
 from tuisim.config.obstacles import OBSTACLES, load_obstacles, save_obstacles
-from tuisim.config.options import RobotChoice, Settings, settings_of
-from tuisim.config.profiles import SOURCES, load_profile
-from tuisim.config.robots import ROBOTS, choose_robot, load_robot, save_robot
+from tuisim.config.options import Settings, settings_of
+from tuisim.config.profiles import load_profile
+from tuisim.config.robots import ROBOTS, RobotChoice, choose_robot, load_robot, save_robot
 from tuisim.config.shared_options import parse_words
 from tuisim.config.worlds import load_world, save_world
 from tuisim.core.profile import PROFILES, MotorLaw, ProfileSpec
@@ -35,6 +35,7 @@ from tuisim.core.spec import (
     TouchSpec,
     UltrasonicSpec,
 )
+from tuisim.core.values import values_of
 from tuisim.errors import ConfigError, ObstacleError, RobotError
 from tuisim.goals.files import load_goals
 from tuisim.guide.catalogue import pages as guide_pages
@@ -80,10 +81,16 @@ own_profiles = st.builds(
     background=st.sampled_from(["Empty_Map", "Radial_grey"]),
     obstacles=st.sampled_from(list(OBSTACLES)) | st.lists(boxes, max_size=3).map(tuple),
     profile=st.sampled_from(list(PROFILES)) | own_profiles,
-    flags=st.fixed_dictionaries({key: st.booleans() for key in ("walls", "solid", "pen_marks", "pen_down")}),
-    start=st.fixed_dictionaries({"x_mm": mm(-1e4, 1e4), "y_mm": mm(-1e4, 1e4), "heading_deg": mm(-3e4, 3e4)}),
-    light_noise=st.integers(0, 128),
-    motor_noise=st.none() | st.integers(0, 500),
+    flags=st.fixed_dictionaries({key: st.booleans() for key in ("walls", "solid", "pen_marks", "pen.down")}),
+    numbers=st.fixed_dictionaries(
+        {
+            "start.x_mm": mm(-1e4, 1e4),
+            "start.y_mm": mm(-1e4, 1e4),
+            "start.heading_deg": mm(-3e4, 3e4),
+            "noise.light": st.integers(0, 128),
+            "noise.motor": st.none() | st.integers(0, 500),
+        }
+    ),
     seed=st.integers(0, 2**63 - 1),
     beacon=st.none() | st.builds(BeaconSpec, mm(-1e4, 1e4), mm(-1e4, 1e4), st.integers(1, 4)),
     remote=st.lists(presses, max_size=3).map(tuple),
@@ -91,11 +98,11 @@ own_profiles = st.builds(
 )
 @pytest.mark.slow
 def test_a_world_makes_the_same_run_again(
-    robot: Any, program: str | None, flags: Any, start: Any, tmp_path: Path, **chosen: Any
+    robot: Any, program: str | None, flags: Any, numbers: Any, tmp_path: Path, **chosen: Any
 ) -> None:
     if isinstance(robot, RobotSpec):
         robot = RobotChoice(robot)
-    spec = build_run_spec(Settings(robot=robot, **flags, **start, **chosen))
+    spec = build_run_spec(Settings({"robot": robot, **flags, **numbers, **chosen}))
     (tmp_path / "lab.toml").unlink(missing_ok=True)
     save_world(spec, tmp_path / "lab.toml", program)
     world = load_world(tmp_path / "lab.toml")
@@ -242,7 +249,7 @@ SAVED_ROBOT = {
     [
         ({}, {}),
         ({"width": "?", "height": None, "baseWeight": 3}, {}),
-        ({"wheelNoise": None, "sensorNoise": None}, {"motor_noise": 1, "light_noise": None}),
+        ({"wheelNoise": None, "sensorNoise": None}, {"noise.motor": 1, "noise.light": None}),
         ({"weight": None}, {"weight": 6.0}),
         ({"weight": ""}, {"weight": 6.0}),
         ({"ultrasonic": {"x": 0, "y": 10, "angle": 5}}, {"ultrasonic_mm": 1.0}),
@@ -255,12 +262,12 @@ SAVED_ROBOT = {
 )
 def test_a_saved_robot_in_full(changes: dict[str, Any], found: dict[str, Any], write: Write) -> None:
     choice = choose_robot(str(write("old.json", json.dumps({**SAVED_ROBOT, **changes}))))
-    expected = {"motor_noise": 7, "light_noise": 12, "weight": 0.0, "ultrasonic_mm": 2.0, "notes": "", **found}
+    expected = {"noise.motor": 7, "noise.light": 12, "weight": 0.0, "ultrasonic_mm": 2.0, "notes": "", **found}
     ultrasonic = choice.spec.ultrasonic
     assert ultrasonic is not None
     assert {
-        "motor_noise": choice.motor_noise,
-        "light_noise": choice.light_noise,
+        "noise.motor": choice.motor_noise,
+        "noise.light": choice.light_noise,
         "weight": choice.spec.weight,
         "ultrasonic_mm": ultrasonic.noise_mm,
         "notes": "".join(note[note.index("old.json") :] for note in choice.notes),
@@ -286,7 +293,7 @@ def test_wheel_noise_of_the_file_is_the_runs_unless_a_switch_says_another(words:
 def test_eyes_that_a_file_places_stay_on_a_mat_with_places_of_its_own(
     text: str, xs_mm: list[float], write: Write
 ) -> None:
-    spec = build_run_spec(Settings(background="Radial_grey", robot=write("mine.toml", text)))
+    spec = build_run_spec(Settings({"background": "Radial_grey", "robot": write("mine.toml", text)}))
     assert [sensor.x_mm for sensor in spec.robot.color_sensors] == xs_mm
 
 
@@ -322,7 +329,8 @@ def test_a_profile_file_says_only_what_differs(text: str, changes: dict[str, Any
 
 
 def test_every_number_of_a_profile_says_where_it_comes_from() -> None:
-    assert set(SOURCES) == {field.name for field in fields(ProfileSpec)} - {"name", "title"}
+    lacking = {name for name, value in values_of(ProfileSpec).items() if not value.source}
+    assert lacking == {"name", "title"}
 
 
 def test_paths_in_a_world_are_relative_to_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -345,7 +353,7 @@ def test_paths_in_a_world_are_relative_to_its_folder(tmp_path: Path, monkeypatch
     assert [str(file) for file in world.files] == [
         "lab/lab.toml", "small.toml", "lab/boxes.json", "lab/slow.toml", "lab/drive.py",
     ]  # fmt: skip
-    assert (asked.panels_on, asked.panels_off, asked.rays) == (("chart", "arrays"), ("controls",), True)
+    assert (asked["panels_on"], asked["panels_off"], asked["rays"]) == (("chart", "arrays"), ("controls",), True)
 
 
 @pytest.mark.parametrize("name", ["mat.png", "mat", "pics/mat.png"])
@@ -355,7 +363,7 @@ def test_an_image_is_written_as_seen_from_the_worlds_folder(
     (tmp_path / "lab" / "pics").mkdir(parents=True)
     shutil.copy(root / "backgrounds" / "Square.png", tmp_path / "lab" / name)
     monkeypatch.chdir(tmp_path)
-    spec = build_run_spec(Settings(background=f"lab/{name}", background_fit="centre"))
+    spec = build_run_spec(Settings({"background": f"lab/{name}", "background_fit": "centre"}))
     assert spec.world.background == str(tmp_path / "lab" / name)
     save_world(spec, "lab/lab.toml")
     assert str(tmp_path) not in (tmp_path / "lab" / "lab.toml").read_text()

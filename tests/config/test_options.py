@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tuisim.config.options import OPTIONS, Settings, settings_of
+from tuisim.config.options import OPTIONS, RUN_VALUES, Settings, settings_of
 from tuisim.config.program_file import MAX_PROGRAM_BYTES, find_magic, parse_program, read_program
 from tuisim.config.shared_options import parse_words
 from tuisim.errors import ConfigError
@@ -20,20 +19,23 @@ from tuisim.errors import ConfigError
         ("", {}),
         ("-b Grey_bands", {"background": "Grey_bands"}),
         ("-bGrey_bands", {"background": "Grey_bands"}),
-        ("-x -100 -y 2.5 -a -90", {"x_mm": -100.0, "y_mm": 2.5, "heading_deg": -90.0}),
-        ("-N 128 -M 500", {"light_noise": 128, "motor_noise": 500}),
+        ("-x -100 -y 2.5 -a -90", {"start.x_mm": -100.0, "start.y_mm": 2.5, "start.heading_deg": -90.0}),
+        ("-N 128 -M 500", {"noise.light": 128, "noise.motor": 500}),
         ("-OHR", {"panels_on": ("output",), "panels_off": ("controls",), "autorun": True}),
-        ("-pP green", {"pen_down": True, "pen_color": "green"}),
-        ("-P DarkOrange", {"pen_color": "darkorange"}),
-        ("--pen-width 2.5 --pen-marks", {"pen_width_mm": 2.5, "pen_marks": True}),
-        ("-P #FFaa00", {"pen_color": "#ffaa00"}),
+        ("-pP green", {"pen.down": True, "pen.color": "green"}),
+        ("-P DarkOrange", {"pen.color": "darkorange"}),
+        ("--pen-width 2.5 --pen-marks", {"pen.width_mm": 2.5, "pen_marks": True}),
+        ("-P #FFaa00", {"pen.color": "#ffaa00"}),
         ("--solid --walls off", {"solid": True, "walls": False}),
         ("--solid --no-solid --walls on", {"solid": False, "walls": True}),
         ("--background-fit centre", {"background_fit": "centre"}),
         ("-r my.toml -o box.json", {"robot": "my.toml", "obstacles": "box.json"}),
         ("--profile own.toml", {"profile": "own.toml"}),
         ("-AcizZXD", {"panels_on": ("arrays", "chart", "instrumentation", "noise", "settings", "positioning", "code")}),
-        ("--xpos 5 --ypos 6 --world --hide", {"x_mm": 5.0, "y_mm": 6.0, "panels_off": ("world", "controls")}),
+        (
+            "--xpos 5 --ypos 6 --world --hide",
+            {"start.x_mm": 5.0, "start.y_mm": 6.0, "panels_off": ("world", "controls")},
+        ),
         ("-WqCu", {"panels_off": ("world",), "quiet": True, "clear_trace": True, "rays": True}),
         ("--speed max", {"speed": 0.0}),
         ("--speed 0.25 --fps 10 --colors 16", {"speed": 0.25, "fps": 10, "colors": "16"}),
@@ -75,17 +77,15 @@ def test_wrong_options_say_what_is_allowed(words: str, said: str) -> None:
         parse_words(words.split())
 
 
-def test_every_option_sets_a_field_and_no_flag_is_used_twice() -> None:
-    names = {field.name for field in fields(Settings)}
-    # What an infrared sensor meets is too much for an option: a world file says it. Arguments stand after `--`.
-    assert {option.field for option in OPTIONS} == names - {"beacon", "remote", "arguments"}
+def test_every_value_of_the_world_has_an_option_and_no_flag_is_used_twice() -> None:
+    assert RUN_VALUES.keys() <= {option.path for option in OPTIONS}
     flags = [flag for option in OPTIONS for flag in (*option.flags, *option.magic_flags)]
     assert len(flags) == len(set(flags))
 
 
 def test_later_layers_win_and_panels_add_up() -> None:
     settings = settings_of(parse_words(["-b", "Loop", "-x", "5", "-O"]), parse_words(["-b", "Square", "-cO"]))
-    assert settings == Settings(background="Square", x_mm=5.0, panels_on=("output", "chart"))
+    assert settings == Settings({"background": "Square", "start.x_mm": 5.0, "panels_on": ("output", "chart")})
 
 
 PLAIN = "import time\nprint(1)\n"

@@ -54,15 +54,15 @@ FOUND = {
 def test_a_picture_of_the_users_is_found_by_the_mats_name(name: str, named: bool, own: Path, tmp_path: Path) -> None:
     word, file, start = FOUND[name]
     picture = paint((tmp_path / "pics" if named else own) / file, size=(30, 20))
-    world = build_run_spec(Settings(background=word, mats=str(tmp_path / "pics") if named else None)).world
+    world = build_run_spec(Settings({"background": word, "mats": str(tmp_path / "pics") if named else None})).world
     assert (world.background, world.start) == (str(picture), Pose(*map(float, start)))
 
 
 def test_what_stands_on_the_mat_and_moves_sensors_stays(own: Path) -> None:
     paint(own / "Obstacles_Test.png")
     paint(own / "_radial_grey.png")
-    assert len(build_run_spec(Settings(background="Obstacles_Test")).world.obstacles) == 6
-    sensors = build_run_spec(Settings(background="Radial_grey")).robot.color_sensors
+    assert len(build_run_spec(Settings({"background": "Obstacles_Test"})).world.obstacles) == 6
+    sensors = build_run_spec(Settings({"background": "Radial_grey"})).robot.color_sensors
     assert [sensor.x_mm for sensor in sensors] == [-60, 60]
 
 
@@ -76,7 +76,7 @@ def test_what_stands_on_the_mat_and_moves_sensors_stays(own: Path) -> None:
 )
 def test_how_a_picture_meets_the_field(file: str, said: str | None, fit: str, own: Path) -> None:
     paint(own / file, size=(2215, 1073))
-    assert build_run_spec(Settings(background="Testcard", background_fit=said)).world.background_fit == fit
+    assert build_run_spec(Settings({"background": "Testcard", "background_fit": said})).world.background_fit == fit
 
 
 def test_the_named_folder_goes_before_the_usual_one_and_old_files_before_names(own: Path, tmp_path: Path) -> None:
@@ -89,13 +89,13 @@ def test_the_named_folder_goes_before_the_usual_one_and_old_files_before_names(o
 
 
 def test_without_a_folder_mats_are_ours(home: Path) -> None:
-    assert build_run_spec(Settings(background="Loop")).world.background == "Loop"
+    assert build_run_spec(Settings({"background": "Loop"})).world.background == "Loop"
     assert not any(mat.is_own for mat in mats().values())
 
 
 def test_a_world_file_keeps_names_and_names_a_folder(own: Path, tmp_path: Path) -> None:
     paint(own / "FLL2018.jpg")
-    spec = build_run_spec(Settings(background="FLL_2018_Into_Orbit"))
+    spec = build_run_spec(Settings({"background": "FLL_2018_Into_Orbit"}))
     save_world(spec, tmp_path / "lab.toml")
     assert 'background = "FLL_2018_Into_Orbit"' in (tmp_path / "lab.toml").read_text()
     assert build_run_spec(settings_of(load_world(tmp_path / "lab.toml").settings)) == spec
@@ -107,7 +107,7 @@ def test_a_world_file_keeps_names_and_names_a_folder(own: Path, tmp_path: Path) 
 
 
 def test_a_run_on_our_mat_stays_on_it_when_the_user_brings_another(own: Path) -> None:
-    spec = build_run_spec(Settings(background="Radial_grey"))
+    spec = build_run_spec(Settings({"background": "Radial_grey"}))
     paint(own / "_radial_grey.png")
     assert build_run_spec(settings_of(settings_from(spec))) == spec
 

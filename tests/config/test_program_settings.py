@@ -26,8 +26,8 @@ CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float | Non
     "a brick's program": (USUAL, {}, ("ev3", "Default_Robot", MIDDLE)),
     "with another robot": (CLAW, {}, ("ev3", "Robot of p.py", MIDDLE)),
     "-r": (CLAW, {"above": {"robot": "Explorer"}}, ("ev3", "Explorer", MIDDLE)),
-    "-x": (CLAW, {"above": {"x_mm": 300.0}}, ("ev3", "Robot of p.py", (300, None))),
-    "-a": (USUAL, {"above": {"heading_deg": 90.0}}, ("ev3", "Default_Robot", MIDDLE)),
+    "-x": (CLAW, {"above": {"start.x_mm": 300.0}}, ("ev3", "Robot of p.py", (300, None))),
+    "-a": (USUAL, {"above": {"start.heading_deg": 90.0}}, ("ev3", "Default_Robot", MIDDLE)),
     "-b": (CLAW, {"above": {"background": "Loop"}}, ("robolab", "Robot of p.py", MAT)),
     "-b of the usual mat": (USUAL, {"above": {"background": "Empty_Map"}}, ("robolab", "Default_Robot", MAT)),
     "--profile": (CLAW, {"above": {"profile": "robolab"}}, ("robolab", "Robot of p.py", MAT)),
@@ -73,7 +73,7 @@ def test_what_is_decided(case: str) -> None:
     found = program_settings(parse_program(text, "p.py"), *above, **rest)
     spec = build_run_spec(found.settings)
     assert (spec.profile.name, spec.robot.name) == (profile, robot)
-    assert (found.settings.x_mm, found.settings.y_mm) == place
+    assert (found.settings["start.x_mm"], found.settings["start.y_mm"]) == place
     assert bool(found.decided.note) == bool({"robot", "profile"} & found.decided.layer.keys())
 
 
@@ -87,7 +87,7 @@ def test_a_module_of_the_program_may_import_the_library_and_define_what_a_prelud
     source = parse_program("from hardware import *\nprint(gyro.position)\n", "p.py", str(tmp_path / "p.py"))
     assert source.program.prelude == "none"
     found = program_settings(source)
-    assert found.settings.profile == "ev3"
+    assert found.settings["profile"] == "ev3"
     assert "robot" in found.decided.layer
 
 
@@ -124,7 +124,7 @@ MoveDifferential(OUTPUT_C, OUTPUT_B, EV3Tire, 120)
         pytest.param("# %%sim_magic\n", {}, False, id="magic line"),
         pytest.param("", {"background": "Loop"}, False, id="mat"),
         pytest.param("", {"profile": "robolab"}, False, id="profile"),
-        pytest.param("", {"x_mm": 300.0}, True, id="start"),
+        pytest.param("", {"start.x_mm": 300.0}, True, id="start"),
     ],
 )
 def test_sizes_and_sides_count_where_the_program_brings_its_rules(

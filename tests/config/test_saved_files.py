@@ -140,15 +140,15 @@ light = 5              # a dark room
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
-        ({"seed": 4, "robot": "Small_Robot", "light_noise": 5}, WORLD.replace("seed = 3", "seed = 4")),
-        ({"seed": 3, "robot": "Small_Robot", "light_noise": 9}, WORLD.replace("light = 5 ", "light = 9 ")),
+        ({"seed": 4, "robot": "Small_Robot", "noise.light": 5}, WORLD.replace("seed = 3", "seed = 4")),
+        ({"seed": 3, "robot": "Small_Robot", "noise.light": 9}, WORLD.replace("light = 5 ", "light = 9 ")),
     ],
     ids=["seed", "noise"],
 )
 def test_a_world_keeps_what_is_not_in_a_run(changes: dict[str, Any], expected: str, tmp_path: Path) -> None:
-    assert in_order(expected, saved("world", WORLD, build_run_spec(Settings(**changes)), tmp_path))
+    assert in_order(expected, saved("world", WORLD, build_run_spec(Settings(changes)), tmp_path))
     asked = settings_of(load_world(tmp_path / "mine.toml").settings)
-    assert (asked.rays, asked.autorun, asked.panels_on) == (True, True, ("chart",))
+    assert (asked["rays"], asked["autorun"], asked["panels_on"]) == (True, True, ("chart",))
 
 
 WORLDS = {
@@ -165,7 +165,7 @@ WORLDS = {
 def test_a_world_reads_back_from_a_file_that_was_another(old: str, robot: str, tmp_path: Path) -> None:
     (tmp_path / "other.toml").write_text("back_mm = -80")
     word = "Small_Robot" if robot == "Small_Robot" else str(tmp_path / "other.toml")
-    saved("world", old, build_run_spec(Settings(robot=word, profile="ev3", obstacles="Wall")), tmp_path)
+    saved("world", old, build_run_spec(Settings({"robot": word, "profile": "ev3", "obstacles": "Wall"})), tmp_path)
 
 
 @pytest.mark.parametrize("mats", ["own", "other"])
@@ -173,7 +173,7 @@ def test_a_folder_of_mats_stays_unless_it_replaces_the_mat(mats: str, root: Path
     for folder, name in (("own", "Loop.png"), ("other", "maze.png")):
         (tmp_path / folder).mkdir()
         (tmp_path / folder / name).write_bytes((root / "backgrounds" / "Square.png").read_bytes())
-    text = saved("world", f"mats = '{mats}'", build_run_spec(Settings(background="Loop")), tmp_path)
+    text = saved("world", f"mats = '{mats}'", build_run_spec(Settings({"background": "Loop"})), tmp_path)
     assert ("mats" in text) == (mats == "other")
 
 

@@ -35,7 +35,7 @@ def _home(home: Path) -> None:
         pytest.param("[app]\nfps = 61", "fps: must be a whole number from 1 to 60", id="too high"),
         pytest.param("[app]\nfps = true", "fps: must be a whole number from 1 to 60, got true", id="not 1"),
         pytest.param("[app]\nspeed = 'fast'", "speed: must be max, or a number", id="another word"),
-        pytest.param("[app]\ncells = 'oct'", "cells: must be one of auto, half", id="none of the words"),
+        pytest.param("[app]\ncells = 'oct'", "cells: no such value 'oct' (one of auto, half", id="none of the words"),
         pytest.param("[simulation]\nrobot = 'Foo'", "robot: no such robot 'Foo' (one of Default", id="no robot"),
         pytest.param("[simulation]\nbackground = 'Lop'", "no such mat 'Lop' (did you mean Loop?", id="no mat"),
         pytest.param("[simulation]\nprofile = 'p.toml'", "simulation.profile: ", id="no file"),
@@ -75,7 +75,7 @@ def test_the_template_has_every_setting_and_sets_nothing() -> None:
     active = re.sub(r"^#(\w+ = (?!\"\"))", r"\1", template(), flags=re.MULTILINE)
     found = config_of_text(active, PATH)
     assert found.problems == ()
-    usual = {path: one.in_file.usual for path, one in SETTINGS.items() if one.in_file.usual != ""}
+    usual = {path: one.default for path, one in SETTINGS.items() if one.default != ""}
     assert dict(found.written) == usual
 
 
@@ -91,7 +91,7 @@ def test_a_file_that_exists_is_never_replaced() -> None:
 @pytest.mark.parametrize("path", SETTINGS)
 def test_a_setting_is_written_in_place_of_its_comment_and_removed_again(path: str) -> None:
     one = SETTINGS[path]
-    value = {"mats": ".", "obstacles": "default", "pencolor": "red"}.get(one.name, one.in_file.usual)
+    value = {"mats": ".", "obstacles": "default", "pencolor": "red"}.get(one.name, one.default)
     if one.name == "obstacles":
         from tuisim.config.obstacles import OBSTACLES
 

@@ -25,8 +25,9 @@ from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.drive import EvenGlide
 from tuisim.core.profile import NBEV3DEVSIM, NS_PER_S
 from tuisim.core.simulation import Simulation
-from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec, from_plain, to_plain
+from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.core.tick_record import TICK_RECORD
+from tuisim.core.tree import from_plain, to_plain
 from tuisim.runs.run_folder import field_files
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.control import RunControl

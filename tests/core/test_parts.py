@@ -26,10 +26,9 @@ from tuisim.core.spec import (
     TouchSpec,
     UltrasonicSpec,
     WorldSpec,
-    from_plain,
-    to_plain,
 )
 from tuisim.core.tick_record import TICK_RECORD
+from tuisim.core.tree import from_plain, to_plain
 from tuisim.errors import ConfigError
 
 ROBOT = RobotSpec(

@@ -231,7 +231,7 @@ def test_world_of_another_file_is_overridden(tmp_path: Path) -> None:
     (tmp_path / "goals.toml").write_text(f"title = 'T'\nworld = 'base.toml'\nseed = 4\n{GOOD}")
     file = load_goals(tmp_path / "goals.toml")
     assert (file.title, file.program) == ("T", str(tmp_path / "follow.py"))
-    assert file.settings == {"x_mm": 5.0, "background": "Loop", "seed": 4}
+    assert file.settings == {"start.x_mm": 5.0, "background": "Loop", "seed": 4}
 
 
 def test_short_forms(tmp_path: Path) -> None:

@@ -30,7 +30,7 @@ async def drawn() -> str:
     """Return the app as SVG: the example of the grey bands has ended, and two seconds before its end are in view."""
     text = (ROOT / "programs" / "log_greys.py").read_text(encoding="utf-8")
     program = Program(name="log_greys.py", text=text, prelude="preloaded", path="log_greys.py")
-    spec = build_run_spec(Settings(background="Grey_bands"))
+    spec = build_run_spec(Settings({"background": "Grey_bands"}))
     started = AppSettings(spec=spec, program=program, speed=0.0, panels_on=frozenset({"chart"}))
     async with LabApp(started).run_test(size=SIZE) as pilot:
         app = await ready(pilot)

@@ -83,7 +83,7 @@ MIDDLE = Pose(1200, 570, 30)
 
 
 def at(robot: str = "Default_Robot", **choices: Any) -> RunSpec:
-    return build_run_spec(Settings(robot=robot, **choices))
+    return build_run_spec(Settings({"robot": robot, **choices}))
 
 
 def pixel(picture: Image.Image, robot: RobotSpec, place: tuple[float, float]) -> Any:

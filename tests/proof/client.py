@@ -61,7 +61,7 @@ class Client:
         """Run a program as the app does, pause and step it, look at it while it runs, and read what is stored."""
         random = self._random
         options = RunOptions(live=True, speed=random.choice([0.0, 1.0, 4.0]), start_paused=random.random() < 0.3)
-        run = start_run(Program("app.py", PROGRAM), build_run_spec(Settings(seed=random.randrange(9))), options)
+        run = start_run(Program("app.py", PROGRAM), build_run_spec(Settings({"seed": random.randrange(9)})), options)
         try:
             note(MADE, run.run_id, run.number)
             was_held = False

@@ -122,7 +122,8 @@ def samples() -> Path:
         (folder / f"{kind}.toml").write_text(_done([kind, name]))
     (folder / "profile.toml").write_text("\n".join(profile_lines(replace(PROFILES["ev3"], name="own"))))
     save_world(
-        build_run_spec(Settings(background="Grey_bands", obstacles="Wall", pen_width_mm=3)), folder / "world.toml"
+        build_run_spec(Settings({"background": "Grey_bands", "obstacles": "Wall", "pen.width_mm": 3})),
+        folder / "world.toml",
     )
     for source, name in ((examples()[0], "goals.toml"), (shipped_paths()["band-values"], "lesson.md")):
         shutil.copy(source, folder / name)

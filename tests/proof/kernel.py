@@ -305,7 +305,7 @@ def _names(random: Random) -> Iterator[str]:
 def printed(text: str, solid: bool = False) -> list[str]:
     """Run a program under the profile of the brick, with walls that stop the robot or not; return what it printed."""
     robot = RobotSpec(extra_motors=(MotorSpec("outA", "medium"), MotorSpec("outD", "large")))
-    spec = replace(build_run_spec(Settings(background="Empty_Map", profile="ev3", solid=solid)), robot=robot)
+    spec = replace(build_run_spec(Settings({"background": "Empty_Map", "profile": "ev3", "solid": solid})), robot=robot)
     process.warm_up()
     run = start_run(Program("program.py", text), spec, RunOptions(time_limit_s=1e6))
     try:

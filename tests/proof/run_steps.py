@@ -97,10 +97,16 @@ MOST_LIVE, MOST_TICKS = 2, 3000
 def spec_of(random: Random) -> Settings:
     """Return settings of a run at random."""
     return Settings(
-        background="Grey_bands", seed=random.randint(0, 3), light_noise=random.choice((None, None, 5, 60)),
-        motor_noise=random.choice((None, None, 30)), pen_marks=random.random() < 0.2, pen_down=random.random() < 0.3,
-        profile=random.choice(("robolab", "robolab", "nbev3devsim", "ev3")),
-    )  # fmt: skip
+        {
+            "background": "Grey_bands",
+            "seed": random.randint(0, 3),
+            "noise.light": random.choice((None, None, 5, 60)),
+            "noise.motor": random.choice((None, None, 30)),
+            "pen_marks": random.random() < 0.2,
+            "pen.down": random.random() < 0.3,
+            "profile": random.choice(("robolab", "robolab", "nbev3devsim", "ev3")),
+        }
+    )
 
 
 def _run(model: RunModel, random: Random) -> None:

@@ -82,7 +82,7 @@ def _text(piece: Piece, ending: Ending) -> str:
 
 def _start(piece: Piece, ending: Ending, folder: Path, options: RunOptions) -> RunHandle:
     program = Program("program.py", _text(piece, ending), working_directory=str(folder))
-    return start_run(program, build_run_spec(Settings(background="Empty_Map")), options)
+    return start_run(program, build_run_spec(Settings({"background": "Empty_Map"})), options)
 
 
 def _options(piece: Piece, live: bool = False, paused: bool = False) -> RunOptions:

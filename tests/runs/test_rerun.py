@@ -228,7 +228,7 @@ time.sleep(0.0137)
 
 
 def test_a_motor_that_does_not_drive_is_recorded_alike_live_and_headless(home: Path) -> None:
-    spec = build_run_spec(Settings(robot="Explorer"))
+    spec = build_run_spec(Settings({"robot": "Explorer"}))
     live = start_run(Program("arm.py", ARM), spec, RunOptions(live=True, speed=16.0))
     over(live)
     run = RunStore().load_run(live.run_id)
@@ -241,7 +241,7 @@ def test_a_motor_that_does_not_drive_is_recorded_alike_live_and_headless(home: P
 
 
 def test_a_differing_line_is_numbered_as_people_see_it(home: Path) -> None:
-    spec, runs = build_run_spec(Settings(robot="Explorer")), []
+    spec, runs = build_run_spec(Settings({"robot": "Explorer"})), []
     for word in ("one", "two"):
         handle = start_run(Program("arm.py", f"print('first'){ARM}print('{word}')\n"), spec, RunOptions())
         over(handle)

@@ -42,7 +42,7 @@ raise ValueError(A())
 
 def started(text: str, isolated: bool = False, **options: object) -> RunHandle:
     """Start a program."""
-    spec = build_run_spec(Settings(background="Empty_Map"))
+    spec = build_run_spec(Settings({"background": "Empty_Map"}))
     made = RunOptions(**options)  # type: ignore[arg-type]
     return RunHandle(Program("program.py", text, "none"), spec, field_files(spec), made, RunStore(), isolated=isolated)
 

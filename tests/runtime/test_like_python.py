@@ -47,7 +47,7 @@ def test_a_program_prints_and_ends_as_with_python_itself(text: str, tmp_path: Pa
     for folder in (theirs, ours):
         folder.mkdir()
     python = as_python(text, theirs)
-    spec = build_run_spec(Settings(background="Empty_Map"))
+    spec = build_run_spec(Settings({"background": "Empty_Map"}))
     program = Program("program.py", text, "none", working_directory=str(ours))
     done = over(start_run(program, spec, RunOptions(time_limit_s=20.0)))
     found = same_for_all("\n".join(done.lines), ours), same_for_all("\n".join(done.errors), ours)

@@ -16,8 +16,8 @@ from tuisim.app.setup.next_run import NextRun, plan_of_run, with_arguments
 from tuisim.app.snapshot import end_label
 from tuisim.config.files import means_file
 from tuisim.config.folders import user_path
-from tuisim.config.options import Settings
-from tuisim.config.program_settings import Decided, free_fields
+from tuisim.config.options import START, Settings
+from tuisim.config.program_settings import Decided, free_paths
 from tuisim.errors import LogError, TuisimError
 from tuisim.runs.handle import program_again
 from tuisim.runs.standstill import standstill_words
@@ -248,7 +248,7 @@ class Loader:
         """Read a world file and remember its settings. Return the path of its program, and its goals, if any."""
         from tuisim.goals.files import load_task
 
-        world, goals = load_task(path, self._run_controller.next_run.settings.mats)
+        world, goals = load_task(path, self._run_controller.next_run.settings["mats"])
         self.world_file, self._world_settings, self._world_refers = world.path, world.settings, world.files
         return _program_path(world.program) if world.program is not None else None, goals
 
@@ -444,7 +444,7 @@ class Loader:
         plan, decided = plans.with_choices(self._run_controller.next_run, differences), Decided()
         if source is not None:
             plan, decided = plans.following(plans.with_free(plan, gone), source)
-        if differences.keys() & {"background", *plans.POSE_FIELDS}:
+        if differences.keys() & {"background", *START}:
             self._load(plan, program)
         else:
             self._run_controller.program = program
@@ -468,7 +468,7 @@ def _in_world(
 ) -> tuple[NextRun, Decided]:
     """Return the plan of a program in a world, which replaces all earlier choices, and what the program decides."""
     of_task = is_task and bool(world)
-    free = free_fields((magic, world), (world,), in_world=bool(world) or not is_task, of_task=of_task)
+    free = free_paths((magic, world), (world,), in_world=bool(world) or not is_task, of_task=of_task)
     plan = plans.with_choices(plans.with_choices(plans.plan_of(Settings(), free), magic), world)
     return plans.following(plan, source) if source else (plan, Decided())
 
@@ -504,8 +504,8 @@ def _panels_in(said: Mapping[str, Any]) -> dict[str, bool]:
 def _differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings of a file that have changed; removed ones get their default."""
     bare = Settings()
-    removed = {field: getattr(bare, field) for field in before.keys() - now.keys() if field in plans.WORLD_FIELDS}
-    return removed | {field: value for field, value in now.items() if field not in before or before[field] != value}
+    removed = {path: bare[path] for path in before.keys() - now.keys() if path in plans.WORLD_PATHS}
+    return removed | {path: value for path, value in now.items() if path not in before or before[path] != value}
 
 
 PERIOD_S = 1.0

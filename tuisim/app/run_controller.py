@@ -263,7 +263,7 @@ class RunController(RunView):
         """
         if self.program is None or self.in_run:
             return
-        program = replace(self.program, arguments=self.next_run.settings.arguments)
+        program = replace(self.program, arguments=self.next_run.settings["arguments"])
         options = replace(self._options, breaks=breaks, hold_at=FIRST_LINE if paused else None)
         run = start_run(program, self.next_run.spec, options)
         self.close()

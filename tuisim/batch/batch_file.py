@@ -16,6 +16,7 @@ from tuisim.config import files
 from tuisim.config.files import Location
 from tuisim.config.folders import user_path
 from tuisim.config.worlds import BATCH_KEY, WORLD_SUFFIX, WorldFile, load_world, world_from_table
+from tuisim.core.values import shown
 from tuisim.errors import ConfigError
 
 MAX_PROGRAMS = 10_000
@@ -159,5 +160,5 @@ def _choice(values: object, at: Location) -> Choice:
 
 def _scalar(value: object, at: Location) -> Value:
     if not isinstance(value, str | bool | int | float):
-        raise at.wrong(f"must be a text, a number, true or false, got {files.shown(value)}")
+        raise at.wrong(f"must be a text, a number, true or false, got {shown(value)}")
     return value

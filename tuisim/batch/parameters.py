@@ -15,7 +15,7 @@ from enum import StrEnum
 from random import Random
 
 from tuisim.batch.task import Value
-from tuisim.config.options import MAX_SEED
+from tuisim.core.values import MAX_SEED
 from tuisim.errors import ConfigError, nearest, see_page
 
 MAX_VALUES = 1_000_000

@@ -14,8 +14,9 @@ from tuisim.batch.parameters import SEED, Choice, Grid, checked_seeds, grid_of
 from tuisim.batch.task import Keep, Task, Value
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
-from tuisim.config.overrides import field_of_key, settings_of_keys
-from tuisim.core.spec import RunSpec, to_plain
+from tuisim.config.overrides import settings_of_keys
+from tuisim.core.spec import RunSpec
+from tuisim.core.tree import to_plain
 from tuisim.errors import ConfigError
 from tuisim.goals.spec import Goal
 from tuisim.runs.handle import RunOptions, in_surroundings
@@ -29,7 +30,7 @@ class Subject:
     program: Program
     settings: Settings
     given: frozenset[str] = frozenset()
-    """The fields of settings that were chosen for all runs, and that no parameter may change."""
+    """The paths of the settings that were chosen for all runs, and that no parameter may change."""
     name: str = ""
     """What the table calls it; empty for the program's own name."""
 
@@ -83,8 +84,8 @@ class Plan:
         """Build the specification of every combination of a program except for the seeds."""
         own = [axis for axis in self.grid.axes if axis.names != (SEED,)]
         for name in self.choices:
-            if (field_name := field_of_key(name)) in subject.given:
-                message = f"{name} varies what an option sets: the {field_name.replace('_', ' ')}"
+            if name in subject.given:
+                message = f"{name} varies what an option sets"
                 raise ConfigError(message, "give one of them", key=str(self.path))
         for values in Grid(tuple(own)):
             self.spec_of(subject, values)
@@ -103,7 +104,7 @@ class Plan:
 
     def seed_at(self, index: int) -> int:
         """Return the seed of a run."""
-        seed = self.grid.at(index % len(self.grid)).get(SEED, self.subject_at(index).settings.seed)
+        seed = self.grid.at(index % len(self.grid)).get(SEED, self.subject_at(index).settings["seed"])
         assert isinstance(seed, int)
         return seed
 
@@ -124,7 +125,7 @@ class Plan:
         changes = settings_of_keys(values, subject.settings, self.path)
         # A mat comes with its own start pose, unless it was chosen for all runs.
         kept = {key: value for key, value in changes.items() if value is not None or key not in subject.given}
-        return replace(subject.settings, **kept)
+        return subject.settings.changed(kept)
 
     def tasks(self, done: Collection[int] = ()) -> Iterator[Task]:
         """Yield the tasks whose index is not among those that are done."""
@@ -138,7 +139,7 @@ class Plan:
         spec = self.spec_of(subject, values)
         program = subject.program
         if "arguments" in values:
-            program = replace(program, arguments=self._settings(subject, values).arguments)
+            program = replace(program, arguments=self._settings(subject, values)["arguments"])
         return Task(
             index, program, spec, self.options_of(spec), goals=self.goals, parameters=values, keep=self.keep
         )  # fmt: skip

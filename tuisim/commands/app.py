@@ -14,7 +14,7 @@ import click
 from tuisim import __version__
 from tuisim.commands.listings import names_of
 from tuisim.commands.log import COLUMNS, TELEMETRY
-from tuisim.config.command_line import Arguments, Value, argument, command, option
+from tuisim.config.command_line import Arguments, WordType, argument, command, option
 from tuisim.config.shared_options import shared_options
 from tuisim.errors import ConfigError
 
@@ -33,11 +33,11 @@ _WORLD = frozenset({"background", "robot", "obstacles"})
 
 OPENED: Sequence[click.Parameter] = (
     argument("words", "[PROGRAM]", lambda: names_of("programs"), nargs=-1),
-    option("--world", metavar="FILE", type=Value(), help="Use a world file; it may also precede the program."),
+    option("--world", metavar="FILE", type=WordType(), help="Use a world file; it may also precede the program."),
     option(
         "--goals",
         metavar="FILE",
-        type=Value(names=lambda: names_of("goals")),
+        type=WordType(names=lambda: names_of("goals")),
         help="Judge the runs by a goals file, which may also precede the program.",
     ),
     option("--run", metavar="RUN", help="Open a stored run, see `tuisim runs`."),
@@ -77,7 +77,7 @@ def read_opened(arguments: Arguments) -> Opened | None:
         return Opened(prepared, goals, replay)
     prepared = prepare_app(_words(arguments, goals), arguments, config)
     is_empty = not arguments.words and not arguments.world and goals is None and _WORLD.isdisjoint(arguments.settings)
-    return Opened(prepared, goals or _goals_in(prepared.world, prepared.settings.mats), None, is_empty)
+    return Opened(prepared, goals or _goals_in(prepared.world, prepared.settings["mats"]), None, is_empty)
 
 
 @click.version_option(__version__, prog_name="tuisim", message=VERSION, hidden=True)
@@ -117,10 +117,10 @@ def open_app(**given: Any) -> int:
         world_file=prepared.world.path if prepared.world else None,
         program=prepared.program,
         goals=goals,
-        panels_on=frozenset(settings.panels_on) | ({"goals"} if goals else set()),
-        panels_off=frozenset(settings.panels_off),
+        panels_on=frozenset(settings["panels_on"]) | ({"goals"} if goals else set()),
+        panels_off=frozenset(settings["panels_off"]),
         welcomes=opened.is_empty,
-        autorun=settings.autorun,
+        autorun=settings["autorun"],
         from_config=prepared.from_config,
         decided=prepared.decided,
         **_of_the_app(settings),
@@ -132,13 +132,13 @@ def open_app(**given: Any) -> int:
 def _of_the_app(settings: Settings) -> dict[str, Any]:
     """Return what the settings say about the app, by field of `AppSettings`."""
     return {
-        "quiet": settings.quiet,
-        "rays": settings.rays,
-        "speed": 1.0 if settings.speed is None else settings.speed,
-        "fps": settings.fps,
-        "colors": settings.colors,
-        "cells": settings.cells,
-        "pixels": settings.pixels,
+        "quiet": settings["quiet"],
+        "rays": settings["rays"],
+        "speed": 1.0 if settings["speed"] is None else settings["speed"],
+        "fps": settings["fps"],
+        "colors": settings["colors"],
+        "cells": settings["cells"],
+        "pixels": settings["pixels"],
     }
 
 
@@ -171,8 +171,8 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
         goals=goals_of(lesson),
         lesson=lesson,
         lessons_folder=folder,
-        panels_on=frozenset(settings.panels_on) | {"lesson", "code"},
-        panels_off=frozenset(settings.panels_off),
+        panels_on=frozenset(settings["panels_on"]) | {"lesson", "code"},
+        panels_off=frozenset(settings["panels_off"]),
         decided=found.decided,
         **_of_the_app(settings),
     )

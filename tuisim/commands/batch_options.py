@@ -5,15 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 from tuisim.batch.task import MAX_JOBS, Keep
-from tuisim.config.command_line import GroupedOption, Value, choice, option
-from tuisim.config.options import whole
+from tuisim.config.command_line import GroupedOption, WordType, choice, option
+from tuisim.core.values import Whole, parse
 
-_workers = whole(1, MAX_JOBS)
+_WORKERS = Whole(1, MAX_JOBS)
 
 
 def workers_option(flag: str, text: str, **how: Any) -> GroupedOption:
     """Return an option for a number of workers; 0 if it is not given."""
-    return option(flag, default=0, metavar="N", type=Value(lambda word: _workers(word, flag)), help=text, **how)
+    return option(
+        flag, default=0, metavar="N", type=WordType(lambda word: parse(_WORKERS, word, flag)), help=text, **how
+    )
 
 
 def jobs_option(**how: Any) -> GroupedOption:

@@ -20,10 +20,9 @@ from tuisim.commands.notebooks import NotRun
 from tuisim.commands.resolve import check_arguments, prepare_runs
 from tuisim.commands.run import parse_press, press_actions
 from tuisim.commands.run_options import input_option, timeout_option
-from tuisim.config.command_line import Arguments, Value, argument, option
+from tuisim.config.command_line import Arguments, WordType, argument, option
 from tuisim.config.files import read_file
 from tuisim.config.folders import user_path
-from tuisim.config.overrides import field_of_key
 from tuisim.config.worlds import WorldFile, means_world
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError
@@ -34,7 +33,7 @@ from tuisim.runs.handle import RunOptions
 _GRID, _RESULTS, _LIMITS = "Parameters", "Results", "Input and limits"
 OPTIONS = (
     argument("programs", "PROGRAM…|SPEC.toml", lambda: names_of("programs"), nargs=-1),
-    option("--world", metavar="FILE", type=Value(), help="Use a world file; it may also precede the program."),
+    option("--world", metavar="FILE", type=WordType(), help="Use a world file; it may also precede the program."),
     jobs_option(),
     option("--scheduler", metavar="ADDRESS", help="Use the Dask cluster of a scheduler, such as tcp://host:8786."),
     workers_option("--workers", "Use a Dask cluster of this many workers on this machine."),
@@ -42,20 +41,21 @@ OPTIONS = (
     option("--set", "sets", multiple=True, metavar="NAME=VALUES", group=_GRID,
            help="Vary a key of a world or robot file: noise.motor=0,20,50, robot.wheel_diameter_mm=54:58:0.5, "
            "start.x_mm=random(100, 300, 20), latin(…); may be repeated, for all combinations."),
-    option("--out", metavar="FILE", type=Value(), group=_RESULTS, help=f"Write the table: {LISTED}."),
+    option("--out", metavar="FILE", type=WordType(), group=_RESULTS, help=f"Write the table: {LISTED}."),
     option("--expr", "expressions", multiple=True, metavar="NAME=EXPR", group=_RESULTS,
            help="Add a column, such as 'error_mm=hypot(x_mm - 750, y_mm - 850)'; may be repeated."),
-    option("--goals", metavar="FILE", type=Value(), group=_RESULTS, help="Judge the goals in a file, one column each."),
+    option("--goals", metavar="FILE", type=WordType(), group=_RESULTS,
+           help="Judge the goals in a file, one column each."),
     keep_option(Keep.NONE, _RESULTS),
-    option("--picture-of", metavar="WHAT", type=Value(parse_picture, lambda: (POSES,)), group=_RESULTS,
+    option("--picture-of", metavar="WHAT", type=WordType(parse_picture, lambda: (POSES,)), group=_RESULTS,
            help=f"Draw {POSES}: the end poses over the mat."),
-    option("--picture", metavar="FILE", type=Value(), group=_RESULTS,
+    option("--picture", metavar="FILE", type=WordType(), group=_RESULTS,
            help="Write the end poses as a picture (.svg or .png) instead of drawing them as text."),
     option("--resume", is_flag=True, group=_RESULTS, help="Go on with an interrupted batch that wrote the same --out."),
     option("--json", "as_json", is_flag=True, group=_RESULTS, help="Print one JSON object per run, not the summary."),
     timeout_option(_LIMITS),
     input_option(_LIMITS),
-    option("--press", multiple=True, metavar="BUTTON@S", type=Value(parse_press), group=_LIMITS,
+    option("--press", multiple=True, metavar="BUTTON@S", type=WordType(parse_press), group=_LIMITS,
            help="Press a button of the brick, as in `tuisim run`; may be repeated."),
 )  # fmt: skip
 """The options of `tuisim batch` besides the shared ones."""
@@ -90,7 +90,7 @@ def read_request(arguments: Arguments) -> Request:
     subjects = _subjects(arguments, file, goals)
     typed = _typed_choices(arguments)
     kept = {name: choice for name, choice in file.choices.items() if name not in typed}
-    kept = {name: choice for name, choice in kept.items() if field_of_key(name) not in arguments.settings}
+    kept = {name: choice for name, choice in kept.items() if name not in arguments.settings}
     choices = {**kept, **typed}
     if SEED in choices:
         # Runs that differ in the seed only are neighbours.

@@ -10,7 +10,8 @@ from typing import Any
 from tuisim.commands.echo import Progress, echo, echo_error, echo_json, tell
 from tuisim.config.build import build_run_spec, settings_from
 from tuisim.config.command_line import AS_JSON, Group, argument, command
-from tuisim.config.options import RobotChoice, Settings, settings_of
+from tuisim.config.options import START, Settings, settings_of
+from tuisim.config.robots import RobotChoice
 from tuisim.errors import ConfigError, counted
 from tuisim.goals.files import GoalsFile, example_names, load_goals
 from tuisim.goals.judge import judge
@@ -19,7 +20,7 @@ from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
 _RANGE = re.compile(r"(\d{1,9})\.\.(\d{1,9})")
-_WHERE = ("background", "x_mm", "y_mm", "heading_deg")
+_WHERE = ("background", *START)
 """Settings that the places in a goals file depend on."""
 _MARKS = {GoalState.MET: "✓", GoalState.MISSED: "✗", GoalState.OPEN: "·"}
 
@@ -92,7 +93,11 @@ def _differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
     starts = "background" in file.settings and of_file["background"] == found["background"]
     named = [key for key in _WHERE if starts or key in file.settings]
     given = {key: of_file[key] for key in named}
-    other = [f"{key} {found[key]}, not {value}" for key, value in given.items() if found[key] != value]
+    other = [
+        f"{path.removeprefix('start.')} {found[path]}, not {value}"
+        for path, value in given.items()
+        if found[path] != value
+    ]
     if other:
         yield f"run {run.number} was not run in the world of {file.path.name}: {', '.join(other)}"
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from tuisim.commands.echo import echo
-from tuisim.config.command_line import Value, argument, command, option
+from tuisim.config.command_line import WordType, argument, command, option
 from tuisim.config.folders import user_path
 from tuisim.errors import ConfigError, counted
 
@@ -31,8 +31,10 @@ def _names() -> Sequence[str]:
 
 @command(
     argument("topic", "[TOPIC]", _names, required=False),
-    option("--search", "words", metavar="WORDS", type=Value(), help="List the pages that answer words or a question."),
-    option("--html", metavar="FOLDER", type=Value(), help="Write all pages as HTML files."),
+    option(
+        "--search", "words", metavar="WORDS", type=WordType(), help="List the pages that answer words or a question."
+    ),
+    option("--html", metavar="FOLDER", type=WordType(), help="Write all pages as HTML files."),
 )
 def guide(topic: str | None, words: str | None, html: str | None) -> int:
     """Read the guide: the contents, or the page on a topic.

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from tuisim.commands.echo import Progress, echo, echo_json, echo_lines, table, tell
-from tuisim.config.command_line import AS_JSON, Command, Group, Value, argument, command, option
+from tuisim.config.command_line import AS_JSON, Command, Group, WordType, argument, command, option
 from tuisim.config.folders import user_path
 from tuisim.errors import ConfigError, counted
 from tuisim.lessons.catalogue import find_lesson, lesson_paths, load_all, shipped_paths
@@ -19,7 +19,7 @@ from tuisim.lessons.spec import Lesson, LessonStep, QuestionCheck
 
 _COLUMNS = 80
 _MARKS = {StepState.OPEN: "·", StepState.DONE: "✓", StepState.SKIPPED: "–"}
-FOLDER = option("--folder", metavar="FOLDER", type=Value(), help="Add the lessons in a folder of your own.")
+FOLDER = option("--folder", metavar="FOLDER", type=WordType(), help="Add the lessons in a folder of your own.")
 
 
 def _names() -> Sequence[str]:

@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines, table
-from tuisim.config.command_line import AS_JSON, Value, argument, command, option
-from tuisim.core.profile import MS, PROFILES
+from tuisim.config.command_line import AS_JSON, WordType, argument, command, option
+from tuisim.core.profile import MS, PROFILES, ProfileSpec
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec
+from tuisim.core.values import values_of
 from tuisim.errors import ConfigError, counted, listed
 
 if TYPE_CHECKING:
@@ -117,9 +118,9 @@ def _size(one: Taken) -> str:
 
 @command(
     argument("robot", "[NAME|FILE]", lambda: names_of("robot"), required=False),
-    option("--from", "program", metavar="PROGRAM", type=Value(names=lambda: names_of("programs")),
+    option("--from", "program", metavar="PROGRAM", type=WordType(names=lambda: names_of("programs")),
            help="Print the robot that a program for a real brick talks about, with the lines that say so."),
-    option("--out", metavar="FILE", type=Value(), help="Write it to a robot file for -r instead."),
+    option("--out", metavar="FILE", type=WordType(), help="Write it to a robot file for -r instead."),
     AS_JSON,
 )  # fmt: skip
 def robots(robot: str | None, program: str | None, out: str | None, as_json: bool) -> int:
@@ -214,15 +215,16 @@ def programs(as_json: bool) -> int:
 @command(argument("words", "[NAME|FILE]…", lambda: PROFILES, nargs=-1), AS_JSON)
 def profiles(words: Sequence[str], as_json: bool) -> int:
     """List the profiles: the simulated time of each call, and the source of each number."""
-    from tuisim.config.profiles import SOURCES, load_profile
+    from tuisim.config.profiles import load_profile
 
     shown = [asdict(profile) for profile in [load_profile(word) for word in words] or PROFILES.values()]
     if as_json:
         echo_json(shown)
         return 0
     echo_lines(table(("PROFILE", "FOR"), [(profile["name"], profile["title"]) for profile in shown]) + "\n")
+    rules = values_of(ProfileSpec)
     rows = [
-        [key.removesuffix("_ns"), *(_cost(key, profile[key]) for profile in shown), SOURCES.get(key, "")]
+        [key.removesuffix("_ns"), *(_cost(key, profile[key]) for profile in shown), rules[key].source]
         for key in shown[0]
         if key not in ("name", "title")
     ]

@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import cast
 
 from tuisim.commands.echo import Progress
-from tuisim.config.command_line import Arguments, Command, Group, GroupedOption, Value, argument, choice, option
+from tuisim.config.command_line import Arguments, Command, Group, GroupedOption, WordType, argument, choice, option
 from tuisim.logs.export import LISTED
 from tuisim.logs.units import SECONDS
 
@@ -45,9 +45,9 @@ OPTIONS: Mapping[str, GroupedOption] = {
     "variable": option("--variable", multiple=True, metavar="NAME", help="Only this variable; may be repeated."),
     "telemetry": TELEMETRY,
     "json": option("--json", is_flag=True, help="Print JSON."),
-    "out": option("--out", metavar="FILE", type=Value(), help=f"Write the result to a file: {LISTED}."),
-    "chart": option("--out", metavar="FILE", type=Value(), help="Write the chart to a file: .svg, .png, .txt."),
-    "page": option("--out", metavar="FILE", type=Value(), help="Write the page to this .html file."),
+    "out": option("--out", metavar="FILE", type=WordType(), help=f"Write the result to a file: {LISTED}."),
+    "chart": option("--out", metavar="FILE", type=WordType(), help="Write the chart to a file: .svg, .png, .txt."),
+    "page": option("--out", metavar="FILE", type=WordType(), help="Write the page to this .html file."),
 }  # fmt: skip
 """The options of the subcommands besides `COLUMNS`; three are called `--out`."""
 

@@ -21,7 +21,7 @@ from tuisim.commands.interruption import Interrupted, signals_raise
 from tuisim.commands.listings import names_of
 from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.build import build_run_spec
-from tuisim.config.command_line import Arguments, Value, argument, command, option
+from tuisim.config.command_line import Arguments, WordType, argument, command, option
 from tuisim.config.options import APP, PANEL, settings_of
 from tuisim.config.program_settings import program_settings
 from tuisim.config.shared_options import shared_options
@@ -65,9 +65,9 @@ _OPTIONS = (
     option("--resume", is_flag=True, group=_RUNS,
            help="Go on where an earlier marking with these goals ended; run only what is new or has changed."),
     keep_option(USUAL_KEEP, _RUNS),
-    option("--export", multiple=True, metavar="FILE", type=Value(), group=_RESULTS,
+    option("--export", multiple=True, metavar="FILE", type=WordType(), group=_RESULTS,
            help=f"Write the marks: .html is a page with a report of each stored run, else {ALLOWED}; may be repeated."),
-    option("--feedback", metavar="FOLDER", type=Value(), group=_RESULTS,
+    option("--feedback", metavar="FOLDER", type=WordType(), group=_RESULTS,
            help="Write a text file for each student: what was met, what was missed, and why."),
 )  # fmt: skip
 
@@ -113,7 +113,7 @@ def mark(**given: Any) -> int:
         jobs=arguments.jobs,
         isolate=_isolates(arguments),
         version=__version__,
-        arguments=settings_of(task.settings).arguments,
+        arguments=settings_of(task.settings)["arguments"],
         python_path=user_python_path(),
     )
     outcomes: dict[str, list[Outcome]] = {student.name: [] for student in students}

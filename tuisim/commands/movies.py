@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.commands.echo import Progress, echo, echo_error, tell
-from tuisim.config.command_line import Value, argument, command, option
+from tuisim.config.command_line import WordType, argument, command, option
 from tuisim.config.files import name_of
 from tuisim.errors import ConfigError, nearest
 from tuisim.runs.store import RunStore
@@ -33,7 +33,7 @@ _size = option("--size", default="", metavar="WxH", help="Width and height in pi
 
 @command(
     _run,
-    option("--out", metavar="FILE", type=Value(), help="The file: .gif or .webp (PROGRAM-movie.gif)."),
+    option("--out", metavar="FILE", type=WordType(), help="The file: .gif or .webp (PROGRAM-movie.gif)."),
     option("--from", "start_s", type=float, metavar="S", help="Start, in simulated seconds."),
     option("--to", "stop_s", type=float, metavar="S", help="End, in simulated seconds."),
     option("--speed", type=float, metavar="N", help="Multiple of real time (1; more for more than a minute)."),
@@ -75,7 +75,7 @@ def movie(
 
 @command(
     _run,
-    option("--out", metavar="FILE", type=Value(), help="The file: .png or .svg (PROGRAM-picture.png)."),
+    option("--out", metavar="FILE", type=WordType(), help="The file: .png or .svg (PROGRAM-picture.png)."),
     option("--at", "time_s", type=float, metavar="S", help="Simulated time in seconds (the end)."),
     _panels,
     _size,

@@ -18,10 +18,10 @@ from tuisim.commands.echo import echo_error
 from tuisim.commands.notebooks import NotRun, check_folder, known_programs, without_unknown
 from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import ARGUMENTS_FOLLOW, Arguments
-from tuisim.config.options import OF_THE_APP, RobotChoice, Settings, settings_of
+from tuisim.config.options import OF_THE_APP, Settings, settings_of
 from tuisim.config.program_file import ProgramSource, find_program, read_program
-from tuisim.config.program_settings import Decided, free_fields, program_settings
-from tuisim.config.robots import choose_robot
+from tuisim.config.program_settings import Decided, free_paths, program_settings
+from tuisim.config.robots import RobotChoice, choose_robot
 from tuisim.config.user_config import Section, UserConfig
 from tuisim.config.worlds import WorldFile, load_world, means_world
 from tuisim.core.spec import RunSpec
@@ -92,7 +92,7 @@ def _prepared(word: str | None, world: WorldFile | None, arguments: Arguments, c
         settings = settings_of(*layers)
         spec = _spec(settings)
         said = _from_config(spec, world, config, arguments.settings)
-        free = free_fields(layers, above, in_world=world is not None, of_task=_decides_robot(world))
+        free = free_paths(layers, above, in_world=world is not None, of_task=_decides_robot(world))
         return Prepared(None, settings, spec, world, from_config=said, decided=Decided(free=free))
     return _of_source(read_program(find_program(word)), world, arguments, config)
 
@@ -118,8 +118,8 @@ def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Argument
     said = partial(program_settings, file, *layers, in_world=world is not None, of_task=_decides_robot(world))
     found = said(below=_defaults(world, config))
     settings = found.settings
-    prelude = settings.preload or file.program.prelude
-    program = replace(file.program, prelude=prelude, arguments=settings.arguments)
+    prelude = settings["preload"] or file.program.prelude
+    program = replace(file.program, prelude=prelude, arguments=settings["arguments"])
     spec = _spec(settings)
     changed = _from_config(spec, world, config, said().decided.layer, file.options, arguments.settings)
     return Prepared(program, settings, spec, world, from_config=changed, decided=found.decided)
@@ -132,10 +132,10 @@ def _decides_robot(world: WorldFile | None) -> bool:
 
 def _spec(settings: Settings) -> RunSpec:
     """Return the run specification; print warnings about the robot file on stderr."""
-    robot = settings.robot if isinstance(settings.robot, RobotChoice) else choose_robot(settings.robot, "-r")
+    robot = settings["robot"] if isinstance(settings["robot"], RobotChoice) else choose_robot(settings["robot"], "-r")
     for note in robot.notes:
         echo_error(f"note: {note}")
-    return build_run_spec(replace(settings, robot=robot) if robot.notes else settings)
+    return build_run_spec(settings.changed({"robot": robot}) if robot.notes else settings)
 
 
 def _of_cell(file: ProgramSource, world: WorldFile | None, arguments: Arguments, config: UserConfig) -> Prepared:

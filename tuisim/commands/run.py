@@ -15,12 +15,13 @@ from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
 from tuisim.commands.relay import Follower, RelayInterrupts
 from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
 from tuisim.commands.run_options import input_option, timeout_option
-from tuisim.config.command_line import Arguments, Value, argument, choice, command, option
-from tuisim.config.options import APP, PANEL, number
+from tuisim.config.command_line import Arguments, WordType, argument, choice, command, option
+from tuisim.config.options import APP, PANEL
 from tuisim.config.shared_options import shared_options
 from tuisim.config.user_config import FILE, Section, load_config
 from tuisim.core.geometry import pose_in_words
 from tuisim.core.profile import NS_PER_S
+from tuisim.core.values import Number, parse
 from tuisim.errors import SIGNALLED, ConfigError, ExportError, LogError, TuisimError, counted, nearest, shortened
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
 from tuisim.protocol import BUTTONS, Inspect, Inspected, Message, Paused, Resume, SetButtons, UserAction
@@ -57,11 +58,11 @@ def parse_press(text: str) -> ButtonPress:
         raise ConfigError(f"must be BUTTON@FROM or BUTTON@FROM-UNTIL, got {text!r}", "such as enter@1.5", key=PRESS)
     if name not in BUTTONS:
         raise ConfigError(f"the brick has no button {name!r}", nearest(name, BUTTONS), key=PRESS)
-    seconds = number(0.0, MAX_PRESS_S)
-    # A leading minus is a sign; `number` rejects negative times.
+    seconds = Number(0.0, MAX_PRESS_S)
+    # A leading minus is a sign: negative times are refused.
     begin, to, end = (times, "", "") if times.startswith("-") else times.partition("-")
-    from_s = seconds(begin, PRESS)
-    until_s = seconds(end, PRESS) if to else from_s + DEFAULT_PRESS_S
+    from_s = parse(seconds, begin, PRESS)
+    until_s = parse(seconds, end, PRESS) if to else from_s + DEFAULT_PRESS_S
     if until_s <= from_s:
         raise ConfigError(f"{text!r} ends before it begins", "BUTTON@FROM-UNTIL, in simulated seconds", key=PRESS)
     return ButtonPress(name, from_s, until_s)
@@ -87,14 +88,14 @@ def press_actions(presses: Sequence[ButtonPress], tick_hz: int) -> tuple[UserAct
 _REPORTS, _BREAKPOINTS = "Data and limits", "Breakpoints"
 _OPTIONS = (
     argument("programs", "PROGRAM…", lambda: names_of("programs"), nargs=-1),
-    option("--world", metavar="FILE", type=Value(), help="Use a world file; it may also precede the program."),
-    option("--export", multiple=True, metavar="FILE", type=Value(), group=_REPORTS,
+    option("--world", metavar="FILE", type=WordType(), help="Use a world file; it may also precede the program."),
+    option("--export", multiple=True, metavar="FILE", type=WordType(), group=_REPORTS,
            help=f"Write the samples of all programs ({', '.join(EXPORTERS)}); may be repeated."),
-    option("--telemetry", metavar="FILE", type=Value(), group=_REPORTS,
+    option("--telemetry", metavar="FILE", type=WordType(), group=_REPORTS,
            help="Write the telemetry of a single program, one row per tick."),
     timeout_option(_REPORTS),
     input_option(_REPORTS),
-    option("--press", multiple=True, metavar="BUTTON@S", type=Value(parse_press), group=_REPORTS,
+    option("--press", multiple=True, metavar="BUTTON@S", type=WordType(parse_press), group=_REPORTS,
            help="Press a button of the brick: enter@1.0-1.5, or enter@1 for 0.1 s; may be repeated."),
     option("--all", is_flag=True, group=_REPORTS,
            help="Run all program cells of a notebook, or of a folder's notebooks; print a table."),
@@ -309,7 +310,7 @@ def _run_one(
     how_far: Callable[[RunHandle], None],
 ) -> tuple[int, RunHandle]:
     assert one.program is not None
-    speed = one.settings.speed or 0.0
+    speed = one.settings["speed"] or 0.0
     options = RunOptions(
         live=speed > 0,
         speed=speed,

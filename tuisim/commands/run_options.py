@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from tuisim.config.command_line import GroupedOption, Value, option
-from tuisim.config.options import number
+from tuisim.config.command_line import GroupedOption, WordType, option
+from tuisim.core.values import Number, parse
 from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S
 
 MAX_TIME_LIMIT_S = 1e6
 
-_limit = number(0.001, MAX_TIME_LIMIT_S)
+_LIMIT = Number(0.001, MAX_TIME_LIMIT_S)
 
 
 def timeout_option(group: str, default_s: float = DEFAULT_TIME_LIMIT_S) -> GroupedOption:
     """Return `--timeout S`, in simulated seconds."""
     return option(
-        "--timeout", default=default_s, metavar="S", group=group, type=Value(lambda text: _limit(text, "--timeout")),
+        "--timeout", default=default_s, metavar="S", group=group,
+        type=WordType(lambda text: parse(_LIMIT, text, "--timeout")),
         help=f"Stop a run after this simulated time in seconds ({default_s:g}).",
     )  # fmt: skip
 

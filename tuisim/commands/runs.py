@@ -26,7 +26,7 @@ from tuisim.commands.echo import (
 )
 from tuisim.commands.exit_status import describe, last_state
 from tuisim.commands.movies import movie, picture
-from tuisim.config.command_line import AS_JSON, Group, Value, argument, command, option
+from tuisim.config.command_line import AS_JSON, Group, WordType, argument, command, option
 from tuisim.errors import ConfigError, LogError, counted, shortened
 from tuisim.logs.export import EXPORTERS, LISTED, check_targets, export_samples, export_telemetry
 from tuisim.protocol import Unended
@@ -290,7 +290,9 @@ def compact(words: Sequence[str], every: bool, as_json: bool) -> int:
 
 @command(
     argument("words", "RUN… FILE…", lambda: ("last",), nargs=-1),
-    option("--telemetry", metavar="FILE", type=Value(), help="Export the telemetry of a single run, one row per tick."),
+    option(
+        "--telemetry", metavar="FILE", type=WordType(), help="Export the telemetry of a single run, one row per tick."
+    ),
     help=f"Export samples of runs, or the telemetry of one run.\n\nA FILE ends in {LISTED}.",
 )
 def export(words: Sequence[str], telemetry: str | None) -> int:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.commands.app import OPENED, read_opened
 from tuisim.commands.echo import echo, echo_error_lines
-from tuisim.config.command_line import Arguments, Value, command, option, words_without
-from tuisim.config.options import number, whole
+from tuisim.config.command_line import Arguments, WordType, command, option, words_without
+from tuisim.core.values import Number, Whole, parse
 from tuisim.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -21,19 +21,21 @@ _GROUP = "Server"
 _BOOT = "import sys; sys.path.append(sys.argv.pop(1)); from tuisim.__main__ import main; sys.exit(main())"
 """Startup code of an app: the package comes last in the path, as in the child of a run."""
 _PACKAGE_FOLDER = str(Path(__file__).parent.parent.parent)
-_port, _visitors, _minutes = whole(0, 65535), whole(1, 1000), number(0.001, 100_000)
+_PORT, _VISITORS, _MINUTES = Whole(0, 65535), Whole(1, 1000), Number(0.001, 100_000)
 _SERVER = (
     option(
-        "--port", default=DEFAULT_PORT, metavar="N", group=_GROUP, type=Value(lambda text: _port(text, "--port")),
+        "--port", default=DEFAULT_PORT, metavar="N", group=_GROUP,
+        type=WordType(lambda text: parse(_PORT, text, "--port")),
         help=f"Port; 0 for any free one ({DEFAULT_PORT}).",
     ),
     option(
         "--max-visitors", default=DEFAULT_VISITORS, metavar="N", group=_GROUP,
-        type=Value(lambda text: _visitors(text, "--max-visitors")),
+        type=WordType(lambda text: parse(_VISITORS, text, "--max-visitors")),
         help=f"Most browser tabs at the same time ({DEFAULT_VISITORS}); each has its own app.",
     ),
     option(
-        "--idle", default=None, metavar="MIN", group=_GROUP, type=Value(lambda text: _minutes(text, "--idle")),
+        "--idle", default=None, metavar="MIN", group=_GROUP,
+        type=WordType(lambda text: parse(_MINUTES, text, "--idle")),
         help="End the app of a visitor after so many minutes without input (never).",
     ),
     option(

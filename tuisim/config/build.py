@@ -10,9 +10,10 @@ from typing import Any
 from tuisim.config.files import errors_at
 from tuisim.config.mats import Background, find_mat, mat_of_spec, spec_name
 from tuisim.config.obstacles import OBSTACLES, load_obstacles
-from tuisim.config.options import RobotChoice, Settings
+from tuisim.config.options import RUN_VALUES, START, Settings
 from tuisim.config.profiles import load_profile
-from tuisim.config.robots import ROBOTS, choose_robot
+from tuisim.config.robots import ROBOTS, RobotChoice, choose_robot
+from tuisim.core import tree
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.profile import PROFILES, ProfileSpec
@@ -48,8 +49,8 @@ def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) 
             x_mm=_inside(start.x_mm, margin_mm, FIELD_WIDTH_MM),
             y_mm=_inside(start.y_mm, margin_mm, FIELD_HEIGHT_MM),
         )
-    chosen = {"x_mm": settings.x_mm, "y_mm": settings.y_mm, "heading_deg": settings.heading_deg}
-    return replace(start, **{key: value for key, value in chosen.items() if value is not None})
+    chosen = {path: value for path in START if (value := settings[path]) is not None}
+    return replace(start, **{path.removeprefix("start."): value for path, value in chosen.items()})
 
 
 def _inside(at_mm: float, margin_mm: float, size_mm: float) -> float:
@@ -58,14 +59,9 @@ def _inside(at_mm: float, margin_mm: float, size_mm: float) -> float:
     return min(max(at_mm, least), most) if least <= most else size_mm / 2
 
 
-def _with_pen(robot: RobotSpec, settings: Settings) -> RobotSpec:
-    given = {"color": settings.pen_color, "width_mm": settings.pen_width_mm, "down": settings.pen_down}
-    chosen: dict[str, Any] = {key: value for key, value in given.items() if value is not None}
-    return replace(robot, pen=replace(robot.pen, **chosen)) if chosen else robot
-
-
 def _obstacles(settings: Settings, mat: Background) -> tuple[Obstacle, ...]:
-    match settings.obstacles:
+    chosen: str | tuple[Obstacle, ...] | None = settings["obstacles"]
+    match chosen:
         case None:
             return mat.obstacles
         case str(word):
@@ -82,62 +78,43 @@ def build_run_spec(settings: Settings) -> RunSpec:
             profile, or an invalid file.
     """
     with errors_at("", "-b"):
-        mat = find_mat(os.path.expanduser(settings.background), settings.mats)
-    chosen = settings.robot
+        mat = find_mat(os.path.expanduser(settings["background"]), settings["mats"])
+    chosen = settings["robot"]
     choice = chosen if isinstance(chosen, RobotChoice) else choose_robot(chosen, "-r")
-    named = settings.profile
+    named = settings["profile"]
     profile = named if isinstance(named, ProfileSpec) else load_profile(named, "--profile")
-    solid = profile.solid if settings.solid is None else settings.solid
-    robot = _with_pen(robot_on_mat(choice, mat), settings)
-    motor = settings.motor_noise if settings.motor_noise is not None else choice.motor_noise or 0
-    light = settings.light_noise if settings.light_noise is not None else choice.light_noise or 0
-    return RunSpec(
-        robot=robot,
-        world=WorldSpec(
-            background=spec_name(mat),
-            obstacles=_obstacles(settings, mat),
-            walls=settings.walls,
-            solid=solid,
-            background_fit=settings.background_fit or mat.fit or BACKGROUND_FITS[0],
-            pen_marks=settings.pen_marks,
-            start=_start(settings, mat, robot, walled=solid and settings.walls),
-            noise=NoiseSpec(light=light, motor=motor),
-            beacon=settings.beacon,
-            remote=settings.remote,
-        ),
-        profile=profile,
-        seed=settings.seed,
+    world = WorldSpec(
+        background=spec_name(mat),
+        obstacles=_obstacles(settings, mat),
+        solid=profile.solid,
+        background_fit=mat.fit or BACKGROUND_FITS[0],
+        noise=NoiseSpec(light=choice.light_noise or 0, motor=choice.motor_noise or 0),
+        beacon=settings["beacon"],
+        remote=settings["remote"],
     )
+    given = {one.spec_path: value for path, one in RUN_VALUES.items() if (value := settings[path]) is not None}
+    spec = tree.put_all(RunSpec(robot_on_mat(choice, mat), world, profile), given)
+    world = spec.world
+    return tree.put(spec, "world.start", _start(settings, mat, spec.robot, walled=world.solid and world.walls))
 
 
 def settings_from(spec: RunSpec) -> dict[str, Any]:
-    """Return the settings that give this run, keyed by field of `Settings`; presets are given by name.
+    """Return the settings that give this run, by path; presets are given by name.
 
     `solid` is None where it equals the profile's default.
 
     Raises:
         ConfigError: its mat no longer exists.
     """
-    world, pen = spec.world, spec.robot.pen
+    world = spec.world
     word, mat = mat_of_spec(world.background)
-    return {
+    found = {path: tree.at(spec, one.spec_path) for path, one in RUN_VALUES.items()}
+    return found | {
         "background": word,
-        "background_fit": world.background_fit,
         "robot": _robot(spec.robot, mat),
         "obstacles": next((name for name, boxes in OBSTACLES.items() if boxes == world.obstacles), world.obstacles),
-        "walls": world.walls,
         "solid": None if world.solid == spec.profile.solid else world.solid,
-        "x_mm": world.start.x_mm,
-        "y_mm": world.start.y_mm,
-        "heading_deg": world.start.heading_deg,
-        "light_noise": world.noise.light,
-        "motor_noise": world.noise.motor,
-        "pen_down": pen.down,
-        "pen_color": pen.color,
-        "pen_width_mm": pen.width_mm,
-        "pen_marks": world.pen_marks,
         "profile": spec.profile.name if PROFILES.get(spec.profile.name) == spec.profile else spec.profile,
-        "seed": spec.seed,
         "beacon": world.beacon,
         "remote": world.remote,
     }

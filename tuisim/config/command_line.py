@@ -24,7 +24,7 @@ ARGUMENTS_FOLLOW = "--"
 """Words after this one on the command line are passed to the program."""
 GENERAL = "Options"
 Arguments = SimpleNamespace
-"""The parsed arguments of a command, by name; `settings` has the shared options by field of `Settings`."""
+"""The parsed arguments of a command, by name; `settings` has the shared options by path."""
 
 _FILES = ("FILE", "[NAME|FILE]", "FOLDER", "MAT", "ROBOT", "NAME")
 """Placeholders of values that may be files."""
@@ -34,7 +34,7 @@ _ATTACHED = re.compile(r"\A(-[A-Za-z])=")
 """A short option before its value, as in `-x=5`."""
 
 
-class Value(click.ParamType):  # type: ignore[type-arg]
+class WordType(click.ParamType):  # type: ignore[type-arg]
     """The type of an option's or argument's value.
 
     Args:
@@ -69,8 +69,8 @@ class GroupedOption(click.Option):
     """An option under a heading of the help; only its first two names are listed there.
 
     Args:
-        sets: The field of `Settings` that it sets, if any.
-        adds: The word that it adds to that field, instead of its value.
+        sets: The path of the setting that it makes, if any.
+        adds: The word that it adds to that setting, instead of its value.
     """
 
     def __init__(self, flags: Sequence[str], group: str = GENERAL, sets: str = "", adds: str = "", **how: Any) -> None:
@@ -99,7 +99,7 @@ AS_JSON = option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 def argument(name: str, metavar: str, names: Callable[[], Iterable[str]] | None = None, **how: Any) -> click.Argument:
     """Return an argument that completion offers names for, besides files."""
-    return click.Argument([name], metavar=metavar, type=Value(names=names), **how)
+    return click.Argument([name], metavar=metavar, type=WordType(names=names), **how)
 
 
 def _close_names(typed: str, names: Iterable[str]) -> list[str]:

@@ -9,11 +9,10 @@ import json
 import math
 import os
 import re
-import reprlib
 import stat
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, fields, replace
+from dataclasses import MISSING, dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
@@ -21,12 +20,15 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from tuisim.atomic import replacing
 from tuisim.config.folders import user_path
+from tuisim.core.fields import Spec
+from tuisim.core.values import NamedNumber, Value, WrongValue, shown, values_of
 from tuisim.errors import ConfigError, did_you_mean, nearest
 
 if TYPE_CHECKING:
     from msgspec import inspect as types
 
-Value = TypeVar("Value")
+_Kind = TypeVar("_Kind")
+_Spec = TypeVar("_Spec", bound=Spec)
 
 MAX_FILE_BYTES = 1_000_000
 MAX_LINE = 1000
@@ -36,9 +38,6 @@ MAX_NAME = 100
 MAX_WHOLE = 2**63
 """Larger integers have no use in any key."""
 FILE_SUFFIXES = (".toml", ".json")
-
-_SHORT = reprlib.Repr()
-_SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,13 +57,6 @@ class Location:
     def wrong(self, message: str, hint: str = "") -> ConfigError:
         """Return an error about this value, to be raised."""
         return self.error(message, hint, file=self.file, key=self.key)
-
-
-def shown(value: object) -> str:
-    """Return the `repr` of a value for messages, shortened."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    return _SHORT.repr(value)
 
 
 def means_file(word: str) -> bool:
@@ -286,47 +278,54 @@ def one_of(data: object, at: Location, allowed: Iterable[str]) -> str:
     return word
 
 
-def by_option(data: object, at: Location, converter: Callable[[str, str], Value]) -> Value:
-    """Return a text converted by the converter of a command-line option.
+def read_value(data: object, value: Value, at: Location) -> Any:
+    """Return a value of a run from a file.
 
     Raises:
-        ConfigError: the converter refuses it, or it is no text.
+        ConfigError: it is not allowed.
     """
-    text = convert(data, str, at)
     try:
-        return converter(text, "")
+        return value.from_data(data)
+    except WrongValue as error:
+        raise (at.at(error.part) if error.part else at).wrong(error.message, error.hint) from None
+
+
+def read_part(data: object, base: _Spec | type[_Spec], at: Location, **given: object) -> _Spec:
+    """Return a sensor or another spec with the values in a table, which never give its name.
+
+    Args:
+        base: The spec that has the values which the table leaves out; or the class of a new one.
+        given: Values that the table does not give, by name.
+
+    Raises:
+        ConfigError: a key is unknown or missing, or a value is wrong.
+    """
+    kind = base if isinstance(base, type) else type(base)
+    values = {key: value for key, value in values_of(kind).items() if key not in given and key != "name"}
+    found = {key: read_value(one, values[key], at.at(key)) for key, one in table(data, at, values).items()}
+    if isinstance(base, type):
+        for key in values:
+            if kind.__dataclass_fields__[key].default is MISSING:
+                required(found, key, at)
+    return with_values(base, found | given, at)
+
+
+def with_values(base: _Spec | type[_Spec], values: Mapping[str, Any], at: Location) -> _Spec:
+    """Return a spec with other values, or a new one of a class.
+
+    Raises:
+        ConfigError: they break a rule.
+    """
+    try:
+        return base(**values) if isinstance(base, type) else replace(base, **values)
     except ConfigError as error:
-        raise at.wrong(error.message, error.hint) from None
+        # The specs begin the keys in their errors with the name of the part, in which `at` may already end.
+        part = re.sub(r"\[\d+\]$", "", at.key).rpartition(".")[2]
+        inner = at.at(error.key.removeprefix(f"{part}.")) if error.key else at
+        raise inner.wrong(error.message.removeprefix(f"{error.key}: "), error.hint) from None
 
 
-def updated(base: Value, data: object, at: Location) -> Value:
-    """Return a sensor or another part of the specs with the values in a table; its name is not one of them.
-
-    Raises:
-        ConfigError: a key or a value is wrong.
-    """
-    return changed(base, table(data, at, keys_of(type(base))), at)
-
-
-def changed(base: Value, values: Mapping[str, object], at: Location) -> Value:
-    """Return one of the specs with other values of some fields.
-
-    Raises:
-        ConfigError: a value is wrong.
-    """
-    kind: Any = type(base)
-    # Without the defaults: an empty text may be one, but a file cannot give it.
-    own = {each.name: value for each in fields(kind) if (value := getattr(base, each.name)) != each.default}
-    found: Value = convert({**own, **values}, kind, at)
-    return found
-
-
-def keys_of(kind: Any) -> tuple[str, ...]:
-    """Return the keys of a part in a file: every field of its class except the name."""
-    return tuple(field.name for field in fields(kind) if field.name != "name")
-
-
-def convert(data: object, kind: type[Value], at: Location) -> Value:
+def convert(data: object, kind: type[_Kind], at: Location) -> _Kind:
     """Return data of a file as an object of a type: a dataclass, a `msgspec.Struct` or a simple type.
 
     Args:
@@ -342,9 +341,7 @@ def convert(data: object, kind: type[Value], at: Location) -> Value:
     try:
         return msgspec.convert(data, kind)
     except ConfigError as error:
-        # The specs begin the keys in their errors with the name of the part, in which `at` may already end.
-        part = re.sub(r"\[\d+\]$", "", at.key).rpartition(".")[2]
-        inner = at.at(error.key.removeprefix(f"{part}.")) if error.key else at
+        inner = at.at(error.key) if error.key else at
         raise inner.wrong(error.message.removeprefix(f"{error.key}: "), error.hint) from None
     except msgspec.ValidationError as error:
         message, _, path = str(error).partition(" - at `$")
@@ -461,6 +458,22 @@ def toml_lines(values: Mapping[str, Scalar], comments: Mapping[str, str] = Mappi
     pairs = [(f"{toml_key(key)} = {toml_value(value)}", comments.get(key, "")) for key, value in values.items()]
     width = max((len(pair) for pair, comment in pairs if comment and len(pair) <= 36), default=0)
     return [f"{pair:<{width}}  # {comment}" if comment else pair for pair, comment in pairs]
+
+
+def value_lines(part: Spec, keys: Iterable[str]) -> list[str]:
+    """Return the lines of some values of a spec, with their help as comments."""
+    values = values_of(type(part))
+    found = {key: getattr(part, key) for key in keys}
+    shown_values = {key: toml_form(values[key], one) for key, one in found.items() if one is not None}
+    return toml_lines(shown_values, {key: values[key].help for key in found})
+
+
+def toml_form(value: Value, found: Any) -> Scalar:
+    """Return a value as a file gives it."""
+    if isinstance(value, NamedNumber):
+        return value.named(found)
+    scalar: Scalar = list(found) if isinstance(found, tuple) else found
+    return scalar
 
 
 def save_toml(

@@ -11,6 +11,7 @@ from pathlib import Path
 from tuisim.config import files
 from tuisim.config.files import Location
 from tuisim.core.spec import Obstacle
+from tuisim.core.values import shown, values_of
 from tuisim.errors import ObstacleError
 
 NO_OBSTACLES = "None"
@@ -25,7 +26,7 @@ OBSTACLES: Mapping[str, tuple[Obstacle, ...]] = {
 
 MAX_OBSTACLES = 1000
 
-_KEYS = files.keys_of(Obstacle)
+_KEYS = tuple(values_of(Obstacle))
 _HEAD = "# Obstacles for tuisim: lower left corner and size in mm; x from the field's left edge, y from its bottom."
 
 
@@ -52,10 +53,10 @@ def obstacles_from_sides(data: object, at: Location) -> tuple[Obstacle, ...]:
         ConfigError: as `obstacles_from_list`.
     """
     if not isinstance(data, list):
-        raise at.wrong(f"must be a list of [x, y, width, height], got {files.shown(data)}")
+        raise at.wrong(f"must be a list of [x, y, width, height], got {shown(data)}")
     for number, sides in enumerate(data, start=1):
         if not isinstance(sides, list) or len(sides) != len(_KEYS):
-            raise at.at(f"[{number}]").wrong(f"must be [x, y, width, height], got {files.shown(sides)}")
+            raise at.at(f"[{number}]").wrong(f"must be [x, y, width, height], got {shown(sides)}")
     return obstacles_from_list([dict(zip(_KEYS, sides, strict=True)) for sides in data], at)
 
 
@@ -66,7 +67,7 @@ def obstacles_from_list(data: object, at: Location) -> tuple[Obstacle, ...]:
         ObstacleError: a key or a value is wrong, or there are too many.
     """
     return tuple(
-        files.convert(box, Obstacle, place) for box, place in files.entries(data, at, MAX_OBSTACLES, "obstacles")
+        files.read_part(box, Obstacle, place) for box, place in files.entries(data, at, MAX_OBSTACLES, "obstacles")
     )
 
 
@@ -91,5 +92,5 @@ def obstacle_lines(obstacles: Sequence[Obstacle]) -> list[str]:
     """Return obstacles as TOML lines."""
     if not obstacles:
         return ["obstacle = []"]
-    boxes = [["[[obstacle]]", *files.toml_lines({key: getattr(box, key) for key in _KEYS}), ""] for box in obstacles]
+    boxes = [["[[obstacle]]", *files.value_lines(box, _KEYS), ""] for box in obstacles]
     return [line for box in boxes for line in box][:-1]

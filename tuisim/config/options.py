@@ -1,34 +1,23 @@
-"""The options shared by the command line and a program's magic line, and the settings that they set.
+"""The options shared by the command line, magic lines, Python and `config.toml`, and the settings that they make.
 
-To add an option: add a line to `OPTIONS`, and its field to `Settings`.
+Settings are values by path. The paths of a run's values are those of a world file: `walls`, `noise.light`. Values that
+`core.spec` gives an option have it here, too; the others are in `_WORDS` and `_APP`.
+
+To add an option that is no value of a run: add a line to `_APP`.
 """
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any, TypeVar
+from typing import Any, NamedTuple
 
-from tuisim.core.profile import ProfileSpec
-from tuisim.core.spec import (
-    BACKGROUND_FITS,
-    MAX_LIGHT_NOISE,
-    MAX_MOTOR_NOISE,
-    BeaconSpec,
-    Obstacle,
-    RemotePress,
-    RobotSpec,
-)
+from tuisim.core.spec import RunSpec
+from tuisim.core.tree import leaves
+from tuisim.core.values import Choice, Flag, NamedNumber, Value, Whole, WrongValue, parse
 from tuisim.errors import ConfigError
 from tuisim.source import PRELUDE_TEXTS
-
-_Number = TypeVar("_Number", int, float)
-
-PRELOADS = tuple(PRELUDE_TEXTS)
-COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "8", "none")
 
 
 class CellSet(StrEnum):
@@ -64,390 +53,268 @@ class Protocol(StrEnum):
 NO_PIXELS = "none"
 PIXELS = (AUTO, *Protocol, NO_PIXELS)
 """What `--pixels` accepts."""
-MAX_POSITION_MM = 10_000
-MAX_ANGLE_DEG = 36_000
-MAX_SEED = 2**63 - 1
-MIN_PEN_MM, MAX_PEN_MM = 0.1, 200.0
+COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "8", "none")
 MIN_SPEED, MAX_SPEED = 0.01, 1000.0
 MAX_SPEED_WORD = "max"
 DEFAULT_FPS = 20
 
 
-@dataclass(frozen=True, slots=True)
-class RobotChoice:
-    """A robot read from a file, and the other settings in that file."""
+class Name(Value):
+    """The name of something, or a path.
 
-    spec: RobotSpec
-    motor_noise: int | None = None
-    """The default motor noise of a run."""
-    own_places: bool = True
-    """Whether its colour sensors keep their positions on a mat that defines its own."""
-    light_noise: int | None = None
-    """The default light noise of a run."""
-    notes: tuple[str, ...] = ()
-    """Warnings about the file, to be shown to the user."""
+    Args:
+        allowed: What it may name.
+        metavar: What stands for it in the help.
+    """
 
+    __slots__ = ("_allowed", "_metavar")
 
-@dataclass(frozen=True, slots=True)
-class Settings:
-    """The settings made by options and a world file. None: the mat, robot, profile or program decides."""
+    def __init__(self, allowed: str, metavar: str, **about: Any) -> None:
+        super().__init__(**about)
+        self._allowed, self._metavar = allowed, metavar
 
-    background: str = "Empty_Map"
-    """The name of a mat, or the path of an image."""
-    mats: str | None = None
-    """A folder with the user's own mats."""
-    background_fit: str | None = None
-    robot: str | RobotChoice = "Default_Robot"
-    """Its name or file, or the object itself."""
-    obstacles: str | tuple[Obstacle, ...] | None = None
-    """Their name or file, or the objects themselves."""
-    walls: bool = True
-    solid: bool | None = None
-    x_mm: float | None = None
-    y_mm: float | None = None
-    heading_deg: float | None = None
-    light_noise: int | None = None
-    motor_noise: int | None = None
-    pen_down: bool | None = None
-    pen_color: str | None = None
-    pen_width_mm: float | None = None
-    pen_marks: bool = False
-    beacon: BeaconSpec | None = None
-    """An infrared beacon on the field."""
-    remote: tuple[RemotePress, ...] = ()
-    """Buttons pressed on the infrared remote control."""
-    profile: str | ProfileSpec = "robolab"
-    """Its name or file, or the object itself."""
-    seed: int = 0
-    arguments: tuple[str, ...] = ()
-    """The program's `sys.argv[1:]`: the words after `--`."""
-    preload: str | None = None
-    speed: float | None = None
-    """A multiple of real time, 0 for as fast as possible; None: real time in the app, else as fast as possible."""
-    autorun: bool = False
-    clear_trace: bool = False
-    quiet: bool = False
-    rays: bool = False
-    panels_on: tuple[str, ...] = ()
-    panels_off: tuple[str, ...] = ()
-    fps: int = DEFAULT_FPS
-    colors: str = "auto"
-    cells: str | None = None
-    """One of `CELLS`; None: what was chosen in the app, else auto."""
-    pixels: str = AUTO
-    """One of `PIXELS`."""
+    @property
+    def allowed(self) -> str:
+        return self._allowed
+
+    @property
+    def metavar(self) -> str:
+        return self._metavar
+
+    def from_data(self, data: object) -> str:
+        if not isinstance(data, str):
+            raise self.wrong(data)
+        if not data.strip():
+            raise WrongValue("a name is missing")
+        return data
 
 
-FileValue = bool | int | float | str
-"""The value of a setting in `config.toml`."""
+class RunValue(NamedTuple):
+    """A value of a run with a path of its own in settings: of the world, the pen or the seed."""
+
+    spec_path: str
+    """Its path in the specification."""
+    value: Value
+    default: Any
 
 
-@dataclass(frozen=True, slots=True)
-class InFile:
-    """An option as one of the user's settings, in `config.toml`."""
+def _default(path: str) -> Any:
+    """Return the default of a value of the world or the pen, by its path in the specification."""
+    *outer, name = path.split(".")
+    kind: Any = RunSpec
+    for part in outer:
+        kind = kind.__dataclass_fields__[part].metadata["value"].of
+    return kind.__dataclass_fields__[name].default
 
-    usual: FileValue
-    """Its value without the file; an empty text where the mat or the robot decides."""
-    allowed: str
-    """What it accepts, in words."""
-    choices: tuple[str, ...] = ()
-    """The words that it accepts, if there are only these, or besides numbers."""
-    is_live: bool = True
-    """Whether the app applies a change at once; else from its next start on."""
+
+def _run_values() -> Iterator[tuple[str, RunValue]]:
+    values = dict(leaves(RunSpec))
+    for table in ("world.", "robot.", "seed"):
+        for path, value in values.items():
+            if path.startswith(table) and (value.flags or (table == "world." and path != "world.background")):
+                inside = path.removeprefix("world.").removeprefix("robot.")
+                yield inside, RunValue(path, value, _default(path))
+
+
+RUN_VALUES: Mapping[str, RunValue] = dict(_run_values())
+"""All such values by path, in the order of files."""
+
+START = tuple(path for path in RUN_VALUES if path.startswith("start."))
+"""The paths of the start pose."""
+
+OF_THE_MAT = ("obstacles", "background_fit", *START)
+"""The paths of what a mat brings with it, so that another mat replaces it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Option:
-    """One line of `OPTIONS`."""
+    """An option."""
 
     group: str
-    flags: tuple[str, ...]
-    field: str
-    """The field of `Settings` that it sets."""
-    help: str
-    metavar: str = ""
-    """The name of its value in the help; empty for an option without a value."""
-    convert: Callable[[str, str], Any] | None = None
-    """Convert the value's text to the value of the field; the second argument is the flag, for errors."""
+    path: str
+    """The setting that it makes."""
+    value: Value
+    default: Any = ""
+    """The setting without it; empty where mat, robot or program decides."""
+    flags: tuple[str, ...] = ()
+    constant: Any = None
+    """What it sets if it takes no value."""
     panel: str = ""
-    """The panel that an option without a value shows or hides; empty if the option sets its field to `value`."""
-    value: bool = True
+    """The panel that it shows or hides."""
     magic_flags: tuple[str, ...] = ()
     """Further names in a magic line only, because they mean something else on the command line."""
-    in_file: InFile | None = None
-    """How `config.toml` sets it; None if it cannot."""
+    is_live: bool = True
+    """Whether the app applies a change in `config.toml` at once; else from its next start on."""
 
     @property
     def name(self) -> str:
         """Its long name as a key: without dashes."""
         return next(flag for flag in self.flags if flag.startswith("--"))[2:].replace("-", "_")
 
-    def converted(self, value: object, key: str) -> Any:
-        """Return a value of Python or of a file as the value of the field.
+    @property
+    def help(self) -> str:
+        """What it does, as a sentence."""
+        text = self.value.help
+        if isinstance(self.value, Flag) and self.constant is False:
+            text = self.value.off_help
+        return f"{text[:1].upper()}{text[1:]}."
+
+    @property
+    def metavar(self) -> str:
+        """What stands for its value in the help; empty if it takes none."""
+        if self.constant is not None or self.panel:
+            return ""
+        return "on|off" if isinstance(self.value, Flag) else self.value.metavar
+
+    def from_python(self, value: object, key: str) -> Any:
+        """Return the setting for a value of Python.
 
         Raises:
             ConfigError: it is wrong; `key` is to blame.
         """
-        if self.convert is None:
-            if not isinstance(value, bool):
-                raise ConfigError(f"must be True or False, got {value!r}", key=key)
-            return self.value if value else not self.value
-        text = ("on" if value else "off") if isinstance(value, bool) else str(value)
-        return self.convert(text, key)
-
-
-def number(low: float, high: float) -> Callable[[str, str], float]:
-    """Return a converter from the text after a flag to a number in a range; it raises ConfigError for other texts."""
-    return _ranged(float, low, high, f"a number from {low:g} to {high:g}")
-
-
-def whole(low: int, high: int) -> Callable[[str, str], int]:
-    """Return a converter from the text after a flag to an integer in a range; it raises ConfigError for other texts."""
-    return _ranged(int, low, high, f"a whole number from {low} to {high}")
-
-
-def _ranged(kind: Callable[[str], _Number], low: float, high: float, allowed: str) -> Callable[[str, str], _Number]:
-    def convert(text: str, flag: str) -> _Number:
-        with suppress(ValueError):
-            if low <= (value := kind(text)) <= high:
-                return value
-        raise ConfigError(f"must be {allowed}, got {text!r}", key=flag)
-
-    return convert
-
-
-def _one_of(allowed: Sequence[str]) -> Callable[[str, str], str]:
-    def convert(text: str, flag: str) -> str:
-        if text not in allowed:
-            raise ConfigError(f"no such value {text!r}", f"one of {', '.join(allowed)}", key=flag)
-        return text
-
-    return convert
-
-
-def _name(text: str, flag: str) -> str:
-    if not text.strip():
-        raise ConfigError("a name is missing", key=flag)
-    return text
-
-
-def _on_off(text: str, flag: str) -> bool:
-    return _one_of(("on", "off"))(text, flag) == "on"
-
-
-def pen_color(text: str, flag: str) -> str:
-    """Return a colour in lower case.
-
-    Raises:
-        ConfigError: it is neither a CSS colour name nor `#rrggbb`.
-    """
-    from tuisim.core.css_colors import css_names, css_rgb
-
-    if css_rgb(text) is None:
-        near = difflib.get_close_matches(text.lower(), css_names(), 3)
-        guess = f"did you mean {' or '.join(near)}? " if near else ""
-        raise ConfigError(f"no such colour {text!r}", f"{guess}any CSS colour name, or #rrggbb", key=flag)
-    return text.lower()
-
-
-def _speed(text: str, flag: str) -> float:
-    if text == MAX_SPEED_WORD:
-        return 0.0
-    try:
-        return number(MIN_SPEED, MAX_SPEED)(text, flag)
-    except ConfigError:
-        allowed = f"{MAX_SPEED_WORD}, or a number from {MIN_SPEED:g} to {MAX_SPEED:g}"
-        raise ConfigError(f"no such speed {text!r}", allowed, key=flag) from None
-
-
-_position = number(-MAX_POSITION_MM, MAX_POSITION_MM)
-_angle = number(-MAX_ANGLE_DEG, MAX_ANGLE_DEG)
-
-TRUE_FALSE = "true or false"
-
-
-def _words(allowed: Sequence[str]) -> str:
-    return f"one of {', '.join(allowed)}"
+        if isinstance(value, str):
+            return parse(self.value, value, key)
+        if self.constant is not None and not isinstance(value, bool):
+            raise ConfigError(f"must be True or False, got {value!r}", key=key)
+        try:
+            found = self.value.from_data(value)
+        except WrongValue as error:
+            raise ConfigError(error.message, error.hint, key=key) from None
+        return not found if self.constant is False else found
 
 
 WORLD, RUN, APP, PANEL = "World", "Run", "App", "Panels of the app"
 
-OPTIONS: tuple[Option, ...] = (
-    Option(
-        WORLD,
-        ("-b", "--background"),
-        "background",
-        "A mat from `tuisim backgrounds`, or an image file.",
-        "MAT",
-        _name,
-        in_file=InFile("Empty_Map", "the name of a mat, or an image file"),
-    ),
-    Option(
-        WORLD,
-        ("--mats",),
-        "mats",
-        "Folder of images that `-b` finds by name.",
-        "FOLDER",
-        _name,
-        in_file=InFile("", "a folder"),
-    ),
-    Option(
-        WORLD,
-        ("--background-fit",),
-        "background_fit",
-        "How an image is placed on the field.",
-        "|".join(BACKGROUND_FITS),
-        _one_of(BACKGROUND_FITS),
-    ),
-    Option(
-        WORLD,
-        ("-r", "--robot", "--robotSetup"),
-        "robot",
-        "A robot from `tuisim robots`, or a file.",
-        "ROBOT",
-        _name,
-        in_file=InFile("Default_Robot", "the name of a robot, or a file"),
-    ),
-    Option(
-        WORLD,
-        ("-o", "--obstacles"),
-        "obstacles",
-        "A set from `tuisim obstacles`, or a file.",
-        "NAME",
-        _name,
-        in_file=InFile("", "the name of a set, or a file"),
-    ),
-    Option(
-        WORLD,
-        ("--walls",),
-        "walls",
-        "Walls on the edges of the field.",
-        "on|off",
-        _on_off,
-        in_file=InFile(True, TRUE_FALSE),
-    ),
-    Option(WORLD, ("--solid",), "solid", "Obstacles and walls stop the robot."),
-    Option(WORLD, ("--no-solid",), "solid", "The robot drives through obstacles and walls.", value=False),
-    Option(WORLD, ("-x", "--x", "--xpos"), "x_mm", "Start x in mm.", "MM", _position),
-    Option(WORLD, ("-y", "--y", "--ypos"), "y_mm", "Start y in mm.", "MM", _position),
-    Option(WORLD, ("-a", "--angle"), "heading_deg", "Start heading, counter-clockwise from +x.", "DEG", _angle),
-    Option(
-        WORLD,
-        ("-N", "--sensornoise"),
-        "light_noise",
-        "Light noise, 0 … 128.",
-        "N",
-        whole(0, MAX_LIGHT_NOISE),
-        in_file=InFile(0, f"a whole number from 0 to {MAX_LIGHT_NOISE}"),
-    ),
-    Option(
-        WORLD,
-        ("-M", "--motornoise"),
-        "motor_noise",
-        "Motor noise, 0 … 500.",
-        "N",
-        whole(0, MAX_MOTOR_NOISE),
-        in_file=InFile(0, f"a whole number from 0 to {MAX_MOTOR_NOISE}"),
-    ),
-    Option(WORLD, ("-p", "--pendown"), "pen_down", "Start with the pen down."),
-    Option(
-        WORLD,
-        ("-P", "--pencolor"),
-        "pen_color",
-        "Colour of the pen: a CSS name, or #rrggbb.",
-        "COLOUR",
-        pen_color,
-        in_file=InFile("", "a CSS colour name, or #rrggbb"),
-    ),
-    Option(WORLD, ("--pen-width",), "pen_width_mm", "Width of the trace.", "MM", number(MIN_PEN_MM, MAX_PEN_MM)),
-    Option(WORLD, ("--pen-marks",), "pen_marks", "The sensors see what the pen draws."),
-    Option(
-        RUN,
-        ("--profile",),
-        "profile",
-        "A profile from `tuisim profiles`, or a file.",
-        "NAME",
-        _name,
-        in_file=InFile("robolab", "the name of a profile, or a file"),
-    ),
-    Option(RUN, ("--seed",), "seed", "Seed for noise and `random`.", "N", whole(0, MAX_SEED)),
-    Option(
-        RUN,
-        ("--speed",),
-        "speed",
-        "A multiple of real time, or max.",
-        "N",
-        _speed,
-        in_file=InFile(1, f"{MAX_SPEED_WORD}, or a number from {MIN_SPEED:g} to {MAX_SPEED:g}", (MAX_SPEED_WORD,)),
-    ),
-    Option(RUN, ("--preload",), "preload", "Names predefined for the program.", "|".join(PRELOADS), _one_of(PRELOADS)),
-    Option(APP, ("-R", "--autorun"), "autorun", "Run at once."),
-    Option(APP, ("-C", "--clear"), "clear_trace", "Clear the trace at the start."),
-    Option(APP, ("-u", "--ultrasound"), "rays", "Show the ultrasonic rays.", in_file=InFile(False, TRUE_FALSE)),
-    Option(APP, ("-q", "--quiet"), "quiet", "Make no sound.", in_file=InFile(False, TRUE_FALSE, is_live=False)),
-    Option(
-        APP,
-        ("--fps",),
-        "fps",
-        "Maximum frames per second, 1 … 60.",
-        "N",
-        whole(1, 60),
-        in_file=InFile(DEFAULT_FPS, "a whole number from 1 to 60", is_live=False),
-    ),
-    Option(
-        APP,
-        ("--colors",),
-        "colors",
-        f"Colours: {', '.join(COLOR_DEPTHS)}.",
-        "DEPTH",
-        _one_of(COLOR_DEPTHS),
-        in_file=InFile(AUTO, _words(COLOR_DEPTHS), COLOR_DEPTHS, is_live=False),
-    ),
-    Option(
-        APP,
-        ("--cells",),
-        "cells",
-        f"Glyphs of the world: {', '.join(CELLS)}.",
-        "SET",
-        _one_of(CELLS),
-        in_file=InFile(AUTO, _words(CELLS), CELLS),
-    ),
-    Option(
-        APP,
-        ("--pixels",),
-        "pixels",
-        f"Draw real pixels: {', '.join(PIXELS)}.",
-        "HOW",
-        _one_of(PIXELS),
-        in_file=InFile(AUTO, _words(PIXELS), PIXELS),
-    ),
-    Option(PANEL, ("-O", "--output"), "panels_on", "Show the output.", panel="output"),
-    Option(PANEL, ("-A", "--array"), "panels_on", "Show the sensor arrays.", panel="arrays"),
-    Option(PANEL, ("-c", "--chart"), "panels_on", "Show the chart.", panel="chart"),
-    Option(PANEL, ("-i", "--instrumentation"), "panels_on", "Show the instrumentation.", panel="instrumentation"),
-    Option(PANEL, ("-z", "--noisecontrols"), "panels_on", "Show the noise controls.", panel="noise"),
-    Option(PANEL, ("-Z", "--settings"), "panels_on", "Show the settings.", panel="settings"),
-    Option(PANEL, ("-X", "--positioning"), "panels_on", "Show the positioning controls.", panel="positioning"),
-    Option(PANEL, ("-D", "--code"), "panels_on", "Show the code.", panel="code"),
-    Option(PANEL, ("-W", "--hideworld"), "panels_off", "Hide the world.", panel="world", magic_flags=("--world",)),
-    Option(PANEL, ("-H", "--hidecontrols", "--hide"), "panels_off", "Hide the simulator controls.", panel="controls"),
+_NO_VALUE = Flag()
+
+
+def _word(path: str, flags: tuple[str, ...], metavar: str, allowed: str, about: str, default: str = "") -> Option:
+    return Option(RUN if path == "profile" else WORLD, path, Name(allowed, metavar, help=about), default, flags)
+
+
+def _of_values(*tables: str) -> Iterator[Option]:
+    """Yield the options of the values in some tables of the specification."""
+    for path, (spec_path, value, default) in RUN_VALUES.items():
+        if value.flags and spec_path.startswith(tables):
+            takes_no_value = isinstance(value, Flag) and not default
+            group = RUN if path == spec_path else WORLD
+            decided = "" if path in _DECIDED_ELSEWHERE or path.startswith(("start.", "pen.")) else default
+            yield Option(group, path, value, decided, value.flags, constant=True if takes_no_value else None)
+            if isinstance(value, Flag) and value.off_flag:
+                yield Option(group, path, value, decided, (value.off_flag,), constant=False)
+
+
+_DECIDED_ELSEWHERE = ("solid", "background_fit")
+"""Values of the world that profile or mat decide where nobody chooses."""
+
+
+def _of_app(path: str, value: Value, default: Any, **about: Any) -> Option:
+    constant = True if isinstance(value, Flag) else None
+    return Option(APP, path, value, default, value.flags, constant, **about)
+
+
+def _panel(panel: str, *flags: str, hide: bool = False, magic: tuple[str, ...] = ()) -> Option:
+    words = {"noise": "the noise controls", "arrays": "the sensor arrays", "positioning": "the positioning controls",
+             "controls": "the simulator controls"}  # fmt: skip
+    about = f"{'hide' if hide else 'show'} {words.get(panel, f'the {panel}')}"
+    path = "panels_off" if hide else "panels_on"
+    return Option(PANEL, path, Flag(help=about, in_config=False), (), flags, panel=panel, magic_flags=magic)
+
+
+_SPEED = NamedNumber(
+    MIN_SPEED, MAX_SPEED, {MAX_SPEED_WORD: 0.0}, flags=("--speed",), help="a multiple of real time, or max"
 )
+
+OPTIONS: tuple[Option, ...] = (
+    _word("background", ("-b", "--background"), "MAT", "the name of a mat, or an image file",
+          "a mat from `tuisim backgrounds`, or an image file", "Empty_Map"),
+    _word("mats", ("--mats",), "FOLDER", "a folder", "folder of images that `-b` finds by name"),
+    _word("robot", ("-r", "--robot", "--robotSetup"), "ROBOT", "the name of a robot, or a file",
+          "a robot from `tuisim robots`, or a file", "Default_Robot"),
+    _word("obstacles", ("-o", "--obstacles"), "NAME", "the name of a set, or a file",
+          "a set from `tuisim obstacles`, or a file"),
+    *_of_values("world.", "robot."),
+    _word("profile", ("--profile",), "NAME", "the name of a profile, or a file",
+          "a profile from `tuisim profiles`, or a file", "robolab"),
+    *_of_values("seed"),
+    Option(RUN, "speed", _SPEED, 1, _SPEED.flags),
+    Option(RUN, "preload", Choice(tuple(PRELUDE_TEXTS), help="names predefined for the program", in_config=False),
+           flags=("--preload",)),
+    _of_app("autorun", Flag(flags=("-R", "--autorun"), help="run at once", in_config=False), False),
+    _of_app("clear_trace", Flag(flags=("-C", "--clear"), help="clear the trace at the start", in_config=False), False),
+    _of_app("rays", Flag(flags=("-u", "--ultrasound"), help="show the ultrasonic rays"), False),
+    _of_app("quiet", Flag(flags=("-q", "--quiet"), help="make no sound"), False, is_live=False),
+    _of_app("fps", Whole(1, 60, flags=("--fps",), help="maximum frames per second, 1 … 60"), DEFAULT_FPS,
+            is_live=False),
+    _of_app("colors", Choice(COLOR_DEPTHS, flags=("--colors",), metavar="DEPTH",
+                             help=f"colours: {', '.join(COLOR_DEPTHS)}"), AUTO, is_live=False),
+    _of_app("cells", Choice(CELLS, flags=("--cells",), metavar="SET",
+                            help=f"glyphs of the world: {', '.join(CELLS)}"), AUTO),
+    _of_app("pixels", Choice(PIXELS, flags=("--pixels",), metavar="HOW",
+                             help=f"draw real pixels: {', '.join(PIXELS)}"), AUTO),
+    _panel("output", "-O", "--output"),
+    _panel("arrays", "-A", "--array"),
+    _panel("chart", "-c", "--chart"),
+    _panel("instrumentation", "-i", "--instrumentation"),
+    _panel("noise", "-z", "--noisecontrols"),
+    _panel("settings", "-Z", "--settings"),
+    _panel("positioning", "-X", "--positioning"),
+    _panel("code", "-D", "--code"),
+    _panel("world", "-W", "--hideworld", hide=True, magic=("--world",)),
+    _panel("controls", "-H", "--hidecontrols", "--hide", hide=True),
+)  # fmt: skip
 """Every shared option, in the order of the help."""
 
-OF_THE_APP = frozenset({"panels_on", "panels_off", "quiet", "rays", "speed", "fps", "colors", "cells", "pixels"})
-"""Fields of `Settings` that do not affect the run."""
+OF_THE_APP = frozenset({"speed", *(option.path for option in OPTIONS if option.group in (APP, PANEL))}) - {
+    "autorun",
+    "clear_trace",
+}
+"""The paths of settings that do not affect the run."""
 
 PANELS = tuple(option.panel for option in OPTIONS if option.panel)
 """Every panel that an option shows or hides."""
 
+_PANEL_LISTS = ("panels_on", "panels_off")
+
+_DEFAULTS: Mapping[str, Any] = {
+    **{option.path: option.default for option in OPTIONS if option.path not in RUN_VALUES and option.default != ""},
+    # The app has a memory of its own for these.
+    **dict.fromkeys(("speed", "cells")),
+    "seed": 0,
+    "arguments": (),
+    "remote": (),
+}
+
+
+_PATHS = frozenset({"arguments", "beacon", "remote", *(option.path for option in OPTIONS)})
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Values by path, as options and files give them, and the defaults of all others."""
+
+    given: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if unknown := self.given.keys() - _PATHS:
+            raise LookupError(f"no such settings: {', '.join(unknown)}")
+
+    def __getitem__(self, path: str) -> Any:
+        """Return a value; None if mat, robot, profile or program decides."""
+        value = self.given.get(path)
+        return _DEFAULTS.get(path) if value is None else value
+
+    def changed(self, values: Mapping[str, Any]) -> Settings:
+        """Return the settings with other values; None leaves the decision to mat, robot, profile or program."""
+        return Settings({**self.given, **values})
+
 
 def settings_of(*layers: Mapping[str, Any]) -> Settings:
-    """Merge layers of given options: a later layer takes precedence, panels accumulate."""
-    settings = Settings()
+    """Merge layers of given values: a later layer takes precedence, panels accumulate."""
+    found: dict[str, Any] = {}
     for layer in layers:
         panels = {
-            key: tuple(dict.fromkeys((*getattr(settings, key), *layer.get(key, ()))))
-            for key in ("panels_on", "panels_off")
+            path: tuple(dict.fromkeys((*found.get(path, ()), *layer[path]))) for path in _PANEL_LISTS if path in layer
         }
-        settings = replace(settings, **{**layer, **panels})
-    return settings
+        found |= {**layer, **panels}
+    return Settings(found)

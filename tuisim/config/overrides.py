@@ -9,21 +9,19 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.config.files import Location
-from tuisim.config.options import RobotChoice, Settings
+from tuisim.config.options import Settings
 from tuisim.config.profiles import load_profile, profile_from_table
-from tuisim.config.robots import choose_robot, robot_from_table
+from tuisim.config.robots import RobotChoice, choose_robot, robot_from_table
 from tuisim.config.worlds import world_from_table
 from tuisim.core.profile import ProfileSpec
 from tuisim.errors import ProfileError, RobotError
 
 _NOT_VARIED = ("world", "title", "goal", "program", "autorun", "rays", "panels", "hidden_panels", "obstacle", "remote")
 """Keys of a world file that do not affect a run, or that have no single value."""
-_FIELDS = {"start": "{}", "noise": "{}_noise", "pen": "pen_{}"}
-"""The fields of `Settings` that the keys of a table set."""
 
 
 def settings_of_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> dict[str, Any]:
-    """Return the settings that some keys of a world file set, keyed by field of `Settings`.
+    """Return the settings that some keys of a world file set, by path.
 
     Args:
         values: By key; tables are written with dots. `arguments` is a text, split into words as a shell does.
@@ -42,23 +40,14 @@ def settings_of_keys(values: Mapping[str, Any], chosen: Settings, path: Path) ->
         table["arguments"] = _words(table["arguments"], at.at("arguments"))
     changed = {key: table.pop(key) for key in ("robot", "profile") if isinstance(table.get(key), dict)}
     named = {key: table.pop(f"{key}=") for key in ("robot", "profile") if f"{key}=" in table}
-    found = dict(world_from_table(table | named, path, chosen.mats).settings)
+    found = dict(world_from_table(table | named, path, chosen["mats"]).settings)
     if "robot" in changed:
-        word = found.get("robot", chosen.robot)
+        word = found.get("robot", chosen["robot"])
         found["robot"] = _changed_robot(changed["robot"], word, at.at("robot", RobotError))
     if "profile" in changed:
-        word = found.get("profile", chosen.profile)
+        word = found.get("profile", chosen["profile"])
         found["profile"] = _changed_profile(changed["profile"], word, at.at("profile", ProfileError))
     return found
-
-
-def field_of_key(key: str) -> str:
-    """Return the field of `Settings` that a key sets by itself; empty if there is none.
-
-    A key of a robot or profile changes a part of what the option for it chooses, so it is not the same as the option.
-    """
-    table, dot, last = key.partition(".")
-    return _FIELDS[table].format(last) if dot and table in _FIELDS else "" if dot else key
 
 
 def _nested(values: Mapping[str, Any], at: Location) -> dict[str, Any]:

@@ -43,7 +43,7 @@ class Magic:
     """From 1."""
     prelude: str
     options: Mapping[str, Any]
-    """By field of `Settings`."""
+    """By path."""
     comment: bool
     """Whether it is a comment; if not, it is not Python and must be commented out."""
 
@@ -54,7 +54,7 @@ class ProgramSource:
 
     program: Program
     options: Mapping[str, Any] = field(default_factory=dict)
-    """Options of the magic line, by field of `Settings`; file names are resolved from the program's folder."""
+    """Options of the magic line, by path; file names are resolved from the program's folder."""
     has_magic: bool = False
     """Whether it has a magic line, or is the cell of a notebook."""
 

@@ -12,13 +12,14 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from tuisim.config.options import RobotChoice, Settings, settings_of
+from tuisim.config.options import Settings, settings_of
 from tuisim.config.program_file import ProgramSource
 from tuisim.config.program_robot.assembly import BuiltRobot, build_robot
 from tuisim.config.program_robot.course import uses_course_names
 from tuisim.config.program_robot.mentions import mentions_in
 from tuisim.config.program_robot.report import USUAL, in_words
 from tuisim.config.program_robot.source import data_files, imports_library, read_modules
+from tuisim.config.robots import RobotChoice
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.source import Program
@@ -40,8 +41,9 @@ class SourceFacts:
     """The robot that it needs; None if the default one does."""
 
 
-PROGRAM_FIELDS = ("robot", "profile", "x_mm", "y_mm")
-"""The fields of `Settings` that the source of a program may decide."""
+_PLACE = ("start.x_mm", "start.y_mm")
+PROGRAM_PATHS = ("robot", "profile", *_PLACE)
+"""The paths of the settings that the source of a program may decide."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +51,7 @@ class Decided:
     """What the source of a program decides."""
 
     layer: Mapping[str, Any] = field(default_factory=dict)
-    """By field of `Settings`; below everything that somebody has chosen."""
+    """By path; below everything that somebody has chosen."""
     said: str = ""
     """The same in one line; empty for nothing."""
     hint: str = ""
@@ -57,7 +59,7 @@ class Decided:
     robot: RobotChoice | None = None
     """The robot that the program needs, even if another one was chosen; None for the default one."""
     free: frozenset[str] = frozenset()
-    """Which of `PROGRAM_FIELDS` nobody has chosen."""
+    """Which of `PROGRAM_PATHS` nobody has chosen."""
 
     @property
     def note(self) -> str:
@@ -96,29 +98,29 @@ def program_settings(
 
     Args:
         source: The program with the options of its magic line.
-        above: What takes precedence over them, such as a world file and the command line, by field of `Settings`.
+        above: What takes precedence over them, such as a world file and the command line, by path.
         below: What they take precedence over: the user's defaults.
         in_world: Whether a world file, goals or a lesson say where it runs: then these decide the profile.
         of_task: Whether a task with a world of its own says so: then it also decides the robot.
     """
     layers = (below or {}, source.options, *above)
-    free = free_fields(layers, above, in_world=in_world, of_task=of_task)
+    free = free_paths(layers, above, in_world=in_world, of_task=of_task)
     decided = decide(source, settings_of(*layers), free)
     return ProgramSettings(settings_of(decided.layer, *layers), decided)
 
 
-def free_fields(
+def free_paths(
     layers: Iterable[Mapping[str, Any]], above: Iterable[Mapping[str, Any]], *, in_world: bool, of_task: bool
 ) -> frozenset[str]:
-    """Return which of `PROGRAM_FIELDS` nobody has chosen, for the arguments of `program_settings`."""
+    """Return which of `PROGRAM_PATHS` nobody has chosen, for the arguments of `program_settings`."""
     said = {key for layer in layers for key, value in layer.items() if value is not None}
-    free = set(PROGRAM_FIELDS) - said
+    free = set(PROGRAM_PATHS) - said
     if of_task:
         free.discard("robot")
     if in_world or any("background" in layer for layer in above):
         free.discard("profile")
-    if in_world or said & {"background", "x_mm", "y_mm"}:
-        free -= {"x_mm", "y_mm"}
+    if in_world or said & {"background", *_PLACE}:
+        free -= {*_PLACE}
     return frozenset(free)
 
 
@@ -130,23 +132,23 @@ def decide(source: ProgramSource, settings: Settings, free: Collection[str]) -> 
         settings: What is chosen.
         free: The fields that are not.
     """
-    prelude = settings.preload or source.program.prelude
+    prelude = settings["preload"] or source.program.prelude
     facts = _facts_in_run(source, free) if prelude == _NO_PRELUDE else SourceFacts()
     layer: dict[str, Any] = {}
     if facts.robot and "robot" in free:
         layer["robot"] = facts.robot.choice
     if _by_brick_rules(source, facts, free):
         layer["profile"] = BRICK_PROFILE
-    profile = layer.get("profile", settings.profile)
-    if profile in (BRICK_PROFILE, PROFILES[BRICK_PROFILE]) and not source.has_magic and {"x_mm", "y_mm"} <= {*free}:
-        layer |= {"x_mm": FIELD_WIDTH_MM / 2, "y_mm": FIELD_HEIGHT_MM / 2}
+    profile = layer.get("profile", settings["profile"])
+    if profile in (BRICK_PROFILE, PROFILES[BRICK_PROFILE]) and not source.has_magic and {*_PLACE} <= {*free}:
+        layer |= dict(zip(_PLACE, (FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2), strict=True))
     needed = facts.robot.choice if facts.robot else None
     return Decided(layer, *_in_words(source.program, facts, layer), needed, frozenset(free))
 
 
 def robot_for(source: ProgramSource) -> BuiltRobot | None:
     """Return the robot on which a program runs without further options; None for the default one."""
-    free = free_fields((source.options,), (), in_world=False, of_task=False)
+    free = free_paths((source.options,), (), in_world=False, of_task=False)
     return _facts_in_run(source, free).robot
 
 

@@ -6,17 +6,14 @@ To add a robot: add an entry to `ROBOTS`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import takewhile
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 from tuisim.config import files
 from tuisim.config.files import Location, Scalar
-from tuisim.config.options import RobotChoice, pen_color
 from tuisim.core.spec import (
-    MAX_LIGHT_NOISE,
-    MAX_MOTOR_NOISE,
     MOTOR_KINDS,
     MOUNTS,
     OUTPUT_PORTS,
@@ -26,12 +23,30 @@ from tuisim.core.spec import (
     InfraredSpec,
     MotorSpec,
     Mount,
+    NoiseSpec,
+    PenSpec,
     RobotSpec,
     SensorSpec,
     TouchSpec,
     UltrasonicSpec,
 )
+from tuisim.core.values import Part, Value, shown, values_of
 from tuisim.errors import ConfigError, RobotError
+
+
+@dataclass(frozen=True, slots=True)
+class RobotChoice:
+    """A robot read from a file, and the other settings in that file."""
+
+    spec: RobotSpec
+    motor_noise: int | None = None
+    """The default motor noise of a run."""
+    own_places: bool = True
+    """Whether its colour sensors keep their positions on a mat that defines its own."""
+    light_noise: int | None = None
+    """The default light noise of a run."""
+    notes: tuple[str, ...] = ()
+    """Warnings about the file, to be shown to the user."""
 
 
 def _sensor_pair(
@@ -74,49 +89,24 @@ ROBOTS: Mapping[str, RobotSpec] = {
 """Every robot by name."""
 
 DEFAULT_ROBOT = "Default_Robot"
-LENGTH_KEYS = ("wheel_diameter_mm", "wheel_spacing_mm", "wheel_width_mm", "back_mm")
-PORT_KEYS = ("left_port", "right_port")
-MOUNTED_KEYS = {"left_reversed": False, "right_reversed": False, "gear_ratio": 1.0}
-"""Keys of how the motors drive the wheels, with their usual values, which files omit."""
-_BODY_KEYS = ("name", *LENGTH_KEYS, *PORT_KEYS, *MOUNTED_KEYS)
-"""Keys whose values are those of the fields."""
+_VALUES = values_of(RobotSpec)
+_BODY_KEYS = tuple(
+    key for key, value in _VALUES.items() if not isinstance(value, Part) and key not in ("left_motor", "right_motor")
+)
+"""Keys whose values are those of the fields; the kinds of motors stand in the table `motors`."""
 _MOTOR_KEYS = ("kind", "low_deg", "high_deg")
-PEN_KEYS = ("x_mm", "y_mm", "color", "width_mm", "down")
-_TOP_KEYS = (
-    "base", "name", *LENGTH_KEYS, "weight", *PORT_KEYS, *MOUNTED_KEYS, "motors", *(mount.key for mount in MOUNTS),
-    "pen",
-)  # fmt: skip
+_PEN_KEYS = ("x_mm", "y_mm", "color", "width_mm", "down")
+_TOP_KEYS = ("base", *_BODY_KEYS, "motors", *(mount.key for mount in MOUNTS), "pen")
 
-COMMENTS = {
-    "wheel_spacing_mm": "between the centres of the wheels",
-    "back_mm": "how far the body reaches behind the axle, as a negative y",
-    "weight": f"{', '.join(ROBOT_WEIGHTS)}, or a number",
-    "left_port": "outA … outD",
-    "left_reversed": "mounted the other way round: positive speeds turn the wheel backwards",
-    "right_reversed": "mounted the other way round: positive speeds turn the wheel backwards",
-    "gear_ratio": "motor turns per wheel turn",
-    "kind": "large or medium",
-    "low_deg": "end stop backwards, from the position at the start",
-    "high_deg": "end stop forwards, from the position at the start",
-    "port": "in1 … in4",
-    "x_mm": "to the right of the robot's centre",
-    "y_mm": "forward of the axle",
-    "diameter_mm": "of the visible disc, whole mm",
-    "strategy": "weights of the disc's pixels: mean, gaussian or centre",
-    "angle_deg": "counter-clockwise from straight ahead",
-    "max_range_mm": "reported when no echo returns",
-    "noise_mm": "uniform, plus or minus this value",
-    "ray_angles_deg": "directions of the rays; the nearest echo counts",
-    "color": "a CSS colour name, or #rrggbb",
-}
-_FURTHER_COMMENTS: Mapping[type, Mapping[str, str]] = {
-    TouchSpec: {
-        "width_mm": "of the bumper, across the robot",
-        "pressed_by": "port of the motor that presses it, in place of obstacles and walls",
-        "pressed_at": "low or high: the motor's end stop where it does",
-    }
-}
-"""Comments on keys in sensors of one class only."""
+_TABLES: Mapping[str, type] = {
+    "": RobotSpec, "motors": MotorSpec, "pen": PenSpec, **{mount.key: mount.spec for mount in MOUNTS},
+}  # fmt: skip
+
+
+def values_in(table: str) -> Mapping[str, Value]:
+    """Return the values that stand in a table of a robot file, by key."""
+    return values_of(_TABLES[table.partition(".")[0]])
+
 
 _HEAD = (
     "# A robot for tuisim. Lengths in mm, angles in degrees; x to the right of the midpoint between the wheels,",
@@ -157,16 +147,10 @@ def robot_from_table(data: object, name: str, at: Location, changes_to: RobotSpe
     found = files.table(data, at, _TOP_KEYS)
     named = ROBOTS[files.one_of(found.get("base", DEFAULT_ROBOT), at.at("base"), ROBOTS)]
     base = named if changes_to is None or "base" in found else changes_to
-    changes = {"name": name, **{key: found[key] for key in _BODY_KEYS if key in found}}
-    if "name" in found:
-        _check_name(found["name"], at.at("name"))
-    if "weight" in found:
-        changes["weight"] = _weight(found["weight"], at.at("weight"))
+    changes: dict[str, Any] = {"name": name}
+    changes |= {key: files.read_value(found[key], _VALUES[key], at.at(key)) for key in _BODY_KEYS if key in found}
     if "pen" in found:
-        pen = dict(files.table(found["pen"], at.at("pen")))
-        if "color" in pen:
-            pen["color"] = files.by_option(pen["color"], at.at("pen.color"), pen_color)
-        changes["pen"] = files.updated(base.pen, pen, at.at("pen"))
+        changes["pen"] = files.read_part(found["pen"], base.pen, at.at("pen"))
     if "motors" in found:
         changes |= _motors(found, base, at)
     for mount in MOUNTS:
@@ -175,22 +159,12 @@ def robot_from_table(data: object, name: str, at: Location, changes_to: RobotSpe
             changes[mount.field] = read(found[mount.key], mount, base, at.at(mount.key))
     sensors = found.get("color_sensors", {}).values()
     own_places = any(isinstance(sensor, dict) and "x_mm" in sensor for sensor in sensors)
-    return RobotChoice(files.changed(base, changes, at), own_places=own_places)
-
-
-def _check_name(data: object, at: Location) -> None:
-    if len(name := files.convert(data, str, at)) > files.MAX_NAME:
-        raise at.wrong(f"must be at most {files.MAX_NAME} characters, got {len(name)}")
-
-
-def _weight(data: object, at: Location) -> float:
-    named = isinstance(data, str)
-    return ROBOT_WEIGHTS[files.one_of(data, at, ROBOT_WEIGHTS)] if named else files.convert(data, float, at)
+    return RobotChoice(files.with_values(base, changes, at), own_places=own_places)
 
 
 def _motors(robot: Mapping[str, Any], base: RobotSpec, at: Location) -> dict[str, Any]:
     """Return motors by port, as fields of `RobotSpec`; `false` removes a motor of the base."""
-    wheels = {files.convert(robot.get(key, getattr(base, key)), str, at.at(key)): key for key in PORT_KEYS}
+    wheels = {robot.get(key, getattr(base, key)): key for key in ("left_port", "right_port")}
     motors = {motor.port: motor for motor in base.extra_motors}
     found: dict[str, Any] = {}
     at = at.at("motors")
@@ -215,15 +189,12 @@ def _motor(data: object, base: MotorSpec, at: Location) -> MotorSpec:
     """Return a motor with the values in a table, or of the kind that a text names."""
     if not isinstance(data, dict):
         return replace(base, kind=files.one_of(data, at, MOTOR_KINDS))
-    values = files.table(data, at, _MOTOR_KEYS)
-    if "kind" in values:
-        files.one_of(values["kind"], at.at("kind"), MOTOR_KINDS)
-    return files.changed(base, values, at)
+    return files.read_part(data, base, at, port=base.port)
 
 
 def _single(data: object, mount: Mount, base: RobotSpec, at: Location) -> SensorSpec | None:
     """Return the only sensor of its kind; None for `false`, which removes it."""
-    return None if data is False else files.updated(getattr(base, mount.field) or mount.spec(), data, at)
+    return None if data is False else files.read_part(data, getattr(base, mount.field) or mount.spec(), at)
 
 
 def _named(data: object, mount: Mount, base: RobotSpec, at: Location) -> tuple[SensorSpec, ...]:
@@ -235,14 +206,15 @@ def _named(data: object, mount: Mount, base: RobotSpec, at: Location) -> tuple[S
         if sensor is False:
             found.pop(name, None)
         elif not SENSOR_NAME.fullmatch(name):
-            wrong = at.at(files.shown(name)[1:-1]).wrong
+            wrong = at.at(shown(name)[1:-1]).wrong
             raise wrong("is not a valid sensor name", "letters, digits and _, a letter first, at most 31")
         elif name in found:
-            found[name] = files.updated(found[name], sensor, place)
+            found[name] = files.read_part(sensor, found[name], place)
         else:
-            # No port is free by itself.
-            files.required(files.table(sensor, place, files.keys_of(mount.spec)), "port", place)
-            found[name] = files.convert({"name": name, **sensor}, mount.spec, place)
+            if isinstance(sensor, dict):
+                # No port is free by itself.
+                files.required(files.table(sensor, place, [*values_of(mount.spec)][1:]), "port", place)
+            found[name] = files.read_part(sensor, mount.spec, place, name=name)
     # A file that names all of them also sets their order.
     order = [name for name in names if name in found]
     return tuple(found[name] for name in (order if len(order) == len(found) else found))
@@ -304,8 +276,8 @@ def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
             unknown += [f"{key}.{name}" for name in part if name not in ("enabled", *keys)]
         elif key not in (_WHEEL_NOISE, _SENSOR_NOISE, *_WITHOUT_EFFECT):
             unknown.append(key)
-    motor = _json_noise(found, _WHEEL_NOISE, MAX_MOTOR_NOISE, at)
-    light = _json_noise(found, _SENSOR_NOISE, MAX_LIGHT_NOISE, at)
+    motor = _json_noise(found, _WHEEL_NOISE, "motor", at)
+    light = _json_noise(found, _SENSOR_NOISE, "light", at)
     try:
         choice = robot_from_table(ours, name, at)
     except ConfigError as error:
@@ -314,12 +286,9 @@ def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
     return replace(choice, motor_noise=_DEFAULT_NOISE if motor is None else motor, light_noise=light, notes=notes)
 
 
-def _json_noise(robot: Mapping[str, object], key: str, most: int, at: Location) -> int | None:
-    from msgspec import Meta
-
+def _json_noise(robot: Mapping[str, object], key: str, kind: str, at: Location) -> int | None:
     value = robot.get(key)
-    kind: Any = Annotated[int, Meta(ge=0, le=most)]
-    return None if value is None else files.convert(value, kind, at.at(key))
+    return None if value is None else files.read_value(value, values_of(NoiseSpec)[kind], at.at(key))
 
 
 def _json_part(part: Mapping[str, object], keys: Mapping[str, str], at: Location) -> dict[str, object] | bool:
@@ -334,7 +303,7 @@ def _json_part(part: Mapping[str, object], keys: Mapping[str, str], at: Location
 
 def shown_keys(keys: Sequence[str]) -> str:
     """Return a short list of keys for a message, whatever their number and length."""
-    names = [files.shown(key)[1:-1] for key in keys[:_KEYS_SHOWN]]
+    names = [shown(key)[1:-1] for key in keys[:_KEYS_SHOWN]]
     return ", ".join(names) + (f" and {len(keys) - _KEYS_SHOWN} more" if len(keys) > _KEYS_SHOWN else "")
 
 
@@ -366,29 +335,30 @@ def robot_file(spec: RobotSpec) -> list[str]:
     return [*_HEAD, "", *robot_lines(spec)]
 
 
-def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = PEN_KEYS) -> list[str]:
+def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = _PEN_KEYS) -> list[str]:
     """Return a robot as TOML lines, with every value: the table `parent`, or a file of its own."""
     under = f"{parent}." if parent else ""
     lines = [f"[{parent}]"] if parent else []
-    values = _values(spec, ("name", *LENGTH_KEYS, "weight", *PORT_KEYS))
-    values["weight"] = next((name for name, weight in ROBOT_WEIGHTS.items() if weight == spec.weight), spec.weight)
-    values |= {key: value for key, usual in MOUNTED_KEYS.items() if (value := getattr(spec, key)) != usual}
-    lines += files.toml_lines(values, COMMENTS)
+    lines += files.value_lines(spec, [key for key in _BODY_KEYS if not _is_left_out(spec, key)])
     names = [sensor.name for sensor in spec.color_sensors]
     if gone := [sensor.name for sensor in ROBOTS[DEFAULT_ROBOT].color_sensors if sensor.name not in names]:
         lines += ["", f"[{under}color_sensors]", *(f"{files.toml_key(name)} = false" for name in gone)]
     for mount in MOUNTS:
-        if mount.usual and not mount.many and not spec.sensors_in(mount):
+        if mount.standard and not mount.many and not spec.sensors_in(mount):
             # Keys of the robot itself must precede its first table.
             lines.insert(1 if parent else 0, f"{mount.key} = false")
     for mount in MOUNTS:
         for sensor in spec.sensors_in(mount):
             place = f"{mount.key}.{files.toml_key(sensor.name)}" if mount.many else mount.key
-            comments = {**COMMENTS, **_FURTHER_COMMENTS.get(mount.spec, {})}
-            keys = [key for key in files.keys_of(mount.spec) if not _is_no_presser(sensor, key)]
-            lines += ["", f"[{under}{place}]", *files.toml_lines(_values(sensor, keys), comments)]
+            keys = [key for key in values_of(mount.spec) if key != "name" and not _is_no_presser(sensor, key)]
+            lines += ["", f"[{under}{place}]", *files.value_lines(sensor, keys)]
     lines += _motor_lines(spec, f"{under}motors")
-    return [*lines, "", f"[{under}pen]", *files.toml_lines(_values(spec.pen, pen_keys), COMMENTS)]
+    return [*lines, "", f"[{under}pen]", *files.value_lines(spec.pen, pen_keys)]
+
+
+def _is_left_out(spec: RobotSpec, key: str) -> bool:
+    """Return whether a file does without a value: of how the motors drive the wheels, where that is as usual."""
+    return _VALUES[key].later and getattr(spec, key) == RobotSpec.__dataclass_fields__[key].default
 
 
 def _is_no_presser(sensor: SensorSpec, key: str) -> bool:
@@ -403,11 +373,5 @@ def _motor_lines(spec: RobotSpec, table: str) -> list[str]:
     kinds: dict[str, Scalar] = {motor.port: motor.kind for motor in plain}
     lines = ["", f"[{table}]", *files.toml_lines(kinds)] if kinds else []
     for motor in motors[len(plain) :]:
-        values = {key: value for key, value in _values(motor, _MOTOR_KEYS).items() if value is not None}
-        lines += ["", f"[{table}.{motor.port}]", *files.toml_lines(values, COMMENTS)]
+        lines += ["", f"[{table}.{motor.port}]", *files.value_lines(motor, _MOTOR_KEYS)]
     return lines
-
-
-def _values(spec: object, keys: Iterable[str]) -> dict[str, Scalar]:
-    values = {key: getattr(spec, key) for key in keys}
-    return {key: list(value) if isinstance(value, tuple) else value for key, value in values.items()}

@@ -7,23 +7,26 @@ from typing import Any
 
 import click
 
-from tuisim.config.command_line import Command, GroupedOption, Value, parse
+from tuisim.config.command_line import Command, GroupedOption, WordType, parse
 from tuisim.config.options import OPTIONS, Option
+from tuisim.core.values import parse as parse_value
 
 Names = Callable[[str], Iterable[str]]
 
 
 def _parameter(shared: Option, *, magic: bool, hidden: bool, names: Names) -> GroupedOption:
     flags = [*shared.flags, *(shared.magic_flags if magic else ())]
-    how: dict[str, Any] = {"group": shared.group, "sets": shared.field, "help": shared.help, "hidden": hidden}
+    how: dict[str, Any] = {"group": shared.group, "sets": shared.path, "help": shared.help, "hidden": hidden}
+    name = shared.path.replace(".", "_")
     if shared.panel:
         return GroupedOption([*flags, f"panel_{shared.panel}"], is_flag=True, adds=shared.panel, **how)
-    if shared.convert is None:
-        return GroupedOption([*flags, shared.field], flag_value=shared.value, default=None, **how)
-    convert, flag = shared.convert, shared.flags[0]
-    choices = shared.metavar.split("|") if "|" in shared.metavar else ()
-    kind = Value(lambda text: convert(text, flag), lambda: choices or names(shared.field))
-    return GroupedOption([*flags, shared.field], type=kind, metavar=shared.metavar, **how)
+    if shared.constant is not None:
+        return GroupedOption([*flags, name], flag_value=shared.constant, default=None, **how)
+    kind = WordType(
+        lambda text: parse_value(shared.value, text, shared.flags[0]),
+        lambda: shared.value.choices or names(shared.path),
+    )
+    return GroupedOption([*flags, name], type=kind, metavar=shared.metavar, **how)
 
 
 def shared_options(
@@ -34,13 +37,13 @@ def shared_options(
     Args:
         magic: Whether a magic line is parsed, not the command line.
         hidden: Groups that are accepted but not listed in the help.
-        names: Return the names that completion offers for a field of `Settings`.
+        names: Return the names that completion offers for a path.
     """
     return [_parameter(one, magic=magic, hidden=one.group in hidden, names=names) for one in OPTIONS]
 
 
 def parse_words(words: Sequence[str]) -> dict[str, Any]:
-    """Parse the words of a program's magic line and return its options, keyed by field of `Settings`.
+    """Parse the words of a program's magic line and return its options, by path.
 
     Raises:
         ConfigError: a word is no option, or a value is wrong.

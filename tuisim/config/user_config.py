@@ -1,7 +1,7 @@
 """The user's own defaults: `config.toml`, its settings, and how they are read.
 
-An option of the command line is a setting if it says how the file sets it (`Option.in_file`); the others are at the end
-of `_EVERY`. To add a setting: do the one or the other.
+An option of the command line is a setting unless its value says otherwise (`Value.in_config`); the others are at the
+end of `_EVERY`. To add a setting: do the one or the other.
 """
 
 from __future__ import annotations
@@ -13,9 +13,10 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from tuisim.config.files import Location, means_file, parse_toml, shown, table
+from tuisim.config.files import Location, Scalar, means_file, parse_toml, read_value, table
 from tuisim.config.folders import config_folder, user_path
-from tuisim.config.options import OF_THE_APP, OPTIONS, FileValue, InFile, Option, Settings
+from tuisim.config.options import OF_THE_APP, OPTIONS, Name, Settings
+from tuisim.core.values import Value, shown
 from tuisim.errors import ConfigError, nearest, see_page
 from tuisim.regular_file import read_regular
 
@@ -48,10 +49,13 @@ class Setting:
 
     section: Section
     name: str
-    help: str
-    in_file: InFile
-    option: Option | None = None
-    """The option with the same meaning."""
+    value: Value
+    default: Any
+    """Its value without the file; an empty text where mat, robot or program decides."""
+    sets: str = ""
+    """The path of the setting that it makes; empty if there is none."""
+    at_once: bool = True
+    """Whether the app could apply a change at once."""
 
     @property
     def path(self) -> str:
@@ -59,53 +63,27 @@ class Setting:
         return f"{self.section}.{self.name}"
 
     @property
-    def field(self) -> str:
-        """The field of `Settings` that it sets; empty if there is none."""
-        return self.option.field if self.option else ""
+    def help(self) -> str:
+        """What it does, as a sentence."""
+        return f"{self.value.help[0].upper()}{self.value.help[1:]}."
 
     @property
     def is_live(self) -> bool:
         """Whether the app applies a change at once; else from its next start on."""
-        return self.section is not Section.SIMULATION and self.in_file.is_live
-
-    def converted(self, value: object, at: Location) -> Any:
-        """Return a value of the file as that of the field.
-
-        Raises:
-            ConfigError: type or value are wrong.
-        """
-        match self.in_file.usual:
-            case bool():
-                fits = isinstance(value, bool)
-            case int() | float():
-                fits = isinstance(value, int | float) and not isinstance(value, bool)
-                fits = fits or value in self.in_file.choices
-            case _:
-                fits = isinstance(value, str) and value.isprintable() and bool(value.strip())
-                fits = fits and value in (self.in_file.choices or [value])
-        if not fits:
-            raise at.wrong(f"must be {self.in_file.allowed}, got {shown(value)}")
-        if self.option is None:
-            return value
-        try:
-            return self.option.converted(value, "")
-        except ConfigError as error:
-            raise at.wrong(error.message.removeprefix(": "), error.hint) from None
+        return self.section is not Section.SIMULATION and self.at_once
 
 
-def _of_option(option: Option) -> Iterator[Setting]:
-    if option.in_file:
-        section = Section.APP if option.field in OF_THE_APP else Section.SIMULATION
-        yield Setting(section, option.name, option.help, option.in_file, option)
+def _of_options() -> Iterator[Setting]:
+    for option in OPTIONS:
+        if option.value.in_config and option.constant is not False:
+            section = Section.APP if option.path in OF_THE_APP else Section.SIMULATION
+            yield Setting(section, option.name, option.value, option.default, option.path, option.is_live)
 
 
 THEME, CELL_SET = f"{Section.APP}.theme", f"{Section.APP}.cells"
 """Paths of settings that are read by themselves."""
-_THEME = InFile("textual-dark", "the name of a theme")
-_EVERY = (
-    *(setting for option in OPTIONS for setting in _of_option(option)),
-    Setting(Section.APP, "theme", "Colours of the app; F10 lists the themes.", _THEME),
-)
+_THEME = Name("the name of a theme", "THEME", help="colours of the app; F10 lists the themes")
+_EVERY = (*_of_options(), Setting(Section.APP, "theme", _THEME, "textual-dark"))
 REMOVED = {"editor": "there are no keys of vim and Emacs; ctrl+e in the app opens the program in $EDITOR"}
 """What to do without a table that files of before may have."""
 SETTINGS: Mapping[str, Setting] = {one.path: one for section in Section for one in _EVERY if one.section is section}
@@ -117,10 +95,10 @@ class UserConfig:
     """What `config.toml` says."""
 
     path: Path
-    written: Mapping[str, FileValue] = field(default_factory=dict)
+    written: Mapping[str, Scalar] = field(default_factory=dict)
     """The valid values, by path of the setting."""
     values: Mapping[str, Any] = field(default_factory=dict)
-    """The same, as they are in `Settings`."""
+    """The same, as settings."""
     keys: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """The keys of actions by id, as they are written; whether they fit the actions is not checked."""
     problems: tuple[ConfigError, ...] = ()
@@ -136,16 +114,16 @@ class UserConfig:
             raise self.problems[0]
         return self
 
-    def value(self, path: str) -> FileValue:
-        """Return the value of a setting in the file, or its usual one."""
-        return self.written.get(path, SETTINGS[path].in_file.usual)
+    def value(self, path: str) -> Scalar:
+        """Return the value of a setting in the file, or its default."""
+        return self.written.get(path, SETTINGS[path].default)
 
     def layer(self, section: Section) -> dict[str, Any]:
-        """Return the settings of a table, by field of `Settings`, without the glyphs: the terminal has to show them."""
+        """Return the settings of a table, by path, without the glyphs: the terminal has to show them."""
         return {
-            one.field: self.values[path]
+            one.sets: self.values[path]
             for path, one in SETTINGS.items()
-            if one.section is section and one.field and path in self.values and path != CELL_SET
+            if one.section is section and one.sets and path in self.values and path != CELL_SET
         }
 
     def only(self, section: Section) -> UserConfig:
@@ -163,7 +141,7 @@ class UserConfig:
             for path, one in SETTINGS.items()
             if one.section is Section.SIMULATION
             and path in self.written
-            and not any(one.field in layer for layer in above)
+            and not any(one.sets in layer for layer in above)
         ]
 
 
@@ -216,7 +194,7 @@ def config_of_text(text: str, path: Path) -> UserConfig:
     data = parse_toml(text, str(path), ConfigError)
     at = Location(str(path))
     problems: list[ConfigError] = []
-    written: dict[str, FileValue] = {}
+    written: dict[str, Scalar] = {}
     values: dict[str, Any] = {}
     keys: dict[str, tuple[str, ...]] = {}
     for name, value, here in _entries(data, at, problems):
@@ -225,7 +203,7 @@ def config_of_text(text: str, path: Path) -> UserConfig:
                 keys[name] = _keys(value, here)
             else:
                 one = SETTINGS[here.key]
-                written[here.key], values[here.key] = value, _resolved(one, one.converted(value, here), path)
+                written[here.key], values[here.key] = value, _resolved(one, read_value(value, one.value, here), path)
         except ConfigError as error:
             problems.append(error)
     if Section.SIMULATION in data:
@@ -280,7 +258,7 @@ def _resolved(one: Setting, value: Any, path: Path) -> Any:
     return str(path.parent / word) if is_path else value
 
 
-def _without_wrong_names(written: dict[str, FileValue], values: dict[str, Any], at: Location) -> Iterator[ConfigError]:
+def _without_wrong_names(written: dict[str, Scalar], values: dict[str, Any], at: Location) -> Iterator[ConfigError]:
     """Remove names of mats, robots, obstacles and profiles that do not exist; yield an error for each."""
     from tuisim.config.build import build_run_spec
 
@@ -289,7 +267,7 @@ def _without_wrong_names(written: dict[str, FileValue], values: dict[str, Any], 
         if path not in values:
             continue
         try:
-            build_run_spec(Settings(**{"mats": values.get(f"{Section.SIMULATION}.mats"), name: values[path]}))
+            build_run_spec(Settings({"mats": values.get(f"{Section.SIMULATION}.mats"), name: values[path]}))
         except ConfigError as error:
             del written[path], values[path]
             where = "" if error.file else f"{error.key}: "

@@ -8,8 +8,7 @@ from textwrap import wrap
 from typing import Any
 
 from tuisim.atomic import make_private_folder, replacing
-from tuisim.config.files import toml_value
-from tuisim.config.options import FileValue
+from tuisim.config.files import Scalar, toml_value
 from tuisim.config.user_config import (
     ABOUT,
     PAGE,
@@ -35,7 +34,7 @@ def template() -> str:
         for one in SETTINGS.values():
             if one.section is section:
                 lines += _comment(one.help)
-                lines.append(f"#{one.name} = {toml_value(one.in_file.usual)}")
+                lines.append(f"#{one.name} = {toml_value(one.default)}")
         if section is Section.KEYS:
             lines += [f"#{example}" for example in _KEYS]
     return "\n".join(lines) + "\n"
@@ -58,7 +57,7 @@ def write_template() -> Path:
     return path
 
 
-def save_setting(one: Setting, value: FileValue | None) -> None:
+def save_setting(one: Setting, value: Scalar | None) -> None:
     """Set a setting in the file, which is made if it does not exist; comments and everything else in it stay.
 
     Args:
@@ -79,7 +78,7 @@ def save_setting(one: Setting, value: FileValue | None) -> None:
     _write(path, changed)
 
 
-def _changed(text: str, one: Setting, value: FileValue | None) -> str:
+def _changed(text: str, one: Setting, value: Scalar | None) -> str:
     import tomlkit
 
     document: Any = tomlkit.parse(_uncommented(text, one, value) if value is not None else text)
@@ -92,7 +91,7 @@ def _changed(text: str, one: Setting, value: FileValue | None) -> str:
     return tomlkit.dumps(document)
 
 
-def _uncommented(text: str, one: Setting, value: FileValue) -> str:
+def _uncommented(text: str, one: Setting, value: Scalar) -> str:
     """Return the text with the setting in place of its comment as `template` writes it, if it has only that."""
     head, header, rest = text.partition(f"[{one.section}]\n")
     body, next_header, after = rest.partition("\n[")

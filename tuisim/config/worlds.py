@@ -4,32 +4,26 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, TypeAlias, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
-from msgspec import UNSET, Meta, Struct, UnsetType, structs
+from msgspec import UNSET, Struct, UnsetType, structs
 
-from tuisim.config import files, options
+from tuisim.config import files
 from tuisim.config.build import build_run_spec, settings_from
 from tuisim.config.files import Location, Scalar
 from tuisim.config.folders import programs_folder, user_path
 from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import load_obstacles, obstacle_lines, obstacles_from_list
+from tuisim.config.options import PANELS, RUN_VALUES, settings_of
 from tuisim.config.profiles import load_profile, profile_from_table, profile_lines
-from tuisim.config.robots import load_robot, robot_from_table, robot_lines
+from tuisim.config.robots import RobotChoice, load_robot, robot_from_table, robot_lines
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ProfileSpec
-from tuisim.core.spec import (
-    BACKGROUND_FITS,
-    MAX_LIGHT_NOISE,
-    MAX_MOTOR_NOISE,
-    REMOTE_BUTTONS,
-    BeaconSpec,
-    RemotePress,
-    RunSpec,
-)
+from tuisim.core.spec import START_VALUES, BeaconSpec, RemotePress, RunSpec
+from tuisim.core.values import shown, values_of
 from tuisim.errors import ConfigError, ObstacleError, ProfileError, RobotError
 
 WORLD_SUFFIX = ".toml"
@@ -41,73 +35,35 @@ _Value = TypeVar("_Value")
 Given: TypeAlias = _Value | UnsetType
 """A key that may be missing."""
 
-Position = Annotated[float, Meta(ge=-options.MAX_POSITION_MM, le=options.MAX_POSITION_MM)]
-Angle = Annotated[float, Meta(ge=-options.MAX_ANGLE_DEG, le=options.MAX_ANGLE_DEG)]
-Time = Annotated[float, Meta(ge=0, le=1e9)]
-Channel = Annotated[int, Meta(ge=1, le=4)]
-
-
-class _Start(Struct):
-    x_mm: Given[Position] = UNSET
-    y_mm: Given[Position] = UNSET
-    heading_deg: Given[Angle] = UNSET
-
-
-class _Noise(Struct):
-    light: Given[Annotated[int, Meta(ge=0, le=MAX_LIGHT_NOISE)]] = UNSET
-    motor: Given[Annotated[int, Meta(ge=0, le=MAX_MOTOR_NOISE)]] = UNSET
-
-
-class _PenTable(Struct):
-    down: Given[bool] = UNSET
-    color: Given[str] = UNSET
-    width_mm: Given[Annotated[float, Meta(ge=options.MIN_PEN_MM, le=options.MAX_PEN_MM)]] = UNSET
-
-
-class _Beacon(Struct):
-    x_mm: Position
-    y_mm: Position
-    channel: Channel = 1
-
-
-class _Press(Struct):
-    buttons: list[str]
-    from_s: Time = 0.0
-    until_s: Time = 1e9
-    channel: Channel = 1
-
 
 class _World(Struct):
-    """The keys of a world file; `Any` where further functions check them."""
+    """The keys of a world file that are no values of a run; `Any` where further functions check them."""
 
     world: Given[str] = UNSET
     program: Given[str] = UNSET
     arguments: Given[list[Any]] = UNSET
     background: Given[str] = UNSET
     mats: Given[str] = UNSET
-    background_fit: Given[str] = UNSET
     robot: Given[str | dict[str, Any]] = UNSET
     obstacles: Given[str] = UNSET
     obstacle: Given[list[Any]] = UNSET
     profile: Given[str | dict[str, Any]] = UNSET
-    seed: Given[Annotated[int, Meta(ge=0, le=options.MAX_SEED)]] = UNSET
-    walls: Given[bool] = UNSET
-    solid: Given[bool] = UNSET
-    pen_marks: Given[bool] = UNSET
     rays: Given[bool] = UNSET
     autorun: Given[bool] = UNSET
     panels: Given[list[Any]] = UNSET
     hidden_panels: Given[list[Any]] = UNSET
-    start: Given[_Start] = UNSET
-    noise: Given[_Noise] = UNSET
-    pen: Given[_PenTable] = UNSET
     beacon: Any = UNSET
     remote: Any = UNSET
     title: Any = UNSET
     goal: Any = UNSET
 
 
-_SAME_IN_SETTINGS = ("seed", "walls", "solid", "pen_marks", "rays", "autorun")
+_TABLES: Mapping[str, tuple[str, ...]] = {
+    table: tuple(path.partition(".")[2] for path in RUN_VALUES if path.startswith(f"{table}."))
+    for table in dict.fromkeys(path.partition(".")[0] for path in RUN_VALUES)
+}
+"""The keys of each table with values of a run; none for a value that is in no table."""
+
 _NOT_IN_A_RUN = ("world", "mats", "rays", "autorun", "panels", "hidden_panels", "title", "goal")
 """Keys that stay as they are when a run is saved into a file that has them."""
 _PANEL_FIELDS = {"panels": "panels_on", "hidden_panels": "panels_off"}
@@ -123,7 +79,7 @@ class WorldFile:
 
     path: Path
     settings: Mapping[str, Any]
-    """By field of `Settings`; in precedence between a program's magic line and the command line."""
+    """By path; in precedence between a program's magic line and the command line."""
     program: str | None = None
     """The program to run in it: a path, or the name of an example."""
     files: tuple[Path, ...] = ()
@@ -167,10 +123,10 @@ def world_from_table(data: object, path: Path, mats: str | None = None, above: t
         ConfigError: a key or a value is wrong.
     """
     at = Location(str(path))
-    world = _given(files.convert(data, _World, at))
+    found, world = _parted(data, at)
     referred: list[Path] = []
     resolve = partial(_resolved, path.parent, referred)
-    found = {key: world[key] for key in _SAME_IN_SETTINGS if key in world} | _mat(world, at, resolve, mats)
+    found |= {key: world[key] for key in ("rays", "autorun") if key in world} | _mat(world, at, resolve, mats)
     for key, load, read, error in (
         ("robot", load_robot, robot_from_table, RobotError),
         ("obstacles", load_obstacles, None, ObstacleError),
@@ -185,12 +141,11 @@ def world_from_table(data: object, path: Path, mats: str | None = None, above: t
         if "obstacles" in world:
             raise at.at("obstacle").wrong("is given together with obstacles", "give only one of them")
         found["obstacles"] = obstacles_from_list(world["obstacle"], at.at("obstacle", ObstacleError))
-    found |= {f"{key}_noise": value for key, value in world.get("noise", {}).items()}
-    found |= _pen(world.get("pen", {}), at.at("pen")) | _infrared(world, at)
+    found |= _infrared(world, at)
     for key, field in _PANEL_FIELDS.items():
         if key in world:
-            listed = files.entries(world[key], at.at(key), len(options.PANELS), "panels")
-            found[field] = tuple(files.one_of(panel, place, options.PANELS) for panel, place in listed)
+            listed = files.entries(world[key], at.at(key), len(PANELS), "panels")
+            found[field] = tuple(files.one_of(panel, place, PANELS) for panel, place in listed)
     if "arguments" in world:
         words = enumerate(world["arguments"], start=1)
         found["arguments"] = tuple(_argument(word, at.at(f"arguments[{number}]")) for number, word in words)
@@ -214,10 +169,19 @@ def _base(word: str, at: Location, resolve: Resolver, mats: str | None, above: t
     return _load_world(path, mats, above)
 
 
-def _given(data: Struct) -> dict[str, Any]:
-    """Return the keys that a table has, nested tables as dicts."""
-    found = {key: value for key, value in structs.asdict(data).items() if value is not UNSET}
-    return {key: _given(value) if isinstance(value, Struct) else value for key, value in found.items()}
+def _parted(data: object, at: Location) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the values of a run in a world file, by path, and its other keys."""
+    world = files.table(data, at, (*_World.__struct_fields__, *_TABLES))
+    others = files.convert({key: value for key, value in world.items() if key not in _TABLES}, _World, at)
+    found: dict[str, Any] = {}
+    for name, value in world.items():
+        if keys := _TABLES.get(name):
+            inside = files.table(value, at.at(name), keys)
+            found |= {f"{name}.{key}": inside[key] for key in inside}
+        elif name in _TABLES:
+            found[name] = value
+    found = {path: files.read_value(value, RUN_VALUES[path].value, at.at(path)) for path, value in found.items()}
+    return found, {key: value for key, value in structs.asdict(others).items() if value is not UNSET}
 
 
 def pose_from_table(data: object, at: Location) -> Pose:
@@ -226,15 +190,16 @@ def pose_from_table(data: object, at: Location) -> Pose:
     Raises:
         ConfigError: a key is missing or unknown, or a value is wrong.
     """
-    found = _given(files.convert(data, _Start, at))
-    for key in _Start.__struct_fields__:
+    given = files.table(data, at, START_VALUES)
+    found = {key: files.read_value(value, START_VALUES[key], at.at(key)) for key, value in given.items()}
+    for key in START_VALUES:
         files.required(found, key, at)
     return Pose(**found)
 
 
 def _argument(word: object, at: Location) -> str:
     if not isinstance(word, str):
-        raise at.wrong(f"must be text, got {files.shown(word)}", 'in quotes, such as "5"')
+        raise at.wrong(f"must be text, got {shown(word)}", 'in quotes, such as "5"')
     if "\0" in word:
         raise at.wrong("must be text without null characters")
     return word
@@ -256,10 +221,8 @@ def _resolved(folder: Path, referred: list[Path], word: str) -> str:
 
 
 def _mat(world: Mapping[str, Any], at: Location, resolve: Resolver, mats: str | None) -> dict[str, Any]:
-    """Return mat, fit and start pose; a mat's own start pose applies to what neither this nor another layer sets."""
+    """Return mat and folder of mats; the mat's start pose applies to what neither this nor another layer sets."""
     found: dict[str, Any] = {}
-    if "background_fit" in world:
-        found["background_fit"] = files.one_of(world["background_fit"], at.at("background_fit"), BACKGROUND_FITS)
     if "mats" in world:
         found["mats"] = resolve(world["mats"])
     if "background" in world:
@@ -267,7 +230,6 @@ def _mat(world: Mapping[str, Any], at: Location, resolve: Resolver, mats: str | 
         found["background"] = resolve(word) if os.sep in word or Path(word).suffix else word
         with files.errors_at(at.file, "background"):
             find_mat(found["background"], found.get("mats", mats))
-    found |= world.get("start", {})
     return found
 
 
@@ -280,29 +242,15 @@ def _named(word: str, at: Location, resolve: Resolver, load: Callable[[str], obj
     return word
 
 
-def _pen(pen: Mapping[str, Any], at: Location) -> dict[str, Any]:
-    found = {f"pen_{key}": value for key, value in pen.items()}
-    if "color" in pen:
-        found["pen_color"] = files.by_option(pen["color"], at.at("color"), options.pen_color)
-    return found
-
-
 def _infrared(world: Mapping[str, Any], at: Location) -> dict[str, Any]:
-    """Return beacon and remote control, keyed by field of `Settings`."""
+    """Return beacon and remote control."""
     found: dict[str, Any] = {}
     if "beacon" in world:
-        found["beacon"] = BeaconSpec(**_given(files.convert(world["beacon"], _Beacon, at.at("beacon", ObstacleError))))
+        found["beacon"] = files.read_part(world["beacon"], BeaconSpec, at.at("beacon", ObstacleError))
     if "remote" in world:
         presses = files.entries(world["remote"], at.at("remote", ObstacleError), MAX_PRESSES, "presses")
-        found["remote"] = tuple(_press(press, place) for press, place in presses)
+        found["remote"] = tuple(files.read_part(press, RemotePress, place) for press, place in presses)
     return found
-
-
-def _press(data: object, at: Location) -> RemotePress:
-    press = files.convert(data, _Press, at)
-    for number, button in enumerate(press.buttons, start=1):
-        files.one_of(button, at.at(f"buttons[{number}]"), REMOTE_BUTTONS)
-    return files.convert(structs.asdict(press), RemotePress, at)
 
 
 _HEAD = "# A world for tuisim. Lengths in mm, angles in degrees counter-clockwise from +x; y up from the bottom edge."
@@ -310,16 +258,6 @@ _COMMENTS = {
     "program": "relative to this file",
     "arguments": "the program's sys.argv[1:]",
     "background": "a mat's name, or an image relative to this file",
-    "background_fit": "for an image: stretch, fit, centre or corner",
-    "walls": "on the four edges of the field",
-    "solid": "whether obstacles and walls stop the robot",
-    "pen_marks": "whether the sensors see what the pen draws",
-    "light": "0 … 128, steps of 255",
-    "motor": "0 … 500, degrees per second",
-    "color": "a CSS colour name, or #rrggbb",
-    "channel": "1 to 4",
-    "buttons": f"one or two of {', '.join(REMOTE_BUTTONS[:4])}, or beacon",
-    "from_s": "simulated seconds",
 }
 
 
@@ -337,10 +275,10 @@ def save_world(spec: RunSpec, path: Path | str, program: str | None = None, argu
     at = Location(str(path))
 
     def read(data: object) -> RunSpec:
-        return build_run_spec(options.settings_of(world_from_table(data, path).settings))
+        return build_run_spec(settings_of(world_from_table(data, path).settings))
 
     def check(data: object) -> None:
-        world = _given(files.convert(data, _World, at))
+        _, world = _parted(data, at)
         if "mats" in world:
             # A folder with an image of the same name would replace the mat.
             found = find_mat(settings_from(spec)["background"], str(path.parent / user_path(world["mats"])))
@@ -368,15 +306,17 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None, argumen
     mat = settings["background"]
     top["background"] = _relative(mat, folder) if os.sep in mat else mat
     settings["solid"] = spec.world.solid
-    for key in ("background_fit", "walls", "solid", "pen_marks", "robot", "obstacles", "profile", "seed"):
-        if isinstance(settings[key], str | int):
+    for key in ("robot", "obstacles", "profile"):
+        if isinstance(settings[key], str):
             top[key] = settings[key]
-    lines = [_HEAD, "", *files.toml_lines(top, _COMMENTS)]
-    lines += _table("start", {key: settings[key] for key in ("x_mm", "y_mm", "heading_deg")})
-    lines += _table("noise", {key: settings[f"{key}_noise"] for key in ("light", "motor")})
-    pen = {"down": "pen_down", "color": "pen_color", "width_mm": "pen_width_mm"}
-    lines += _table("pen", {key: settings[field] for key, field in pen.items()})
-    if isinstance(settings["robot"], options.RobotChoice):
+    top |= {name: settings[name] for name, keys in _TABLES.items() if not keys}
+    comments = {**_COMMENTS, **{path: one.value.help for path, one in RUN_VALUES.items()}}
+    lines = [_HEAD, "", *files.toml_lines(top, comments)]
+    for name, keys in _TABLES.items():
+        if keys:
+            help_of = {key: comments[f"{name}.{key}"] for key in keys}
+            lines += ["", f"[{name}]", *files.toml_lines({key: settings[f"{name}.{key}"] for key in keys}, help_of)]
+    if isinstance(settings["robot"], RobotChoice):
         lines += ["", *robot_lines(spec.robot, "robot", ("x_mm", "y_mm"))]
     if isinstance(settings["profile"], ProfileSpec):
         lines += ["", *profile_lines(spec.profile, "profile")]
@@ -385,17 +325,10 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None, argumen
     return [*lines, *_infrared_lines(spec.world.beacon, spec.world.remote)]
 
 
-def _table(name: str, values: Mapping[str, Scalar]) -> list[str]:
-    return ["", f"[{name}]", *files.toml_lines(values, _COMMENTS)]
-
-
 def _infrared_lines(beacon: BeaconSpec | None, remote: Iterable[RemotePress]) -> list[str]:
-    lines: list[str] = []
-    if beacon is not None:
-        lines += ["", "[beacon]", *files.toml_lines(asdict(beacon), _COMMENTS)]
+    lines = ["", "[beacon]", *files.value_lines(beacon, values_of(BeaconSpec))] if beacon else []
     for press in remote:
-        values: dict[str, Scalar] = {**asdict(press), "buttons": list(press.buttons)}
-        lines += ["", "[[remote]]", *files.toml_lines(values, _COMMENTS)]
+        lines += ["", "[[remote]]", *files.value_lines(press, values_of(RemotePress))]
     return lines
 
 

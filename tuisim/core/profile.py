@@ -3,18 +3,22 @@
 `robolab` follows the text of the course; `nbev3devsim` gives the results of the old
 simulator. A profile is only data: the code that reads it never checks its name.
 
-To add a rule: add a field with a default at the end of `ProfileSpec`, and its source to `SOURCES` in `config.profiles`.
+To add a rule: add a field with a default at the end of `ProfileSpec`, with the source of its numbers and `later=True`.
 To add a motor law: add it to `MotorLaw`; write the class of its motor and, if wheels move differently, of its drive in
 `core.drive`; add a case to `motor_of` and `drive_of` in `core.motion`; write its device in `shim.motor`, with a case in
-`tacho_of` in `shim.brick`; add its source to `config.profiles`.
+`tacho_of` in `shim.brick`; add it to the source of `motor_law`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict
 from enum import StrEnum
 from typing import Any
+
+from tuisim.core.fields import Spec, choice, flag, number, spec, text, whole
+from tuisim.core.values import values_of
+from tuisim.errors import ProfileError
 
 MS = 1_000_000
 """Nanoseconds in a millisecond."""
@@ -35,43 +39,77 @@ class MotorLaw(StrEnum):
     """As in the browser simulator of that name, to the last bit."""
 
 
-@dataclass(frozen=True, slots=True)
-class ProfileSpec:
+_OLD = "measured on the old simulator"
+_NEW = "choice of this project"
+MAX_COST_MS = 60_000
+
+
+def _cost(*, default: int, source: str) -> Any:
+    """Return a field for a cost in simulated nanoseconds, which files give in milliseconds, too."""
+    return whole(0, MAX_COST_MS * MS, default=default, unit="ns", source=source)
+
+
+@spec
+class ProfileSpec(Spec):
     """The rules of one kind of brick. Costs are simulated nanoseconds per call."""
 
-    name: str
-    title: str
-    tick_hz: int
+    ERROR = ProfileError
+
+    name: str = text(what="name")
+    title: str = text(what="title")
+    tick_hz: int = whole(1, 1000, source=f"{_NEW}: 100; {_OLD}: 30")
     """Ticks per second; see `due_ns`."""
 
-    color_read_ns: int = 10 * MS
-    color_code_read_ns: int = 20 * MS
+    color_read_ns: int = _cost(default=10 * MS, source=f"{_OLD}: it waits before it takes the value")
+    color_code_read_ns: int = _cost(default=20 * MS, source=f"{_OLD}: it waits twice; ev3: a reading like any other")
     """`color` and `color_name`."""
-    ultrasonic_read_ns: int = 10 * MS
-    gyro_read_ns: int = 20 * MS
-    attribute_read_ns: int = 1 * MS
+    ultrasonic_read_ns: int = _cost(default=10 * MS, source=f"{_OLD}: it waits before it takes the value")
+    gyro_read_ns: int = _cost(default=20 * MS, source=f"{_OLD}: it waits twice; ev3: a reading like any other")
+    attribute_read_ns: int = _cost(default=1 * MS, source=f"{_NEW}, so that polling takes time; {_OLD}: nothing")
     """Any other device attribute."""
-    clock_read_ns: int = 20_000
-    display_update_ns: int = 10 * MS
+    clock_read_ns: int = _cost(default=20_000, source=f"{_NEW}, so that loops on the clock end; {_OLD}: nothing")
+    display_update_ns: int = _cost(
+        default=10 * MS,
+        source=f"{_NEW}, an estimate: 130 steps per pixel at the brick's 300 MHz; the old simulator has none",
+    )
     """`Display.update()`: it converts 22 784 pixels into 91 KB."""
 
-    motor_law: MotorLaw = MotorLaw.BRICK
+    motor_law: MotorLaw = choice(
+        MotorLaw,
+        default=MotorLaw.BRICK,
+        source=f"{MotorLaw.BRICK}: moves end at their target, as with the EV3 motor driver; "
+        f"{MotorLaw.NBEV3DEVSIM}: {_OLD}",
+    )
     """How motors obey commands and move."""
-    max_speed_dps: float = 1050.0
+    max_speed_dps: float = number(
+        1, 100_000, default=1050.0, source="EV3 motor driver table: large motor without a load"
+    )
     """Large motor, no load (EV3 motor driver table)."""
-    reflected_max: int = 255
+    reflected_max: int = whole(
+        1, 1000, default=255, source="ev3dev2 library: 100; the course and the old simulator: 255"
+    )
     """Value of `reflected_light_intensity` on white."""
-    ambient_percent: int = 0
+    ambient_percent: int = whole(
+        0, 1_000_000, default=0, source=f"{_NEW}: a sensor close to the mat is in its own shadow; {_OLD}: always 0"
+    )
     """Value of `ambient_light_intensity` on white: the light that reaches a sensor close to the mat."""
-    halfway_heading: bool = False
+    halfway_heading: bool = flag(
+        default=False, source=f"{_NEW}, so that arcs are round; {_OLD}: the heading before the turn"
+    )
     """Whether a tick moves the robot along its heading halfway through the tick's turn, not at its start."""
-    ultrasonic_period_ticks: int = 1
+    ultrasonic_period_ticks: int = whole(1, 1000, default=1, source=_OLD)
     """The ultrasonic sensor measures once in this number of ticks."""
-    solid: bool = False
+    solid: bool = flag(default=False, source="obstacles are solid on a real field, but not in the old simulator")
     """Whether obstacles and walls stop the robot, unless the world overrides it."""
-    mend_library: bool = True
+    mend_library: bool = flag(
+        default=True, source=f"{_NEW}: see `tuisim guide library-differences`; ev3: the library as it is"
+    )
     """Whether defects of the library that affect course programs are fixed."""
-    starts_in_own_folder: bool = False
+    starts_in_own_folder: bool = flag(
+        default=False,
+        later=True,
+        source="ev3dev starts a program in its own folder; a course starts it in the notebook's",
+    )
     """Whether a program starts in its own folder, not in the user's working directory."""
 
 
@@ -125,16 +163,11 @@ EARLIER_KEYS = frozenset(key for keys in _EARLIER_BRICK.values() for key in keys
 """Keys of stored profiles that `motor_law` has replaced."""
 
 
-_KEYS = fields(ProfileSpec)
-_LATER_DEFAULTS = {key.name: key.default for key in _KEYS[[key.name for key in _KEYS].index("mend_library") + 1 :]}
-"""Keys added since the first stored profiles; omitted at these values, so that exports do not change."""
-
-
 def profile_to_plain(profile: ProfileSpec) -> dict[str, Any]:
     """Return a profile as JSON data. The form for a brick never changes, so that its exports stay the same."""
     plain = asdict(profile)
-    for key, usual in _LATER_DEFAULTS.items():
-        if plain[key] == usual:
+    for key, value in values_of(ProfileSpec).items():
+        if value.later and plain[key] == ProfileSpec.__dataclass_fields__[key].default:
             del plain[key]
     if profile.motor_law != MotorLaw.BRICK:
         return plain

@@ -13,6 +13,7 @@ from tuisim.config import files
 from tuisim.config.files import Location
 from tuisim.config.folders import programs_folder, user_path
 from tuisim.config.worlds import WorldFile, means_world, world_from_table
+from tuisim.core.values import shown
 from tuisim.errors import ConfigError, nearest, see_page
 from tuisim.goals.key_lines import line_of_key
 from tuisim.goals.picture import PictureTable, draw_from_table
@@ -47,7 +48,7 @@ class GoalsFile:
     """The task, in a line; empty if the file does not say."""
     goals: tuple[Goal, ...]
     settings: Mapping[str, Any]
-    """The world, by field of `Settings`; in precedence as those of a world file."""
+    """The world, by path; in precedence as those of a world file."""
     program: str | None = None
     """The program that it names, if any: a path, or the name of an example."""
 
@@ -211,7 +212,7 @@ def _limit(data: object, at: Location) -> str | float:
     if isinstance(data, str):
         return files.convert(data, str, at)
     if isinstance(data, bool) or not isinstance(data, int | float):
-        raise at.wrong(f"must be the name of a goal, or a time in seconds, got {files.shown(data)}")
+        raise at.wrong(f"must be the name of a goal, or a time in seconds, got {shown(data)}")
     return files.convert(data, Seconds, at)
 
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from inspect import getdoc
 
 from tuisim import breakpoints as rules
 from tuisim.config.files import toml_value
 from tuisim.config.options import OPTIONS
-from tuisim.config.profiles import SOURCES
 from tuisim.config.user_config import SETTINGS
 from tuisim.core.profile import MS, PROFILES, ProfileSpec
 from tuisim.core.sensors import columns_of, mounted
 from tuisim.core.spec import RobotSpec
+from tuisim.core.values import values_of
 from tuisim.guide.tables import Table, code
 from tuisim.logs.export import EXPORTERS
 from tuisim.logs.units import unit_of
@@ -91,9 +90,9 @@ def settings() -> Table:
         (
             f"[{one.section}]",
             code(one.name),
-            code(toml_value(one.in_file.usual)),
+            code(toml_value(one.default)),
             one.help.rstrip("."),
-            one.in_file.allowed,
+            one.value.allowed,
         )
         for one in SETTINGS.values()
     ]
@@ -102,10 +101,10 @@ def settings() -> Table:
 
 def profile_rules() -> Table:
     """Return every rule of a profile, its value in each profile, and its source."""
-    keys = [field.name for field in fields(ProfileSpec) if field.name not in ("name", "title")]
     rows = [
-        (code(key.removesuffix("_ns")), *(_value(key, profile) for profile in PROFILES.values()), SOURCES.get(key, ""))
-        for key in keys
+        (code(key.removesuffix("_ns")), *(_value(key, profile) for profile in PROFILES.values()), rule.source)
+        for key, rule in values_of(ProfileSpec).items()
+        if rule.source
     ]
     return Table(("rule", *map(code, PROFILES), "source"), rows)
 

@@ -18,6 +18,7 @@ from tuisim.config import files
 from tuisim.config.files import Location
 from tuisim.config.folders import user_path
 from tuisim.config.worlds import WorldFile, world_from_table
+from tuisim.core.values import shown
 from tuisim.errors import ConfigError
 from tuisim.goals.files import goals_from_list, line_in_errors
 from tuisim.lessons.events import event_of, is_met, model_event
@@ -172,7 +173,7 @@ def _role(info: str, at: Location) -> Role | None:
         return None
     if words[0] != "python" or words[1] not in list(Role) or len(words) > 2:
         allowed = ", ".join(f"python {role}" for role in Role)
-        raise at.wrong(f"no such block of code {files.shown(info)}", f"one of {allowed}; or only python")
+        raise at.wrong(f"no such block of code {shown(info)}", f"one of {allowed}; or only python")
     return Role(words[1])
 
 
@@ -309,9 +310,9 @@ def _check_models(step: LessonStep, at: Location) -> None:
         try:
             event = model_event(step.check, text) if key == "model" else event_of(step.check, text)
         except ValueError:
-            raise at.at(key).wrong(f"must be a number, got {files.shown(text)}") from None
+            raise at.at(key).wrong(f"must be a number, got {shown(text)}") from None
         if is_met(step.check, [event]) is not (key == "model"):
-            raise at.at(key).wrong(f"{files.shown(text)} {'does not pass' if key == 'model' else 'passes'}")
+            raise at.at(key).wrong(f"{shown(text)} {'does not pass' if key == 'model' else 'passes'}")
 
 
 def _with_answers(steps: Sequence[LessonStep], at: Location) -> tuple[LessonStep, ...]:

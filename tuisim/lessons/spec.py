@@ -54,7 +54,7 @@ class OtherWorld:
     where: str
     """What is other there, for the student, such as `from 10 cm farther back`."""
     settings: Mapping[str, Any]
-    """What is other than in the lesson's world, by field of `Settings`."""
+    """What is other than in the lesson's world, by path."""
     goals: tuple[str, ...]
     """Names of the goals to be met there."""
     # `Goal` is not in the type: msgspec cannot describe a union of conditions.
@@ -327,7 +327,7 @@ class Lesson:
     goals: tuple[Goal, ...]
     minutes: int = 10
     settings: Mapping[str, Any] = field(default_factory=dict)
-    """The world, by field of `Settings`."""
+    """The world, by path."""
 
     @property
     def model_answer(self) -> str:

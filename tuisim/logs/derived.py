@@ -12,7 +12,8 @@ import numpy as np
 
 from tuisim.core.drive import mm_per_degree
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import RobotSpec, from_plain
+from tuisim.core.spec import RobotSpec
+from tuisim.core.tree import from_plain
 from tuisim.errors import LogError, listed
 from tuisim.logs.columns import is_numeric, numeric_columns
 from tuisim.logs.expressions import FUNCTIONS, Functions, evaluate, names_in

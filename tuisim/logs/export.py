@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 from tuisim.atomic import replacing
-from tuisim.core.spec import to_plain
+from tuisim.core.tree import to_plain
 from tuisim.errors import ConfigError, ExportError
 from tuisim.logs.csv_cells import write_csv
 from tuisim.logs.units import TIMEDELTA, WHOLE, unit_of

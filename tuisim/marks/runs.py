@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 
 from tuisim.batch.pool import run_many
 from tuisim.batch.task import Keep, Task
-from tuisim.core.spec import RunSpec, to_plain
+from tuisim.core.spec import RunSpec
+from tuisim.core.tree import to_plain
 from tuisim.goals.spec import Goal
 from tuisim.marks.journal import Journal
 from tuisim.marks.outcome import Outcome

@@ -156,17 +156,17 @@ class Stage:
 
     def shows(self, panel: str) -> bool:
         """Return whether a panel is enabled in the cell."""
-        return panel in self._settings.panels_on
+        return panel in self._settings["panels_on"]
 
     def show(self, scene: Scene, status: str) -> None:
         """Draw all panels."""
         # A kernel sends printed text with a delay, but displays immediately.
         sys.stdout.flush()
         sys.stderr.flush()
-        on, off, spec = self._settings.panels_on, self._settings.panels_off, scene.spec
+        on, off, spec = self._settings["panels_on"], self._settings["panels_off"], scene.spec
         if "world" not in off:
             mat, pose = mat_pixels(scene.files), scene.last.pose
-            picture = world_picture(spec, mat, pose, scene.traces, rays=self._settings.rays)
+            picture = world_picture(spec, mat, pose, scene.traces, rays=self._settings["rays"])
             self._put("world", picture_bundle(picture, "world"))
         if "arrays" in on:
             arrays = arrays_at(spec, scene.last, spec.world.noise, open_field(scene.files))

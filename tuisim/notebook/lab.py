@@ -209,7 +209,7 @@ class Lab:
         from tuisim.notebook.display import Stage
 
         plan = self._checked(words, text, prelude)
-        runs = plan.settings.autorun or (self.autorun and text is not None)
+        runs = plan.settings["autorun"] or (self.autorun and text is not None)
         if runs and plan.program is None:
             raise ConfigError("there is no program to run", "write one in a cell below %%sim_magic_preloaded", key="-R")
         listener = self._listener(words.collaborative)
@@ -218,7 +218,7 @@ class Lab:
         before = self._spec.world if self._spec else plan.spec.world
         same_mat = (before.background, before.background_fit) == (
             plan.spec.world.background, plan.spec.world.background_fit)  # fmt: skip
-        self._traces = self._traces if same_mat and not plan.settings.clear_trace else ()
+        self._traces = self._traces if same_mat and not plan.settings["clear_trace"] else ()
         self._persistent, self._program, self._spec = plan.persistent, plan.program, plan.spec
         stage = Stage(plan.settings)
         if runs:
@@ -275,8 +275,8 @@ class Lab:
 
         assert plan.program is not None
         cell = CellRun(
-            plan.program, plan.spec, plan.files, plan.settings.speed or 0.0, words.refresh_s, self._traces, listener,
-            self._images, plan.settings.quiet,
+            plan.program, plan.spec, plan.files, plan.settings["speed"] or 0.0, words.refresh_s, self._traces, listener,
+            self._images, plan.settings["quiet"],
         )  # fmt: skip
 
         def note(run: StoredRun, wheels: Wheels) -> None:

@@ -7,25 +7,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from tuisim.config.command_line import Arguments, Command, GroupedOption, Value, help_of, option, parse
-from tuisim.config.options import number, whole
+from tuisim.config.command_line import Arguments, Command, GroupedOption, WordType, help_of, option, parse
+from tuisim.config.options import RUN_VALUES, START
 from tuisim.config.shared_options import shared_options
+from tuisim.core.values import Number, Whole
+from tuisim.core.values import parse as parse_value
 from tuisim.errors import ConfigError
 
 MAX_INDEX = 1_000_000
 MIN_REFRESH_S, MAX_REFRESH_S = 0.02, 60.0
 DEFAULT_REFRESH_S = 0.2
 
-PERSISTENT = frozenset(
-    {
-        "background", "mats", "background_fit", "robot", "obstacles", "walls", "solid", "x_mm", "y_mm", "heading_deg",
-        "light_noise", "motor_noise", "pen_color", "pen_width_mm", "pen_marks", "profile", "seed",
-    }
-)  # fmt: skip
-"""Fields of `Settings` that persist until another cell changes them; all others apply to their cell only."""
+PERSISTENT = frozenset({"background", "mats", "robot", "obstacles", "profile", *RUN_VALUES}) - {"pen.down"}
+"""Paths of settings that persist until another cell changes them; all others apply to their cell only."""
 
-OF_THE_MAT = ("x_mm", "y_mm", "heading_deg", "obstacles")
-"""Fields that a new mat resets."""
+OF_THE_MAT = (*START, "obstacles")
+"""Paths of settings that a new mat resets."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +30,7 @@ class MagicWords:
     """A parsed magic line."""
 
     settings: Mapping[str, Any]
-    """By field of `Settings`."""
+    """By path."""
     sim: str | None = None
     """Name of the simulator variable."""
     preview: bool = False
@@ -54,7 +51,7 @@ def _of_every_magic(**how: str) -> list[GroupedOption]:
 
 
 def _command(magic: str) -> Command:
-    refresh = number(MIN_REFRESH_S, MAX_REFRESH_S)
+    refresh = Number(MIN_REFRESH_S, MAX_REFRESH_S)
     group = "Notebook"
     params = [
         *shared_options(magic=True),
@@ -64,7 +61,7 @@ def _command(magic: str) -> Command:
         option("-S", "--stop", is_flag=True, group=group, help="Has no effect: a program ends with its cell."),
         option("-m", "--move", "move_back", is_flag=True, group=group, help="Move the robot back to its start."),
         option("-F", "--refresh", "refresh_s", is_flag=False, flag_value=DEFAULT_REFRESH_S, default=DEFAULT_REFRESH_S,
-               metavar="S", type=Value(lambda text: refresh(text, "-F")), group=group,
+               metavar="S", type=_type(refresh, "-F"), group=group,
                help="Seconds between two redraws."),
         option("-L", "--collab", "collaborative", is_flag=True, group=group,
                help="`roboSim.pyresponder` or `.responder` answers the program."),
@@ -94,8 +91,9 @@ def _split(line: str, magic: str) -> list[str]:
         raise ConfigError(f"cannot be split into words: {error}", key=f"%{magic}") from None
 
 
-def _whole(flag: str, low: int, high: int) -> Value:
-    return Value(lambda text: whole(low, high)(text, flag))
+def _type(value: Number, flag: str) -> WordType:
+    """Return the type of an option with a value."""
+    return WordType(lambda text: parse_value(value, text, flag))
 
 
 def _corners(text: str) -> tuple[int, ...]:
@@ -107,7 +105,7 @@ def _corners(text: str) -> tuple[int, ...]:
 
 def _log_command(magic: str) -> Command:
     params = _of_every_magic()
-    index = {"type": _whole("--index", -MAX_INDEX, MAX_INDEX), "default": -1, "metavar": "N"}
+    index = {"type": _type(Whole(-MAX_INDEX, MAX_INDEX), "--index"), "default": -1, "metavar": "N"}
     if magic == "sim_data":
         params.append(option("-c", "--clear", is_flag=True, help="Discard the logged data."))
     elif magic == "sim_robot_state":
@@ -119,9 +117,9 @@ def _log_command(magic: str) -> Command:
         params += [
             option("-i", "--index", **index, help="Which image, from 0; -1 is the last."),
             option("-r", "--random", is_flag=True, help="Any image."),
-            option("-t", "--threshold", type=_whole("--threshold", 0, 255), default=127, metavar="N",
+            option("-t", "--threshold", type=_type(Whole(0, 255), "--threshold"), default=127, metavar="N",
                    help="The lightest grey that becomes black (127)."),
-            option("-c", "--crop", type=Value(_corners), metavar="L,T,R,B",
+            option("-c", "--crop", type=WordType(_corners), metavar="L,T,R,B",
                    help="Part of the image, in pixels (3,3,17,17)."),
             option("-n", "--nocrop", is_flag=True, help="The whole image (unless --crop is given)."),
             option("-d", "--digitclass", is_flag=True, hidden=True),

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 from itertools import takewhile, zip_longest
 from typing import TYPE_CHECKING, Any, assert_never
 
-from tuisim.core.spec import to_plain
+from tuisim.core.tree import to_plain
 from tuisim.runs.records import TEXT_STREAMS, OutputRow, Stream, line_of
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import samples_of

@@ -14,7 +14,8 @@ from tuisim.config.mat_cache import FieldFiles, open_field, prepare
 from tuisim.config.mats import background
 from tuisim.core.field import Field
 from tuisim.core.profile import NS_PER_S, MotorLaw, due_ns, law_of_earlier
-from tuisim.core.spec import NoiseSpec, RunSpec, from_plain, to_plain
+from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.tree import from_plain, to_plain
 from tuisim.errors import ConfigError, LogError, TuisimError, shortened
 from tuisim.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
 from tuisim.regular_file import read_regular
@@ -176,23 +177,18 @@ def _typed(value: Any, kind: type[_Kind], name: str) -> _Kind:
 
 
 def _checked(spec: RunSpec) -> RunSpec:
-    """Return a spec whose values all have their types, and whose numbers are ones to reckon with."""
-    # Imported here: not all that read a run file need the run.
-    import msgspec
-
-    plain = msgspec.to_builtins(spec)
-    msgspec.convert(plain, RunSpec)
+    """Return a spec whose numbers are ones to reckon with."""
     if not 1 <= spec.profile.tick_hz <= NS_PER_S:
         raise ValueError(f"a tick rate of {spec.profile.tick_hz}")
     # A seed may be any whole number.
-    for number in _numbers_in([part for name, part in plain.items() if name != "seed"]):
+    for number in _numbers_in([to_plain(spec)[name] for name in ("robot", "world", "profile")]):
         if not abs(number) <= MOST_INTEGER:
             raise ValueError(f"{number} is out of range")
     return spec
 
 
 def _numbers_in(plain: object) -> Iterator[float]:
-    if isinstance(plain, dict | list):
+    if isinstance(plain, dict | list | tuple):
         for part in plain.values() if isinstance(plain, dict) else plain:
             yield from _numbers_in(part)
     elif isinstance(plain, int | float):

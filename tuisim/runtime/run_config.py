@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tuisim.config.mat_cache import FieldFiles
-from tuisim.core.spec import RunSpec, from_plain
+from tuisim.core.spec import RunSpec
+from tuisim.core.tree import from_plain
 from tuisim.protocol import UserAction
 from tuisim.runtime import wallclock
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tracemalloc
-from dataclasses import replace
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -74,8 +74,8 @@ def test_a_flood_of_changes_leaves_few_marks(tmp_path: Path) -> None:
     assert len(index_of(tmp_path, rows).marks) < 4000
 
 
-def stored(text: str, **choices: Any) -> StoredRun:
-    spec = build_run_spec(replace(Settings(background="Grey_bands"), **choices))
+def stored(text: str, choices: Mapping[str, Any]) -> StoredRun:
+    spec = build_run_spec(Settings({"background": "Grey_bands", **choices}))
     run = start_run(program(text), spec, RunOptions())
     assert run.wait(PATIENCE_S)
     return RunStore().load_run(run.run_id)
@@ -84,7 +84,7 @@ def stored(text: str, **choices: Any) -> StoredRun:
 @pytest.mark.quick_cases("near")
 @pytest.mark.parametrize("ticks", [(0, 20, 59), (59, 20, 0), (30, 30, 31)], ids=["forward", "back", "near"])
 def test_sensors_see_what_the_pen_had_drawn_by_then(ticks: tuple[int, ...]) -> None:
-    run = stored("tank_drive.on_for_seconds(50, 50, 0.6)\n", pen_down=True, pen_marks=True)
+    run = stored("tank_drive.on_for_seconds(50, 50, 0.6)\n", {"pen.down": True, "pen_marks": True})
     mat, recording = open_mat(run), Recording(run)
     records = run.telemetry.array().tolist()
     for tick in ticks:
@@ -96,7 +96,7 @@ def test_sensors_see_what_the_pen_had_drawn_by_then(ticks: tuple[int, ...]) -> N
 
 
 def test_the_pen_of_a_long_run_takes_little_memory() -> None:
-    run = stored("import time\ntime.sleep(100)\n", pen_down=True, pen_marks=True)
+    run = stored("import time\ntime.sleep(100)\n", {"pen.down": True, "pen_marks": True})
     mat, recording = open_mat(run), Recording(run)
     assert recording.newest >= 10_000
     tracemalloc.start()
@@ -109,7 +109,7 @@ def test_the_pen_of_a_long_run_takes_little_memory() -> None:
 
 def test_a_timeline_marks_what_the_user_and_breakpoints_did() -> None:
     timeline = Timeline()
-    timeline.switch_to(Recording(stored("tank_drive.on_for_seconds(50, 50, 1)\n")))
+    timeline.switch_to(Recording(stored("tank_drive.on_for_seconds(50, 50, 1)\n", {})))
     timeline.breaks.append(40)
     assert timeline.marks() == [(40, "break")]
     timeline.go(30)
@@ -125,7 +125,7 @@ def test_a_timeline_marks_what_the_user_and_breakpoints_did() -> None:
 
 def test_the_difference_of_two_runs_is_told() -> None:
     text = "for speed in (30, 60):\n    tank_drive.on_for_seconds({}, speed, 0.5)\n    print('Speed: ' + str(speed))\n"
-    one, two = stored(text.format(30), seed=1), stored(text.format("speed"), seed=2)
+    one, two = stored(text.format(30), {"seed": 1}), stored(text.format("speed"), {"seed": 2})
     found = diff_runs(one, two)
     recording, setup = dict(recording_in_words(found)), dict(setup_in_words(found))
     assert "x_mm" in recording["first differing tick"]

@@ -82,7 +82,7 @@ def test_columns_that_do_not_fit_are_left_out_whole() -> None:
 @pytest.fixture(scope="module")
 def two_runs() -> list[StoredRun]:
     """One run and the same with noise."""
-    spec = build_run_spec(Settings(background="Grey_bands"))
+    spec = build_run_spec(Settings({"background": "Grey_bands"}))
     noisy = replace(spec, world=replace(spec.world, noise=replace(spec.world.noise, light=20)))
     ids = []
     for one in (spec, noisy):

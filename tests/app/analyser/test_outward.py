@@ -29,7 +29,7 @@ from tuisim.runs.store import RunStore
 @pytest.fixture(scope="module")
 def run() -> StoredRun:
     """A run over the grey bands."""
-    handle = start_run(program(LOGS), build_run_spec(Settings(background="Grey_bands")), RunOptions(speed=0.0))
+    handle = start_run(program(LOGS), build_run_spec(Settings({"background": "Grey_bands"})), RunOptions(speed=0.0))
     handle.wait()
     return RunStore().load_run(handle.run_id)
 

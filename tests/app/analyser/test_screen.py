@@ -35,7 +35,7 @@ SIZES = [(80, 24), (120, 40), (200, 60)]
 @pytest.fixture(scope="module")
 def run() -> StoredRun:
     """A run over the grey bands."""
-    spec = build_run_spec(Settings(background="Grey_bands"))
+    spec = build_run_spec(Settings({"background": "Grey_bands"}))
     assert spec.world.noise == NoiseSpec()
     handle = start_run(program(LOGS), spec, RunOptions(speed=0.0))
     handle.wait()
@@ -306,7 +306,7 @@ async def test_what_cannot_be_opened_ends_the_app_with_the_reason(tmp_path: Path
 
 @pytest.mark.slow
 async def test_the_lab_below_hears_no_key(run: StoredRun) -> None:
-    spec = build_run_spec(Settings(background="Grey_bands"))
+    spec = build_run_spec(Settings({"background": "Grey_bands"}))
     async with LabApp(AppSettings(spec=spec, program=program(LOGS))).run_test(size=(120, 40)) as pilot:
         lab = await ready(pilot)
         below, pose = lab.screen, lab.run_controller.snapshot().instant.pose

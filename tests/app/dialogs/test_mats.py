@@ -77,7 +77,9 @@ async def test_what_is_no_image_changes_nothing(content: str | None, tmp_path: P
 
 
 def with_mats(folder: Path | None) -> AppSettings:
-    return settings(LOGS, settings=Settings(background="Grey_bands", mats=None if folder is None else str(folder)))
+    return settings(
+        LOGS, settings=Settings({"background": "Grey_bands", "mats": None if folder is None else str(folder)})
+    )
 
 
 async def choose(pilot: Pilot[None], name: str) -> None:

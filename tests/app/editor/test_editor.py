@@ -33,7 +33,7 @@ def own(path: Path, text: str = TEXT) -> AppSettings:
     if not path.exists():
         path.write_text(text)
     program = read_program(path).program
-    spec = build_run_spec(Settings(background="Empty_Map"))
+    spec = build_run_spec(Settings({"background": "Empty_Map"}))
     return AppSettings(spec=spec, program=program)
 
 

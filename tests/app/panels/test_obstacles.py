@@ -201,7 +201,7 @@ async def test_a_blocked_motor_is_shown_as_stalled() -> None:
         app = await ready(pilot)
         from tuisim.app.setup.next_run import with_values
 
-        plan = with_values(app.run_controller.next_run, solid=True)
+        plan = with_values(app.run_controller.next_run, {"solid": True})
         start = app.run_controller.pose
         app.loader.set_next_run(with_obstacles(plan, (Obstacle(start.x_mm + 60, start.y_mm - 100, 50, 200),)))
         await pilot.press("R")

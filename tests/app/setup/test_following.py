@@ -10,7 +10,7 @@ from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.config.options import Settings
 from tuisim.config.program_file import parse_program
-from tuisim.config.program_settings import PROGRAM_FIELDS
+from tuisim.config.program_settings import PROGRAM_PATHS
 from tuisim.core.geometry import Pose
 
 CLAW = "from ev3dev2.motor import MediumMotor\nMediumMotor('outA').on(5)\n"
@@ -23,7 +23,7 @@ MIDDLE, MAT = Pose(1181.0, 571.5, 0.0), Pose(157.0, 800.0, 0.0)
 Step = str | Callable[[NextRun], NextRun]
 
 
-def done(steps: list[Step], free: tuple[str, ...] = PROGRAM_FIELDS) -> NextRun:
+def done(steps: list[Step], free: tuple[str, ...] = PROGRAM_PATHS) -> NextRun:
     """The plan after programs were opened, and changes were made, in turn."""
     plan = plans.plan_of(Settings(), free)
     for step in steps:

@@ -39,7 +39,7 @@ IMPORTS = "import datetime, gc, os, random, resource, signal, sys, threading, ti
 
 
 def _printed(text: str, of_many: bool = False, prelude: str = "none") -> list[str]:
-    spec, store = build_run_spec(Settings(seed=3, light_noise=10)), RunStore()
+    spec, store = build_run_spec(Settings({"seed": 3, "noise.light": 10})), RunStore()
     program = Program("p.py", text, prelude=prelude)
     handle = RunHandle(program, spec, field_files(spec), RunOptions(), store, of_many=of_many)
     over(handle)
@@ -158,7 +158,7 @@ def test_a_program_that_harms_its_parent_does_not_keep_the_next_one_from_running
 def test_a_template_does_not_keep_a_damaged_mat() -> None:
     text = "print(colorLeft.reflected_light_intensity_pc)"
     (seen,) = _printed(text, True, "preloaded")
-    files = field_files(build_run_spec(Settings(seed=3, light_noise=10)))
+    files = field_files(build_run_spec(Settings({"seed": 3, "noise.light": 10})))
     for path in (files.pixels, *(path for _, path in files.sums)):
         # In place: the template has mapped it.
         with path.open("r+b") as stream:

@@ -83,7 +83,7 @@ def save_world(workspace: Workspace) -> None:
     def save(path: Path) -> None:
         program = workspace.run_controller.program
         plan = workspace.run_controller.next_run
-        write(plan.spec, path, program.path if program and program.path else None, plan.settings.arguments)
+        write(plan.spec, path, program.path if program and program.path else None, plan.settings["arguments"])
         workspace.loader.saved_world(path)
 
     workspace.app.push_screen(SaveDialog("world", str(workspace.loader.world_file or "lab.toml"), save))

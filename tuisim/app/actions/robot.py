@@ -68,7 +68,7 @@ def choose_mat(workspace: Workspace) -> None:
     """Ask for a mat and set it."""
     from tuisim.app.dialogs.chooser import MatPicker
 
-    folder = workspace.run_controller.next_run.settings.mats
+    folder = workspace.run_controller.next_run.settings["mats"]
     try:
         known = mats(folder)
     except TuisimError as error:

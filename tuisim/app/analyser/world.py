@@ -23,9 +23,10 @@ from tuisim.app.snapshot import RunPhase, Snapshot, snapshot_of
 from tuisim.app.terminal.cell_view import LinesView
 from tuisim.charts.text_runs import Run
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import RunSpec, from_plain
+from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import FLAG_PEN_DOWN
+from tuisim.core.tree import from_plain
 from tuisim.errors import TuisimError, printable
 from tuisim.runs.recorded_run import Recording
 from tuisim.runs.views import instant_of

@@ -16,31 +16,31 @@ from textual.widgets.option_list import Option
 from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser
 from tuisim.app.dialogs.dialog import Dialog, name_and_title
 from tuisim.app.dialogs.question import LinePrompt
-from tuisim.config.options import FileValue
+from tuisim.config.files import Scalar
 from tuisim.config.user_config import FILE, SETTINGS, THEME, Section, Setting, UserConfig, load_config
 from tuisim.errors import TuisimError
 
-Change = Callable[[Setting, FileValue | None], None]
+Change = Callable[[Setting, Scalar | None], None]
 """Writes a setting and applies it; None for the usual value. Raises TuisimError."""
 
 
 _NAME_CELLS = 13
 
 
-def in_words(value: FileValue) -> str:
+def in_words(value: Scalar) -> str:
     """Return a value as the user writes it, without quotes."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def about(one: Setting) -> str:
     """Return what a setting does, and what it accepts unless the help has listed it."""
-    listed = all(str(word) in one.help for word in one.in_file.choices or [one.in_file.allowed])
-    return one.help if listed else f"{one.help} Allowed: {one.in_file.allowed}."
+    listed = all(str(word) in one.help for word in one.value.choices or [one.value.allowed])
+    return one.help if listed else f"{one.help} Allowed: {one.value.allowed}."
 
 
-def typed_value(one: Setting, text: str) -> FileValue:
+def typed_value(one: Setting, text: str) -> Scalar:
     """Return what was typed as a value of the file: a number where the setting takes one."""
-    if not isinstance(one.in_file.usual, int | float):
+    if not isinstance(one.default, int | float):
         return text.strip()
     for kind in (int, float):
         try:
@@ -113,8 +113,8 @@ class SettingsScreen(Dialog[None]):
         if isinstance(value, bool):
             self._choose(one, not value)
             return
-        names = self._themes if one.path == THEME else one.in_file.choices
-        if names and not isinstance(one.in_file.usual, int | float):
+        names = self._themes if one.path == THEME else one.value.choices
+        if names and not isinstance(one.default, int | float):
             group = ChoiceGroup("", [(name, name, "") for name in map(str, names)])
             self.app.push_screen(Chooser(one.path, [group], in_words(value)), self._chosen)
             return
@@ -124,9 +124,9 @@ class SettingsScreen(Dialog[None]):
         if name is not None:
             self._choose(self._one, name)
 
-    def _choose(self, one: Setting, value: FileValue) -> None:
+    def _choose(self, one: Setting, value: Scalar) -> None:
         """Set one of a few values; the usual one needs no line in the file."""
-        self._set(one, None if value == one.in_file.usual else value)
+        self._set(one, None if value == one.default else value)
 
     def _typed(self, text: str) -> None:
         self._change(self._one, typed_value(self._one, text) if text.strip() else None)
@@ -138,7 +138,7 @@ class SettingsScreen(Dialog[None]):
     def action_usual(self) -> None:
         self._set(self._one, None)
 
-    def _set(self, one: Setting, value: FileValue | None) -> None:
+    def _set(self, one: Setting, value: Scalar | None) -> None:
         try:
             self._change(one, value)
         except TuisimError as error:

@@ -12,12 +12,11 @@ from textual.widgets import Input, Label, Static
 
 from tuisim.app.form import EntryPanel, NumberInput, Slider
 from tuisim.app.snapshot import Snapshot
-from tuisim.config.options import MAX_SEED, whole
-from tuisim.core.spec import MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, NoiseSpec
-from tuisim.errors import ConfigError
+from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.values import Whole, WrongValue, values_of
 
-_KINDS = {"light": ("Light", MAX_LIGHT_NOISE), "motor": ("Motor", MAX_MOTOR_NOISE)}
-"""By field of `NoiseSpec`: name and largest value."""
+_KINDS = values_of(NoiseSpec)
+_SEED = values_of(RunSpec)["seed"]
 
 
 class Noise(EntryPanel):
@@ -43,10 +42,11 @@ class Noise(EntryPanel):
         self._past = False
 
     def compose(self) -> ComposeResult:
-        for kind, (name, maximum) in _KINDS.items():
+        for kind, value in _KINDS.items():
             with Horizontal(classes="field"):
-                yield Label(f"{name}", markup=False)
-                yield Slider(maximum, id=kind)
+                yield Label(value.label, markup=False)
+                assert isinstance(value, Whole)
+                yield Slider(int(value.high), id=kind)
                 yield NumberInput("0", id=f"{kind}-number", compact=True, select_on_focus=True, max_length=3)
         with Horizontal(classes="field"):
             yield Label("Seed", markup=False)
@@ -94,12 +94,12 @@ class Noise(EntryPanel):
 
     def _apply(self, entry: Input) -> None:
         kind = (entry.id or "").removesuffix("-number")
-        name, maximum = _KINDS.get(kind, ("Seed", MAX_SEED))
+        about = _KINDS.get(kind, _SEED)
         try:
-            value = whole(0, maximum)(entry.value.strip(), "")
-        except ConfigError as error:
+            value = about.from_text(entry.value.strip())
+        except WrongValue as error:
             entry.add_class("wrong")
-            self.say(f"{name} {error.message}")
+            self.say(f"{about.label} {error.message}")
             return
         entry.remove_class("wrong")
         self.say("")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from textual import on
@@ -14,11 +13,12 @@ from textual.widgets import Input, Label, Static
 from tuisim.app.action import action_link
 from tuisim.app.form import NumberInput
 from tuisim.app.snapshot import Snapshot
-from tuisim.config.options import MAX_ANGLE_DEG, MAX_POSITION_MM
 from tuisim.core.geometry import Pose, shown_heading_deg
+from tuisim.core.spec import START_VALUES
+from tuisim.core.values import WrongValue
 
-_FIELDS = {"x": ("X", "mm", MAX_POSITION_MM), "y": ("Y", "mm", MAX_POSITION_MM), "angle": ("Angle", "°", MAX_ANGLE_DEG)}
-"""By id: name, unit, and the largest absolute value."""
+_FIELDS = dict(zip(("x", "y", "angle"), START_VALUES.values(), strict=True))
+"""By id."""
 _USE = "Enter places the robot"
 
 
@@ -28,14 +28,13 @@ def parse_field(field: str, text: str) -> float:
     Raises:
         ValueError: the text is no number, or out of range; the message says what is allowed.
     """
-    name, _, limit = _FIELDS[field]
+    value = _FIELDS[field]
     try:
-        value = float(text.strip().replace(",", "."))
-    except ValueError:
-        value = math.nan
-    if not -limit <= value <= limit:
-        raise ValueError(f"{name}: a number from -{limit} to {limit}, not {text.strip()[:12] or 'nothing'!r}")
-    return value
+        found: float = value.from_text(text.strip().replace(",", "."))
+    except WrongValue:
+        shown = text.strip()[:12] or "nothing"
+        raise ValueError(f"{value.label}: {value.allowed}, not {shown!r}") from None
+    return found
 
 
 class Positioning(Vertical):
@@ -52,9 +51,9 @@ class Positioning(Vertical):
         self._shown = {"x": "", "y": "", "angle": ""}
 
     def compose(self) -> ComposeResult:
-        for field, (name, unit, _) in _FIELDS.items():
+        for field, value in _FIELDS.items():
             with Horizontal(classes="field"):
-                yield Label(f"{name}, {unit}", markup=False)
+                yield Label(f"{value.label}, {value.unit}", markup=False)
                 yield NumberInput(id=field, compact=True, select_on_focus=True)
         with Horizontal(classes="links"):
             yield Static(action_link(self.app, "home", "Start"))

@@ -1,31 +1,26 @@
 """The editable fields of the next run's plan: one line per field.
 
-To add a field: add a line in the function of its section.
+Values of robot, pen and world are here if their spec gives them a label.
 """
 
 from __future__ import annotations
 
 import shlex
 from collections.abc import Callable
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
-from tuisim.app.form import reason, typed_number
 from tuisim.app.setup.next_run import NextRun, with_arguments, with_profile, with_robot, with_robot_edited, with_values
-from tuisim.config.options import MAX_PEN_MM, MIN_PEN_MM, number, pen_color
+from tuisim.config.options import RUN_VALUES
 from tuisim.config.robots import ROBOTS
+from tuisim.core import tree
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import (
-    BACKGROUND_FITS,
     INPUT_PORTS,
-    MAX_RAYS,
-    MOTOR_KINDS,
     MOUNTS,
     OUTPUT_PORTS,
-    ROBOT_WEIGHTS,
-    STRATEGIES,
     ColorSensorSpec,
     GyroSpec,
     PenSpec,
@@ -33,11 +28,10 @@ from tuisim.core.spec import (
     SensorSpec,
     UltrasonicSpec,
 )
+from tuisim.core.values import OFF, ON, Number, Numbers, Value, WrongValue, values_of
 from tuisim.errors import ConfigError, RobotError
 
-ON, OFF = "on", "off"
-SWITCHED = (OFF, ON)
-MAX_NAME = 100
+SWITCHED = (ON, OFF)
 MAX_LABEL = 12
 
 
@@ -71,30 +65,23 @@ def sections(plan: NextRun) -> list[FieldGroup]:
     }
     return [
         FieldGroup("Program", (FormField("arguments", "Arguments", _arguments, _with_arguments),)),
-        FieldGroup("Robot", _robot_fields()),
+        FieldGroup("Robot", _body_fields()),
         *(FieldGroup(f"Sensor {name}", _color_sensor_fields(name, sensor, plan)) for name, sensor in sensors.items()),
-        FieldGroup("Ultrasonic", _ultrasonic_fields(plan)),
-        FieldGroup("Gyro", _gyro_fields(plan)),
-        *(FieldGroup(part.name.capitalize(), _further_fields(part)) for part in plan.robot_choice.spec.further_sensors),
+        FieldGroup("Ultrasonic", _single_fields(plan, "ultrasonic", UltrasonicSpec)),
+        FieldGroup("Gyro", _single_fields(plan, "gyro", GyroSpec)),
+        *(FieldGroup(part.name.capitalize(), _sensor_fields(part)) for part in plan.robot_choice.spec.further_sensors),
         FieldGroup("Pen", _pen_fields()),
         FieldGroup("World", _world_fields()),
     ]
 
 
-def _shown(value: float) -> str:
-    text = f"{value:.6g}"
-    return "0" if text == "-0" else text
-
-
-def _number(text: str) -> float:
-    return typed_number(text, RobotError)
-
-
-def _whole(text: str) -> int:
+def _parsed(value: Value, text: str) -> Any:
+    """Return what was typed or chosen as a value; a comma may stand for the point of a number."""
+    one_number = isinstance(value, Number) and not isinstance(value, Numbers)
     try:
-        return int(text)
-    except ValueError:
-        raise RobotError(f"must be a whole number, got {text.strip()[:20]!r}") from None
+        return value.from_text(text.strip().replace(",", ".") if one_number else text.strip())
+    except WrongValue as error:
+        raise RobotError(error.message, error.hint) from None
 
 
 # The robot. The fields show the robot on its mat, and edit the robot as it was chosen.
@@ -113,43 +100,23 @@ def _robot_field(
     return FormField(edit_id, label, lambda plan: read(plan.spec.robot), write, choices)
 
 
-Part = TypeVar("Part", RobotSpec, PenSpec, SensorSpec)
+def _value_field(edit_id: str, value: Value, path: Callable[[RobotSpec], str]) -> FormField:
+    """Return the field of a value of the robot.
 
+    Args:
+        path: Returns its path in a robot.
+    """
 
-def _with(part: Part, key: str, value: Any) -> Part:
-    changed: dict[str, Any] = {key: value}
-    return replace(part, **changed)
-
-
-def _length(key: str, label: str) -> FormField:
     def change(robot: RobotSpec, text: str) -> RobotSpec:
-        return _with(robot, key, _number(text))
+        return tree.put(robot, path(robot), _parsed(value, text))
 
-    return _robot_field(key, label, lambda robot: _shown(getattr(robot, key)), change)
+    def read(robot: RobotSpec) -> str:
+        return value.to_text(tree.at(robot, path(robot)))
 
-
-def _named(robot: RobotSpec, text: str) -> RobotSpec:
-    name = text.strip()
-    if not name or len(name) > MAX_NAME or not name.isprintable():
-        raise RobotError(f"must be one line of 1 to {MAX_NAME} characters")
-    return replace(robot, name=name)
+    return _robot_field(edit_id, value.label, read, change, value.choices)
 
 
-def _weight_name(robot: RobotSpec) -> str:
-    return next((name for name, weight in ROBOT_WEIGHTS.items() if weight == robot.weight), _shown(robot.weight))
-
-
-def _weighed(robot: RobotSpec, text: str) -> RobotSpec:
-    word = text.strip().lower()
-    if word in ROBOT_WEIGHTS:
-        return replace(robot, weight=ROBOT_WEIGHTS[word])
-    try:
-        return replace(robot, weight=_number(word))
-    except RobotError as error:
-        raise RobotError(reason(error), f"or {', '.join(ROBOT_WEIGHTS)}") from None
-
-
-def _motor_port_field(key: str, label: str) -> FormField:
+def _motor_port_field(key: str, value: Value) -> FormField:
     """Return the field for the port of a wheel's motor; a motor that already uses the port gets the freed one."""
     other = "right_port" if key == "left_port" else "left_port"
 
@@ -159,23 +126,7 @@ def _motor_port_field(key: str, label: str) -> FormField:
         swapped = getattr(robot, key) if getattr(robot, other) == port else getattr(robot, other)
         return replace(robot, **{key: port, other: swapped})
 
-    return _robot_field(key, label, lambda robot: str(getattr(robot, key)), change, OUTPUT_PORTS)
-
-
-def _motor_kind_field(key: str, label: str) -> FormField:
-    def change(robot: RobotSpec, kind: str) -> RobotSpec:
-        return _with(robot, key, kind)
-
-    return _robot_field(key, label, lambda robot: str(getattr(robot, key)), change, MOTOR_KINDS)
-
-
-def _reversed_field(key: str, label: str) -> FormField:
-    """Return the field for a motor that is mounted the other way round."""
-
-    def change(robot: RobotSpec, word: str) -> RobotSpec:
-        return _with(robot, key, word == ON)
-
-    return _robot_field(key, label, lambda robot: ON if getattr(robot, key) else OFF, change, SWITCHED)
+    return _robot_field(key, value.label, lambda robot: str(getattr(robot, key)), change, OUTPUT_PORTS)
 
 
 def _robot_word(plan: NextRun) -> str:
@@ -183,22 +134,16 @@ def _robot_word(plan: NextRun) -> str:
     return f"{word}, edited" if plan.robot_is_edited else word
 
 
-def _robot_fields() -> tuple[FormField, ...]:
+def _body_fields() -> tuple[FormField, ...]:
+    def field_of(key: str, value: Value) -> FormField:
+        if key.endswith("_port"):
+            return _motor_port_field(key, value)
+        return _value_field(key, value, lambda _: key)
+
+    shown = {key: value for key, value in values_of(RobotSpec).items() if value.label}
     return (
         FormField("preset", "", _robot_word, with_robot, tuple(ROBOTS)),
-        _robot_field("name", "Name", lambda robot: robot.name, _named),
-        _length("wheel_diameter_mm", "Wheel ⌀ mm"),
-        _length("wheel_spacing_mm", "Spacing mm"),
-        _length("wheel_width_mm", "Width mm"),
-        _length("back_mm", "Back mm"),
-        _robot_field("weight", "Weight", _weight_name, _weighed),
-        _motor_port_field("left_port", "Left motor"),
-        _motor_port_field("right_port", "Right motor"),
-        _motor_kind_field("left_motor", "Left kind"),
-        _motor_kind_field("right_motor", "Right kind"),
-        _reversed_field("left_reversed", "Left rev."),
-        _reversed_field("right_reversed", "Right rev."),
-        _length("gear_ratio", "Gear ratio"),
+        *(field_of(key, value) for key, value in shown.items()),
     )
 
 
@@ -207,6 +152,15 @@ def _robot_fields() -> tuple[FormField, ...]:
 
 def _sensors(robot: RobotSpec) -> dict[str, SensorSpec]:
     return {sensor.name: sensor for sensor in robot.sensors}
+
+
+def _path_of(robot: RobotSpec, name: str, key: str) -> str:
+    """Return the path of a value of a sensor."""
+    for mount in MOUNTS:
+        for sensor in robot.sensors_in(mount):
+            if sensor.name == name:
+                return f"{mount.field}.{name}.{key}" if mount.many else f"{mount.field}.{key}"
+    raise LookupError(name)
 
 
 def _with_sensors(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
@@ -219,15 +173,15 @@ def _with_sensors(robot: RobotSpec, *parts: SensorSpec) -> RobotSpec:
     return replace(robot, **found)
 
 
-def _sensor_field(name: str, key: str, label: str, parse: Callable[[str], Any] = _number) -> FormField:
-    def change(robot: RobotSpec, text: str) -> RobotSpec:
-        return _with_sensors(robot, _with(_sensors(robot)[name], key, parse(text)))
+def _sensor_fields(part: SensorSpec) -> tuple[FormField, ...]:
+    """Return the fields of a sensor that is mounted."""
 
-    def read(robot: RobotSpec) -> str:
-        value = getattr(_sensors(robot)[name], key)
-        return value if isinstance(value, str) else _shown(value)
+    def field_of(key: str, value: Value) -> FormField:
+        if key == "port":
+            return _sensor_port_field(part.name)
+        return _value_field(f"{part.name}.{key}", value, lambda robot: _path_of(robot, part.name, key))
 
-    return _robot_field(f"{name}.{key}", label, read, change, {"strategy": STRATEGIES}.get(key, ()))
+    return tuple(field_of(key, value) for key, value in values_of(type(part)).items() if value.label)
 
 
 def _sensor_port_field(name: str) -> FormField:
@@ -257,8 +211,11 @@ def _placed(plan: NextRun, text: str, name: str) -> NextRun:
     """Change a colour sensor's x; the other sensors stay where the mat has put them."""
     on_mat = {sensor.name: sensor for sensor in plan.spec.robot.color_sensors}
     robot = plan.robot_choice.spec
-    sensors = [replace(sensor, x_mm=on_mat[sensor.name].x_mm) for sensor in robot.color_sensors]
-    sensors = [replace(sensor, x_mm=_number(text)) if sensor.name == name else sensor for sensor in sensors]
+    x_mm = _parsed(values_of(ColorSensorSpec)["x_mm"], text)
+    sensors = [
+        replace(sensor, x_mm=x_mm if sensor.name == name else on_mat[sensor.name].x_mm)
+        for sensor in robot.color_sensors
+    ]
     return with_robot_edited(plan, replace(robot, color_sensors=tuple(sensors)), moved=True)
 
 
@@ -277,132 +234,63 @@ def _color_sensor_fields(name: str, sensor: ColorSensorSpec, plan: NextRun) -> t
     used = _presence_field(name, switched)
     if name not in _sensors(plan.robot_choice.spec):
         return (used,)
-    x = FormField(
-        f"{name}.x_mm", "x mm", lambda now: _sensor_field(name, "x_mm", "").read(now), partial(_placed, name=name)
-    )
+    fields = _sensor_fields(sensor)
     return (
         used,
-        _sensor_port_field(name),
-        x,
-        _sensor_field(name, "y_mm", "y mm"),
-        _sensor_field(name, "diameter_mm", "⌀ mm", _whole),
-        _sensor_field(name, "strategy", "Weighing", str),
+        *(replace(one, write=partial(_placed, name=name)) if one.id == f"{name}.x_mm" else one for one in fields),
     )
 
 
-def _single_used(name: str, field: str, fresh: SensorSpec) -> FormField:
-    """Return the field that adds or removes the ultrasonic sensor or the gyro."""
+def _single_fields(plan: NextRun, field: str, kind: type[SensorSpec]) -> tuple[FormField, ...]:
+    """Return the fields of the ultrasonic sensor or the gyro, the first of which adds or removes it."""
+    mounted: SensorSpec | None = getattr(plan.robot_choice.spec, field)
+    fresh: SensorSpec = mounted or getattr(plan.robot.spec, field) or kind()
 
     def switched(robot: RobotSpec, word: str) -> RobotSpec:
         if word == OFF:
-            return _with(robot, field, None)
+            return tree.put(robot, field, None)
         if getattr(robot, field) is not None:
             return robot
-        return _with(robot, field, replace(fresh, port=_free_port(robot, fresh.port)))
+        return tree.put(robot, field, replace(fresh, port=_free_port(robot, fresh.port)))
 
-    return _presence_field(name, switched)
-
-
-def _angles(text: str) -> tuple[float, ...]:
-    angles = tuple(map(_number, text.replace(",", " ").split()))
-    if not 1 <= len(angles) <= MAX_RAYS or not all(-360 <= angle <= 360 for angle in angles):
-        raise RobotError(f"must be 1 to {MAX_RAYS} angles from -360 to 360, separated by spaces")
-    return angles
-
-
-def _ultrasonic_fields(plan: NextRun) -> tuple[FormField, ...]:
-    mounted = plan.robot_choice.spec.ultrasonic
-    fresh = mounted or plan.robot.spec.ultrasonic or UltrasonicSpec()
-    used = _single_used(fresh.name, "ultrasonic", fresh)
-    if mounted is None:
-        return (used,)
-    labels = (
-        ("x_mm", "x mm"), ("y_mm", "y mm"), ("angle_deg", "Angle °"), ("max_range_mm", "Range mm"),
-        ("noise_mm", "Noise ± mm"),
-    )  # fmt: skip
-
-    def fanned(robot: RobotSpec, text: str) -> RobotSpec:
-        assert robot.ultrasonic is not None
-        return replace(robot, ultrasonic=replace(robot.ultrasonic, ray_angles_deg=_angles(text)))
-
-    def fan(robot: RobotSpec) -> str:
-        return " ".join(map(_shown, robot.ultrasonic.ray_angles_deg)) if robot.ultrasonic else ""
-
-    rays = _robot_field(f"{mounted.name}.ray_angles_deg", "Rays °", fan, fanned)
-    return (
-        used,
-        _sensor_port_field(mounted.name),
-        *(_sensor_field(mounted.name, key, label) for key, label in labels),
-        rays,
-    )
-
-
-def _gyro_fields(plan: NextRun) -> tuple[FormField, ...]:
-    gyro = plan.robot_choice.spec.gyro
-    fresh = gyro or plan.robot.spec.gyro or GyroSpec()
-    used = _single_used(fresh.name, "gyro", fresh)
-    return (used,) if gyro is None else (used, _sensor_port_field(gyro.name))
-
-
-def _further_fields(part: SensorSpec) -> tuple[FormField, ...]:
-    keys = [field.name for field in fields(part) if type(getattr(part, field.name)) is float]
-    labels = [key.replace("_deg", " °").replace("_", " ")[:MAX_LABEL] for key in keys]
-    return (
-        _sensor_port_field(part.name),
-        *(_sensor_field(part.name, key, label) for key, label in zip(keys, labels, strict=True)),
-    )
+    used = _presence_field(fresh.name, switched)
+    return (used,) if mounted is None else (used, *_sensor_fields(mounted))
 
 
 # Pen and world
 
 
-def _pen_fields() -> tuple[FormField, ...]:
-    def place(key: str) -> FormField:
-        def change(robot: RobotSpec, text: str) -> RobotSpec:
-            return replace(robot, pen=_with(robot.pen, key, _number(text)))
-
-        label = key.replace("_", " ")
-        return _robot_field(f"pen.{key}", label, lambda robot: _shown(getattr(robot.pen, key)), change)
-
-    def width(plan: NextRun, text: str) -> NextRun:
-        return with_values(plan, pen_width_mm=number(MIN_PEN_MM, MAX_PEN_MM)(text.strip().replace(",", "."), ""))
-
-    return (
-        _switch("pen.down", "Down", lambda plan: plan.spec.robot.pen.down, "pen_down"),
-        FormField("pen.color", "Colour", lambda plan: plan.spec.robot.pen.color,
-             lambda plan, text: with_values(plan, pen_color=pen_color(text.strip(), ""))),
-        FormField("pen.width_mm", "Width mm", lambda plan: _shown(plan.spec.robot.pen.width_mm), width),
-        place("x_mm"),
-        place("y_mm"),
-        _switch("pen.marks", "Marks mat", lambda plan: plan.spec.world.pen_marks, "pen_marks"),
-    )  # fmt: skip
-
-
-def _switch(id_: str, label: str, read: Callable[[NextRun], bool], field: str) -> FormField:
+def _run_field(path: str) -> FormField:
+    """Return the field of a value of the world or the pen, by its path in the settings."""
+    spec_path, value, _ = RUN_VALUES[path]
     return FormField(
-        id_,
-        label,
-        lambda plan: ON if read(plan) else OFF,
-        lambda plan, word: with_values(plan, **{field: word == ON}),
-        SWITCHED,
+        path,
+        value.label or path.replace("_", " ")[:MAX_LABEL],
+        lambda plan: value.to_text(tree.at(plan.spec, spec_path)),
+        lambda plan, text: with_values(plan, {path: _parsed(value, text)}),
+        value.choices,
     )
+
+
+def _pen_fields() -> tuple[FormField, ...]:
+    def field_of(key: str, value: Value) -> FormField:
+        path = f"pen.{key}"
+        return _run_field(path) if path in RUN_VALUES else _value_field(path, value, lambda _: path)
+
+    return tuple(field_of(key, value) for key, value in values_of(PenSpec).items())
 
 
 def _world_fields() -> tuple[FormField, ...]:
     def profile(plan: NextRun) -> str:
         return Path(plan.words.get("profile", plan.spec.profile.name)).name
 
-    return (
-        FormField("profile", "Profile", profile, with_profile, tuple(PROFILES)),
-        _switch("solid", "Solid", lambda plan: plan.spec.world.solid, "solid"),
-        _switch("walls", "Walls", lambda plan: plan.spec.world.walls, "walls"),
-        FormField("background_fit", "Image fit", lambda plan: plan.spec.world.background_fit,
-             lambda plan, word: with_values(plan, background_fit=word), BACKGROUND_FITS),
-    )  # fmt: skip
+    # Pose, noise and seed have panels of their own.
+    shown = [path for path, one in RUN_VALUES.items() if one.spec_path == f"world.{path}" and "." not in path]
+    return FormField("profile", "Profile", profile, with_profile, tuple(PROFILES)), *map(_run_field, shown)
 
 
 def _arguments(plan: NextRun) -> str:
-    return shlex.join(plan.settings.arguments)
+    return shlex.join(plan.settings["arguments"])
 
 
 def _with_arguments(plan: NextRun, text: str) -> NextRun:

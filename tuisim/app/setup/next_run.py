@@ -12,28 +12,21 @@ from typing import Any
 
 from tuisim.config.build import build_run_spec, settings_from
 from tuisim.config.obstacles import load_obstacles
-from tuisim.config.options import RobotChoice, Settings, settings_of
+from tuisim.config.options import OF_THE_MAT, RUN_VALUES, START, Settings, settings_of
 from tuisim.config.profiles import load_profile
 from tuisim.config.program_file import ProgramSource
-from tuisim.config.program_settings import BRICK_PROFILE, PROGRAM_FIELDS, Decided, decide
-from tuisim.config.robots import DEFAULT_ROBOT, choose_robot
+from tuisim.config.program_settings import BRICK_PROFILE, PROGRAM_PATHS, Decided, decide
+from tuisim.config.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
+from tuisim.core import tree
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec
 from tuisim.errors import BackgroundError
 from tuisim.source import Program
 
-POSE_FIELDS = ("x_mm", "y_mm", "heading_deg")
-WORLD_FIELDS = (
-    "background", "mats", "background_fit", "robot", "obstacles", "walls", "solid", *POSE_FIELDS, "light_noise",
-    "motor_noise", "pen_down", "pen_color", "pen_width_mm", "pen_marks", "profile", "seed",
-    "arguments",
-)  # fmt: skip
-"""Fields of `Settings` that affect a run."""
+WORLD_PATHS = frozenset({"background", "mats", "robot", "obstacles", "profile", "arguments", *RUN_VALUES})
+"""The paths of settings that affect a run."""
 
 _ANY_MAT = "Empty_Map"
-
-_OF_THE_MAT: Mapping[str, Any] = dict.fromkeys(("obstacles", "background_fit", *POSE_FIELDS))
-"""Fields that another mat replaces."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,29 +37,30 @@ class NextRun:
     """The choices. Robot, obstacles and profile are objects, so that no later change depends on a file."""
     spec: RunSpec
     words: Mapping[str, str]
-    """By field of `Settings`: the name or file that robot, obstacles and profile came from, if known."""
+    """By path: the name or file that robot, obstacles and profile came from, if known."""
     robot: RobotChoice
     """The robot as it was chosen, before any edit."""
     from_program: Mapping[str, Any] = field(default_factory=dict)
-    """What the source of the program has decided, or may decide, by field of `Settings`: nobody has chosen it."""
+    """What the source of the program has decided, or may decide, by path: nobody has chosen it."""
     program_robot: RobotChoice | None = None
     """The robot that the program needs; None for the default one."""
 
     @property
     def free(self) -> frozenset[str]:
         """The fields that still follow the program: they are as it has left them."""
-        return frozenset(key for key, value in self.from_program.items() if getattr(self.settings, key) == value)
+        return frozenset(key for key, value in self.from_program.items() if self.settings[key] == value)
 
     @property
     def robot_is_edited(self) -> bool:
         """Whether the robot differs from the chosen one."""
-        return self.settings.robot != self.robot
+        return self.robot_choice != self.robot
 
     @property
     def robot_choice(self) -> RobotChoice:
         """The robot with its edits, not as modified by the mat."""
-        assert isinstance(self.settings.robot, RobotChoice)
-        return self.settings.robot
+        choice = self.settings["robot"]
+        assert isinstance(choice, RobotChoice)
+        return choice
 
 
 def plan_of(settings: Settings, free: Iterable[str] = ()) -> NextRun:
@@ -79,9 +73,9 @@ def plan_of(settings: Settings, free: Iterable[str] = ()) -> NextRun:
     Raises:
         ConfigError: they name something that does not exist, or an invalid file.
     """
-    world, words = _resolved({field: getattr(settings, field) for field in WORLD_FIELDS})
-    settings = replace(settings, **world)
-    following = {key: getattr(settings, key) for key in free}
+    world, words = _resolved({path: settings[path] for path in WORLD_PATHS})
+    settings = settings.changed(world)
+    following = {path: settings[path] for path in free}
     return NextRun(settings, build_run_spec(settings), words, world["robot"], following)
 
 
@@ -122,8 +116,8 @@ def _resolved(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str
     return found, words
 
 
-def _built(plan: NextRun, **changes: Any) -> NextRun:
-    settings = replace(plan.settings, **changes)
+def _built(plan: NextRun, changes: Mapping[str, Any]) -> NextRun:
+    settings = plan.settings.changed(changes)
     return replace(plan, settings=settings, spec=build_run_spec(settings))
 
 
@@ -132,19 +126,19 @@ def with_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
 
     Args:
         plan: The current plan.
-        choices: By field of `Settings`; fields that do not concern the world are ignored.
+        choices: By path; fields that do not concern the world are ignored.
 
     Raises:
         ConfigError: they name something that does not exist, or an invalid file.
     """
-    said, words = _resolved({field: value for field, value in choices.items() if field in WORLD_FIELDS})
+    said, words = _resolved({path: value for path, value in choices.items() if path in WORLD_PATHS})
     if "background" in said:
-        said = {**_OF_THE_MAT, **said}
-    elif said.keys() & set(POSE_FIELDS):
-        said = {**dict.fromkeys(POSE_FIELDS), **said}
-    kept = {field: word for field, word in plan.words.items() if field not in said}
+        said = {**dict.fromkeys(OF_THE_MAT), **said}
+    elif said.keys() & set(START):
+        said = {**dict.fromkeys(START), **said}
+    kept = {path: word for path, word in plan.words.items() if path not in said}
     following = {key: value for key, value in plan.from_program.items() if key not in choices}
-    built = _built(plan, **said)
+    built = _built(plan, said)
     return replace(built, words=kept | words, robot=said.get("robot", plan.robot), from_program=following)
 
 
@@ -155,24 +149,24 @@ def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
         ConfigError: the mat is missing.
     """
     free, usual, settings = plan.free, Settings(), plan.settings
-    on_mat = settings.background != usual.background
+    on_mat = settings["background"] != usual["background"]
     if on_mat:
-        free -= {"x_mm", "y_mm"}
+        free -= {*START}
     # On a mat that was chosen, a program is taken to be the course's, unless it has been known not to be.
     guessed = free if not on_mat or plan.spec.profile.name == BRICK_PROFILE else free - {"profile"}
-    decided = decide(source, replace(settings, **{key: getattr(usual, key) for key in free}), guessed)
-    layer, words = _resolved({key: decided.layer.get(key, getattr(usual, key)) for key in free})
-    changed = {key: value for key, value in layer.items() if getattr(settings, key) != value}
+    decided = decide(source, settings.changed({key: usual[key] for key in free}), guessed)
+    layer, words = _resolved({key: decided.layer.get(key, usual[key]) for key in free})
+    changed = {key: value for key, value in layer.items() if settings[key] != value}
     kept = {key: word for key, word in plan.words.items() if key not in changed}
     named = {key: word for key, word in words.items() if key in changed}
-    found = replace(_built(plan, **changed) if changed else plan, words=kept | named, from_program=layer)
+    found = replace(_built(plan, changed) if changed else plan, words=kept | named, from_program=layer)
     found = replace(found, robot=changed.get("robot", plan.robot), program_robot=decided.robot)
     return found, decided if changed.keys() & {"robot", "profile"} else Decided()
 
 
 def with_free(plan: NextRun, keys: Iterable[str]) -> NextRun:
     """Return the plan with settings that nobody chooses any more, so that they follow the program where they can."""
-    free = {key: getattr(plan.settings, key) for key in keys if key in PROGRAM_FIELDS}
+    free = {key: plan.settings[key] for key in keys if key in PROGRAM_PATHS}
     return replace(plan, from_program={**plan.from_program, **free})
 
 
@@ -181,7 +175,7 @@ def with_program_robot(plan: NextRun) -> NextRun:
     chosen = plan.program_robot or choose_robot(DEFAULT_ROBOT)
     words = {key: word for key, word in plan.words.items() if key != "robot"}
     following = {**plan.from_program, "robot": chosen}
-    return replace(_built(plan, robot=chosen), words=words, robot=chosen, from_program=following)
+    return replace(_built(plan, {"robot": chosen}), words=words, robot=chosen, from_program=following)
 
 
 def with_mat(plan: NextRun, name: str) -> NextRun:
@@ -214,7 +208,7 @@ def with_profile(plan: NextRun, word: str) -> NextRun:
 
 def with_robot_as_chosen(plan: NextRun) -> NextRun:
     """Return the plan with every edit of the robot undone."""
-    return _built(plan, robot=plan.robot)
+    return _built(plan, {"robot": plan.robot})
 
 
 def with_robot_edited(plan: NextRun, robot: RobotSpec, moved: bool = False) -> NextRun:
@@ -229,7 +223,7 @@ def with_robot_edited(plan: NextRun, robot: RobotSpec, moved: bool = False) -> N
         ConfigError: the mat is missing.
     """
     choice = plan.robot_choice
-    return _built(plan, robot=replace(choice, spec=robot, own_places=choice.own_places or moved))
+    return _built(plan, {"robot": replace(choice, spec=robot, own_places=choice.own_places or moved)})
 
 
 def robot_to_save(plan: NextRun) -> RobotSpec:
@@ -248,51 +242,53 @@ def with_obstacle_set(plan: NextRun, word: str) -> NextRun:
 
 def with_obstacles(plan: NextRun, obstacles: tuple[Obstacle, ...]) -> NextRun:
     """Return the plan with these obstacles."""
-    settings = replace(plan.settings, obstacles=obstacles)
-    words = {field: word for field, word in plan.words.items() if field != "obstacles"}
+    settings = plan.settings.changed({"obstacles": obstacles})
+    words = {path: word for path, word in plan.words.items() if path != "obstacles"}
     spec = replace(plan.spec, world=replace(plan.spec.world, obstacles=obstacles))
     return replace(plan, settings=settings, spec=spec, words=words)
 
 
-def with_values(plan: NextRun, **values: Any) -> NextRun:
-    """Return the plan with changed fields of `Settings` that need no file.
+def with_values(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
+    """Return the plan with changed settings, by path, that need no file.
 
     Raises:
         ConfigError: the mat is missing, or a value is invalid.
     """
-    return _built(plan, **values)
+    return _built(plan, values)
 
 
 # These are called many times a second during a drag: the specification is changed, not rebuilt.
 
 
+def _put(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
+    """Return the plan with values of the run that move nothing else, by path."""
+    found = {RUN_VALUES[path].spec_path: value for path, value in values.items()}
+    return replace(plan, settings=plan.settings.changed(values), spec=tree.put_all(plan.spec, found))
+
+
 def at_pose(plan: NextRun, pose: Pose) -> NextRun:
     """Return the plan with another start pose."""
-    settings = replace(plan.settings, x_mm=pose.x_mm, y_mm=pose.y_mm, heading_deg=pose.heading_deg)
-    return replace(plan, settings=settings, spec=replace(plan.spec, world=replace(plan.spec.world, start=pose)))
+    return _put(plan, {path: tree.at(pose, path.removeprefix("start.")) for path in START})
 
 
 def with_noise(plan: NextRun, noise: NoiseSpec) -> NextRun:
     """Return the plan with other noise."""
     # A robot file may set the noise of its motors and sensors: it applies until the user sets the noise.
     before = plan.spec.world.noise
-    motor = plan.settings.motor_noise if noise.motor == before.motor else noise.motor
-    light = plan.settings.light_noise if noise.light == before.light else noise.light
-    settings = replace(plan.settings, light_noise=light, motor_noise=motor)
-    return replace(plan, settings=settings, spec=replace(plan.spec, world=replace(plan.spec.world, noise=noise)))
+    changed = {"noise.light": noise.light, "noise.motor": noise.motor}
+    return _put(plan, {path: value for path, value in changed.items() if tree.at(before, path[6:]) != value})
 
 
 def with_arguments(plan: NextRun, arguments: tuple[str, ...]) -> NextRun:
     """Return the plan with other arguments of the program."""
-    return replace(plan, settings=replace(plan.settings, arguments=arguments))
+    return replace(plan, settings=plan.settings.changed({"arguments": arguments}))
 
 
 def with_seed(plan: NextRun, seed: int) -> NextRun:
     """Return the plan with another seed."""
-    return replace(plan, settings=replace(plan.settings, seed=seed), spec=replace(plan.spec, seed=seed))
+    return _put(plan, {"seed": seed})
 
 
 def with_pen(plan: NextRun, down: bool) -> NextRun:
     """Return the plan with the pen down or up at the start."""
-    robot = replace(plan.spec.robot, pen=replace(plan.spec.robot.pen, down=down))
-    return replace(plan, settings=replace(plan.settings, pen_down=down), spec=replace(plan.spec, robot=robot))
+    return _put(plan, {"pen.down": down})

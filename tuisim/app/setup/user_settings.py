@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from tuisim.config.options import FileValue
+from tuisim.config.files import Scalar
 from tuisim.config.user_config import CELL_SET, THEME, Setting, load_config
 from tuisim.config.user_config_file import save_setting
 
@@ -32,7 +32,7 @@ _APPLY: Mapping[str, Callable[[Workspace, Any], None]] = {
 """What applies a setting to the app that is open, by its path."""
 
 
-def change(workspace: Workspace, one: Setting, value: FileValue | None) -> None:
+def change(workspace: Workspace, one: Setting, value: Scalar | None) -> None:
     """Write a setting to `config.toml`, and apply it at once where the app can.
 
     Raises:
@@ -40,6 +40,6 @@ def change(workspace: Workspace, one: Setting, value: FileValue | None) -> None:
     """
     save_setting(one, value)
     if apply := _APPLY.get(one.path):
-        apply(workspace, load_config().values.get(one.path, one.in_file.usual))
+        apply(workspace, load_config().values.get(one.path, one.default))
         workspace.app.situation_changed()
         workspace.app.draw(force=True)

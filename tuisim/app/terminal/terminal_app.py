@@ -68,7 +68,8 @@ from tuisim.app.terminal.queries import (
 from tuisim.app.terminal.screenshot import save_screenshot, screen_cells
 from tuisim.app.terminal.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors
 from tuisim.charts.traces import TRACE_COLORS
-from tuisim.config.options import AUTO, NO_PIXELS, CellSet, FileValue, Protocol
+from tuisim.config.files import Scalar
+from tuisim.config.options import AUTO, NO_PIXELS, CellSet, Protocol
 from tuisim.config.user_config import SETTINGS, THEME, load_config
 from tuisim.errors import SIGNALLED, ConfigError, TuisimError
 
@@ -253,7 +254,7 @@ class TerminalApp(App[None]):
         if codes:
             self.painted(len(codes))
 
-    def keep_setting(self, path: str, value: FileValue | None) -> None:
+    def keep_setting(self, path: str, value: Scalar | None) -> None:
         """Write a setting that applies already to `config.toml`; None for the usual one."""
         from tuisim.config.user_config_file import save_setting
 

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from tuisim.config.options import RobotChoice
 from tuisim.config.program_robot.library import DeviceKind
 from tuisim.config.program_robot.mechanics import Mechanics, mechanics_in
 from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
@@ -15,6 +14,7 @@ from tuisim.config.program_robot.places import Body, NewSensors, places_for, say
 from tuisim.config.program_robot.sizes import Size, sizes_in
 from tuisim.config.program_robot.wheels import WheelMotors, wheels_of
 from tuisim.config.program_robot.words import side_of
+from tuisim.config.robots import RobotChoice
 from tuisim.core.spec import (
     INPUT_PORTS,
     NO_PORT,

@@ -9,7 +9,7 @@ from typing import Any
 
 from tuisim.config.files import Location, save_toml, toml_key, toml_lines
 from tuisim.config.program_robot.assembly import BuiltRobot
-from tuisim.config.robots import COMMENTS, DEFAULT_ROBOT, ROBOTS, robot_from_table, robot_lines
+from tuisim.config.robots import DEFAULT_ROBOT, ROBOTS, robot_from_table, robot_lines, values_in
 from tuisim.core.spec import RobotSpec
 from tuisim.errors import RobotError
 
@@ -76,7 +76,8 @@ def _difference(robot: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str,
 def _lines(table: Mapping[str, Any], place: str, said: Mapping[str, str]) -> Iterator[str]:
     values = {key: value for key, value in table.items() if not isinstance(value, dict)}
     under = f"{place}." if place else ""
-    comments = {key: said.get(f"{under}{key}", COMMENTS.get(key, "")) for key in values}
+    known = values_in(place)
+    comments = {key: said.get(f"{under}{key}", known[key].help if key in known else "") for key in values}
     if values and place:
         yield from ("", *([f"# {said[place]}"] if place in said else []), f"[{place}]")
     yield from toml_lines(values, comments)
