@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import Any
 
 from tuisim.commands.echo import (
     Progress,
@@ -27,6 +28,9 @@ from tuisim.commands.echo import (
 from tuisim.commands.exit_status import describe, last_state
 from tuisim.commands.movies import movie, picture
 from tuisim.config.command_line import AS_JSON, Group, WordType, argument, command, option
+from tuisim.config.options import RUN_VALUES
+from tuisim.core import tree
+from tuisim.core.values import shown
 from tuisim.errors import ConfigError, LogError, counted, shortened
 from tuisim.logs.export import EXPORTERS, LISTED, check_targets, export_samples, export_telemetry
 from tuisim.protocol import Unended
@@ -126,6 +130,11 @@ def _plain(row: OutputRow) -> dict[str, object]:
     return {"time_s": row.time_ns / 1e9, "line": row.line, "stream": STREAMS[row.stream], "text": row.text}
 
 
+def _values(run: StoredRun) -> dict[str, Any]:
+    """Return the values of a run that options and world files set, by path."""
+    return {path: tree.at(run.spec, one.spec_path) for path, one in RUN_VALUES.items()}
+
+
 def _files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
     """Return the files that the program has read, and a note if their list is damaged."""
     try:
@@ -141,12 +150,16 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
         # The counts are known only after all rows have been read.
         read, _ = _files_read(run)
         files = {"files_read": [asdict(file) for file in read.files], "files_left_out": read.left_out}
-        echo_json_head("output", map(_plain, rows), describe(run) | files)
+        echo_json_head("output", map(_plain, rows), describe(run) | {"values": _values(run)} | files)
         return
     facts = describe(run, QUICK_BYTES)
     echo(f"{facts['id']} · {facts['created']} · {facts['background']} · {facts['robot']} · {facts['profile']} · "
           f"seed {facts['seed']}")  # fmt: skip
     echo(last_state(facts))
+    if chosen := [
+        f"{path} {shown(value)}" for path, value in _values(run).items() if value != RUN_VALUES[path].default
+    ]:
+        echo(f"values: {', '.join(chosen)}")
     if facts["arguments"]:
         echo(f"arguments: {shlex.join(facts['arguments'])}")
     read, damage = _files_read(run)

@@ -40,9 +40,10 @@ def at(node: object, path: str) -> Any:
 
 
 def _inside(node: object, name: str) -> Any:
-    if isinstance(node, tuple):
-        return next(one for one in node if _name_of(one) == name)
-    if not hasattr(node, name):
+    for one in node if isinstance(node, tuple) else ():
+        if _name_of(one) == name:
+            return one
+    if isinstance(node, tuple) or not hasattr(node, name):
         raise LookupError(name)
     return getattr(node, name)
 
@@ -58,11 +59,7 @@ def put(node: _Node, path: str, value: object) -> _Node:
         ConfigError: the value is wrong, or breaks a rule.
         LookupError: there is no such path.
     """
-    name, _, rest = path.partition(".")
-    inner = put(_inside(node, name), rest, value) if rest else value
-    if isinstance(node, tuple):
-        return tuple(inner if _name_of(one) == name else one for one in node)  # type: ignore[return-value]
-    return replace(node, **{name: inner})  # type: ignore[type-var]  # a data class
+    return put_all(node, {path: value})
 
 
 def put_all(node: _Node, values: Mapping[str, object]) -> _Node:
@@ -71,14 +68,14 @@ def put_all(node: _Node, values: Mapping[str, object]) -> _Node:
     Raises:
         As for `put`.
     """
-    whole = {path: value for path, value in values.items() if "." not in path}
     inside: dict[str, dict[str, object]] = {}
     for path, value in values.items():
         name, _, rest = path.partition(".")
-        if rest:
-            inside.setdefault(name, {})[rest] = value
-    whole |= {name: put_all(_inside(node, name), rest) for name, rest in inside.items()}
-    return replace(node, **whole) if whole else node  # type: ignore[type-var]  # a data class
+        inside.setdefault(name, {})[rest] = value
+    found = {name: rest[""] if "" in rest else put_all(_inside(node, name), rest) for name, rest in inside.items()}
+    if isinstance(node, tuple):
+        return tuple(found.get(_name_of(one), one) for one in node)  # type: ignore[return-value]  # of the same parts
+    return replace(node, **found) if found else node  # type: ignore[type-var]  # a data class
 
 
 def to_plain(spec: RunSpec) -> dict[str, Any]:
