@@ -102,7 +102,10 @@ def border_cases() -> Iterator[Case]:
     ):
         for path, ends in about.items():
             for number, value in enumerate(_values(ends)):
-                text = toml({**base, **nested(path, value)})
+                table = {**base, **nested(path, value)}
+                if path.startswith("beacon."):
+                    table["beacon"] = {"x_mm": 3, "y_mm": 4, **table["beacon"]}
+                text = toml(table)
                 yield Case(f"border {kind} {path} {number}", words, {**files, "t.toml": text})
     for path, ends in {**WORLD, **{f"robot.{key}": one for key, one in ROBOT.items()}}.items():
         for number, value in enumerate(_values(ends)[:8]):

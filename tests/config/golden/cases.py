@@ -163,6 +163,36 @@ def _choices(r: Random, name: str) -> Case:
     return Case(name, ("p.py",), files, how="choices", choices=chosen)
 
 
+def _experiment(r: Random, name: str) -> Case:
+    varied: Table = {}
+    for key in r.sample(sorted(VARIED), r.randint(1, 2)):
+        varied[key] = VARIED[key](r) if truth(r) else _listed(VARIED[key](r))
+    chosen = {key: LONG[key](r) for key in r.sample(sorted(LONG), r.randint(0, 2))}
+    chosen |= some(r, 0.4, seeds=lambda: r.choice(["0..2", [4, 5], range(3)]), goals="square")
+    return Case(name, ("p.py",), {"p.py": _program(r, 1)}, how="choices", choices=chosen | {"parameters": varied})
+
+
+def _own_places(r: Random, name: str) -> Case:
+    """A mat moves the sensors of a robot, unless they have places of their own; in cells, one mat follows another."""
+    robot = made.some(r, 0.5, base=r.choice(made.ROBOTS), weight="light")
+    robot["color_sensors"] = {
+        side: made.some(r, 0.5, x_mm=lambda: r.randint(-50, 50), diameter_mm=lambda: r.randint(5, 30))
+        for side in r.sample(["left", "right"], r.randint(1, 2))
+    }
+    mats = r.sample(["Radial_grey", "Obstacles_Test", "Sensor_Diameter_Test", "Line_Following_Test", "Loop"], 2)
+    words = ["-x", "7"] if truth(r) else ["-o", "Wall"]
+    files: dict[str, str | bytes] = {"p.py": PROGRAM, "r.toml": toml(robot)}
+    match r.randrange(3):
+        case 0:
+            return Case(name, ("run", "p.py", "-r", "r.toml", "-b", mats[0]), files)
+        case 1:
+            files["w.toml"] = toml({"background": mats[0], "robot": robot})
+            return Case(name, ("run", "w.toml", "p.py", "-p", *words), files)
+        case _:
+            lines = [["-b", mats[0], "-r", "r.toml", *words], ["-N", "3", *option_words(r, 1)], ["-b", mats[1]], ["-p"]]
+            return Case(name, tuple(map(shlex.join, lines[: r.randint(2, 4)])), files, how="cells")
+
+
 def _world(r: Random, name: str) -> Case:
     table = made.world(r)
     files: dict[str, str | bytes] = {"p.py": _program(r, 1)}
@@ -327,6 +357,8 @@ KINDS: Mapping[str, tuple[int, Callable[[Random, str], Case]]] = {
     "batch": (400, _batch),
     "saved": (200, _saved),
     "own mat": (40, _own_mat),
+    "experiment": (200, _experiment),
+    "own places": (200, _own_places),
 }
 """By kind: how many cases there are, and what makes one."""
 
@@ -362,5 +394,8 @@ def built_in_cases() -> Iterator[Case]:
     for task in ("follow_line", "log_greys", "square", "stop_at_wall"):
         yield Case(f"built in goals of {task}", ("batch", "--goals", task, task, "--seeds", "0"))
         yield Case(f"built in world of {task}", ("run", f"{task}_goals.toml"))
+    for at, program in enumerate(BRICK_PROGRAMS):
+        for words in ((), ("--json",), ("--out", "r.toml")):
+            yield Case(f"built in {at} of a brick {words}", ("robots", "--from", "p.py", *words), {"p.py": program})
     for lesson in range(1, 17):
         yield Case(f"built in lesson {lesson}", ("learn", "open", str(lesson)))

@@ -53,6 +53,8 @@ def of_run(run: Mapping[str, Any], plain: Mapping[str, Any]) -> Recorded:
     """Return a run as the golden file has it; `plain` has the values of a plain run by path."""
     rest = {key: value for key, value in run.items() if key != "spec"}
     text = json.dumps(run["spec"])
+    if json.dumps(outside.read_back(json.loads(text))) != text:
+        rest["is read back as another one"] = True
     values = flat(json.loads(text))
     changed = {path: value for path, value in values.items() if not same(value, plain.get(path, ...))}
     gone = [path for path in plain if path not in values]

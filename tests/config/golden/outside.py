@@ -17,6 +17,7 @@ from typing import Any, NoReturn
 from unittest.mock import patch
 
 from tuisim import api
+from tuisim.batch import sweep
 from tuisim.cli import run_command
 from tuisim.commands import app as app_command
 from tuisim.commands import batch as batch_command
@@ -26,7 +27,7 @@ from tuisim.config.folders import programs_folder
 from tuisim.config.obstacles import save_obstacles
 from tuisim.config.robots import save_robot
 from tuisim.config.worlds import save_world
-from tuisim.core.spec import RunSpec, to_plain
+from tuisim.core.spec import RunSpec, from_plain, to_plain
 from tuisim.errors import TuisimError
 from tuisim.notebook import display
 from tuisim.notebook.lab import Lab
@@ -90,6 +91,7 @@ def nothing_starts() -> Iterator[None]:
             (run_command_module, "start_run", _hold_run),
             (api, "start_run", _hold_run),
             (batch_command, "run_plan", _hold_plan),
+            (sweep, "run_plan", _hold_plan),
             (app_command, "has_terminal", lambda: True),
             ("tuisim.app.app", "run_app", _hold_app),
             (display.Stage, "show", lambda *_: None),
@@ -128,9 +130,13 @@ def of_command(words: Sequence[str]) -> Outcome:
 
 
 def of_choices(program: str, choices: Mapping[str, Any]) -> Outcome:
-    """Return what `tuisim.api.simulate` would run, or the text of its exception and the name of its class."""
+    """Return what Python's interface would run, or the text of its exception and the name of its class.
+
+    It is asked for an experiment if there are `parameters`, else for a run.
+    """
+    start = api.experiment if "parameters" in choices else api.simulate
     try:
-        api.simulate(program, **choices)
+        start(program, **choices)
     except _Held as held:
         return _of_held(held, "", "")
     except TuisimError as error:
@@ -169,6 +175,11 @@ def of_saved(words: Sequence[str], path: str, what: str) -> Outcome:
     except TuisimError as error:
         return replace(built, code=2, err=f"{built.err}{error}\n")
     return replace(built, out=Path(path).read_text(encoding="utf-8"))
+
+
+def read_back(plain: Plain) -> Plain:
+    """Return the specification that a stored run has, as it is read from `run.json` and written again."""
+    return to_plain(from_plain(plain))
 
 
 def fixed_places() -> Mapping[str, str]:

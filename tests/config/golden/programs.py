@@ -11,6 +11,7 @@ import io
 import json
 import lzma
 import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -20,6 +21,8 @@ from tests.config.golden import outside
 from tests.config.golden.fixture import HERE, Recorded
 
 RUNS = HERE / "programs.json.xz"
+_STAMPS = re.compile(r"\d{8}T\d{6}-[0-9a-f]{6}|\d{4}-\d\d-\d\d[T ]\d\d:\d\d[\d:.+]*")
+"""Ids of runs, and when they were."""
 OF_THE_MACHINE = ("id", "created", "path")
 """Keys of what `run --json` prints that are other each time."""
 SAMPLES, TELEMETRY = ("s.csv", "s.jsonl", "s.parquet"), ("t.csv", "t.jsonl", "t.parquet")
@@ -32,6 +35,8 @@ class GoldenProgram:
     words: tuple[str, ...]
     """The words after `tuisim run`."""
     files: Mapping[str, str] = field(default_factory=dict)
+    then: tuple[tuple[str, ...], ...] = ()
+    """Further command lines of `tuisim` after the run; what they say counts, too."""
 
 
 THREADS = """\
@@ -159,7 +164,22 @@ PROGRAMS: Mapping[str, GoldenProgram] = {
     "follow_line with noise": GoldenProgram(("follow_line", *NOISE)),
     "square with noise by nbev3devsim": GoldenProgram(("square", *NOISE, "--seed", "7", "--profile", "nbev3devsim")),
     "stop_at_wall with noise by ev3": GoldenProgram(("stop_at_wall", *NOISE, "--profile", "ev3", "--solid")),
-    "square in the world of its goals": GoldenProgram(("square_goals.toml", "-r", "Small_Robot")),
+    "square in the world of its goals": GoldenProgram(
+        ("square_goals.toml", "-r", "Small_Robot"), then=(("goals", "check", "square"), ("runs", "show", "last"))
+    ),
+    "square elsewhere": GoldenProgram(
+        ("square", "-x", "400", "-b", "Loop"),
+        then=(("goals", "check", "square"), ("goals", "check", "log_greys"), ("runs", "rerun", "last")),
+    ),
+    "two setups": GoldenProgram(
+        ("read_once", "-N", "5", "-r", "Small_Robot", "-p", "-P", "navy"),
+        then=(
+            ("run", "read_once", "--profile", "ev3", "-o", "Wall", "--walls", "off", "--seed", "3", "-a", "45"),
+            ("log", "diff", "1", "2"),
+            ("log", "diff", "1", "2", "--json"),
+            ("runs", "show", "1", "--json"),
+        ),
+    ),
     "threads": GoldenProgram(("threads.py",), {"threads.py": THREADS}),
     "threads by nbev3devsim": GoldenProgram(("threads.py", "--profile", "nbev3devsim"), {"threads.py": THREADS}),
     "threads by ev3": GoldenProgram(("threads.py", "--profile", "ev3"), {"threads.py": THREADS}),
@@ -181,16 +201,22 @@ def run_golden(program: GoldenProgram, folder: Path) -> Recorded:
     done = outside.of_command(("run", *program.words, "--json", *targets, "--telemetry", TELEMETRY[0]))
     more = [outside.of_command(("runs", "export", "last", "--telemetry", name)) for name in TELEMETRY[1:]]
     facts = json.loads(done.out)
-    said = done.err
-    for place, word in {str(folder): "FOLDER", os.path.realpath(folder): "FOLDER", **outside.fixed_places()}.items():
-        said = said.replace(place, word)
+    then = [outside.of_command(words) for words in program.then]
     return {
-        "code": [done.code, *(one.code for one in more)],
-        "err": said,
+        "code": [done.code, *(one.code for one in (*more, *then))],
+        "err": _anywhere(done.err, folder),
+        "then": [_anywhere(one.out + one.err, folder) for one in then],
         "json": {key: value for key, value in facts.items() if key not in OF_THE_MACHINE},
         "keys": list(facts),
         "files": {name: _of_file(folder / name) for name in (*SAMPLES, *TELEMETRY)},
     }
+
+
+def _anywhere(text: str, folder: Path) -> str:
+    """Return what is said without what is other each time."""
+    for place, word in {str(folder): "FOLDER", os.path.realpath(folder): "FOLDER", **outside.fixed_places()}.items():
+        text = text.replace(place, word)
+    return _STAMPS.sub("WHEN", text)
 
 
 def _sum(data: bytes) -> str:

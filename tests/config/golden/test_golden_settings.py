@@ -95,9 +95,11 @@ def test_a_changed_value_is_shown_with_what_it_was(tmp_path: Path) -> None:
     ]
 
 
-def test_the_order_of_keys_and_the_form_of_numbers_count(tmp_path: Path) -> None:
+def test_the_order_of_keys_and_the_form_of_numbers_count(monkeypatch: pytest.MonkeyPatch) -> None:
     def spec(**noise: object) -> dict[str, object]:
         return {"spec": {"world": {"noise": noise}}}
+
+    monkeypatch.setattr(outside, "read_back", lambda plain: plain)
 
     plain = {"world.noise.light": 0, "world.noise.motor": 0}
     usual = of_run(spec(light=0, motor=0), plain)
@@ -106,6 +108,11 @@ def test_the_order_of_keys_and_the_form_of_numbers_count(tmp_path: Path) -> None
     assert of_run(spec(light=0.0, motor=0), plain)["set"] == {"world.noise.light": 0.0}
     assert of_run(spec(light=False, motor=0), plain)["set"] == {"world.noise.light": False}
     assert of_run(spec(light=0), plain)["gone"] == ["world.noise.motor"]
+
+
+def test_a_specification_that_is_read_back_as_another_one_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(outside, "read_back", lambda plain: {**plain, "seed": 1})
+    assert of_run({"spec": {"seed": 0}}, {"seed": 0})["is read back as another one"]
 
 
 def test_an_error_of_before_may_be_said_in_listed_words_only() -> None:
