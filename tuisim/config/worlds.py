@@ -306,10 +306,9 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None, argumen
     mat = settings["background"]
     top["background"] = _relative(mat, folder) if os.sep in mat else mat
     settings["solid"] = spec.world.solid
-    for key in ("robot", "obstacles", "profile"):
-        if isinstance(settings[key], str):
-            top[key] = settings[key]
-    top |= {name: settings[name] for name, keys in _TABLES.items() if not keys}
+    of_world = {name: settings[name] for name, keys in _TABLES.items() if not keys}
+    presets = {key: settings[key] for key in ("robot", "obstacles", "profile") if isinstance(settings[key], str)}
+    top |= of_world | presets | {"seed": of_world.pop("seed")}
     comments = {**_COMMENTS, **{path: one.value.help for path, one in RUN_VALUES.items()}}
     lines = [_HEAD, "", *files.toml_lines(top, comments)]
     for name, keys in _TABLES.items():

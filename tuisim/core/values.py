@@ -225,10 +225,8 @@ class Whole(Number):
         self._check(value, int)
 
     def from_data(self, data: object) -> int:
-        # A document may write it as 20.0.
-        value = int(data) if isinstance(data, float) and data.is_integer() else data
-        self.check(value)
-        return value  # type: ignore[return-value]  # checked
+        self.check(data)
+        return data  # type: ignore[return-value]  # checked
 
     def from_text(self, text: str) -> int:
         found: int = self._parsed(text, int)
@@ -343,7 +341,7 @@ class Text(Value):
 
     @property
     def allowed(self) -> str:
-        return self.what
+        return "text"
 
     @property
     def metavar(self) -> str:
@@ -393,7 +391,8 @@ class Choice(Value):
 
     def from_data(self, data: object) -> Any:
         for each in self._choices:
-            if each == data and not isinstance(data, bool):
+            # True and 1.0 equal 1.
+            if each == data and not isinstance(data, bool | float):
                 return each
         raise WrongValue(f"no such {self.what} {shown(data)}", self.allowed)
 

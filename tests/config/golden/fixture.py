@@ -158,6 +158,8 @@ class Difference:
     why: str
     pattern: bool = False
     """Whether `before` is a regular expression, and `now` what takes its place."""
+    both: bool = False
+    """Whether it also takes its place in what is said now: the words are other ones, or there are none any more."""
 
     def applied(self, text: str) -> str:
         """Return a text of before as it is said now."""
@@ -171,13 +173,32 @@ def accepted() -> tuple[Difference, ...]:
         return tuple(Difference(**entry) for entry in tomllib.load(file).get("difference", ()))
 
 
+@cache
+def other_first() -> frozenset[str]:
+    """Return the cases with several errors of which another one is told first."""
+    return frozenset(tomllib.loads(DIFFERENCES.read_text("utf-8"))["other_first"])
+
+
 def in_words_of_now(before: Recorded) -> Recorded:
-    """Return what was recorded, with the texts as they are said now."""
-    found = dict(before)
-    for key in ("out", "err"):
-        for difference in accepted():
-            if key in found:
-                found[key] = difference.applied(found[key])
+    """Return what was recorded before, with the texts as they are said now."""
+    return _in_other_words(before, accepted())
+
+
+def in_common_words(now: Recorded) -> Recorded:
+    """Return what was recorded now, with the texts as `in_words_of_now` has those of before."""
+    return _in_other_words(now, [one for one in accepted() if one.both])
+
+
+KEYS = re.compile(r"(?:^[\w.]+ ?= ?[^\n]*\n)+", re.MULTILINE)
+
+
+def _in_other_words(recorded: Recorded, listed: Iterable[Difference]) -> Recorded:
+    found = dict(recorded)
+    if "out" in found:
+        # The order of the keys of a table is that of the specification.
+        found["out"] = KEYS.sub(lambda keys: "".join(sorted(keys[0].splitlines(keepends=True))), found["out"])
+    for difference in listed:
+        found |= {key: difference.applied(found[key]) for key in ("out", "err") if key in found}
     return found
 
 

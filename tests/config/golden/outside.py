@@ -27,7 +27,8 @@ from tuisim.config.folders import programs_folder
 from tuisim.config.obstacles import save_obstacles
 from tuisim.config.robots import save_robot
 from tuisim.config.worlds import save_world
-from tuisim.core.spec import RunSpec, from_plain, to_plain
+from tuisim.core.spec import RunSpec
+from tuisim.core.tree import from_plain, to_plain
 from tuisim.errors import TuisimError
 from tuisim.notebook import display
 from tuisim.notebook.lab import Lab
