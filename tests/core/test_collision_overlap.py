@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
 from tests.core.memory_sink import MemorySink
-from tests.core.test_solid import overlap_mm, simulation
+from tests.core.test_collision import overlap_mm, simulation
 from tuisim.config import mats
 from tuisim.core.geometry import Pose
 from tuisim.core.motors import FOREVER

@@ -1,4 +1,4 @@
-"""Command and magic lines and what they parse to, as recorded in `lines.jsonl`."""
+"""Command and magic lines and what they parse to, as recorded in `cli_lines.jsonl`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tuisim.errors import ConfigError
 from tuisim.notebook.magic_line import MagicWords, parse_line
 from tuisim.runs.store import RunStore
 
-TABLE = Path(__file__).with_name("lines.jsonl")
+TABLE = Path(__file__).with_name("cli_lines.jsonl")
 ROWS = [json.loads(line) for line in TABLE.read_text(encoding="utf-8").split("\n") if line]
 
 MOST_CHARACTERS = 40

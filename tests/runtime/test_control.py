@@ -190,7 +190,7 @@ def test_a_child_that_is_killed_leaves_every_row(start: Start) -> None:
 
 HOST = """
 import sys, time
-from tests.runtime.test_steering import spec
+from tests.runtime.test_control import spec
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.source import Program
 run = start_run(Program("p.py", sys.argv[1], "preloaded"), spec(), RunOptions(live=True))

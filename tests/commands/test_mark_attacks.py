@@ -18,12 +18,12 @@ import pytest
 
 from tests.conftest import ROOT, Command
 from tests.isolated import needs_isolation
-from tests.marking.attackers import ALWAYS, DEEDS, LINKS, RUN_FOLDER, SECRET, TABLES, write_attackers
-from tests.marking.right import HOPS, MAGIC
+from tests.marks.attackers import ALWAYS, DEEDS, LINKS, RUN_FOLDER, SECRET, TABLES, write_attackers
+from tests.marks.right import HOPS, MAGIC
+from tests.marks.student import GOALS
 
 MOST_S = 600.0
 HONEST = ("ada", "ben", "zoe")
-GOALS = Path(__file__).with_name("goals.toml")
 FINISH = 'title = "Done"\nbackground = "Grey_bands"\n[[goal]]\nname = "finish"\nfinish = true\n'
 Rows = Mapping[str, Mapping[str, str]]
 

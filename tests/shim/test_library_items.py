@@ -19,9 +19,9 @@ from tests.shim import (
     table_reference,
     table_sensors,
     table_sound,
-    test_driving,
-    test_overlay,
-    test_screen,
+    test_display,
+    test_install_overlay,
+    test_motor_driving,
 )
 from tests.shim.checking import Table, differences
 from tests.shim.conftest import RunOn
@@ -72,7 +72,7 @@ def test_registry_lists_what_the_tables_exercise() -> None:
     for table, _, _ in TABLES.values():
         for item in table.ids:
             ids[item.split(":")[0]].add(item)
-    for item in test_driving.EXERCISED | test_overlay.EXERCISED | test_screen.EXERCISED:
+    for item in test_motor_driving.EXERCISED | test_install_overlay.EXERCISED | test_display.EXERCISED:
         ids[item.split(":")[0]].add(item)
     for module, found in ids.items():
         file = Path(__file__).parent / "exercised" / f"{module}.txt"

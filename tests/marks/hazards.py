@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tests.marking.right import HOPS, MAGIC
-from tests.marking.student import ARRIVAL, EVERY, Student, single
+from tests.marks.right import HOPS, MAGIC
+from tests.marks.student import ARRIVAL, EVERY, Student, single
 
 _LEVELS = (
     MAGIC

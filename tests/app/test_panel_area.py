@@ -11,7 +11,7 @@ from textual.widget import Widget
 from textual.widgets import Static
 
 from tests.app.app_help import LOGS, ready, screen_text, settings, until
-from tests.app.layout.test_presets import KEYS, SIZES
+from tests.app.layout.test_arrangement_presets import KEYS, SIZES
 from tuisim.app.app import LabApp
 from tuisim.app.panels.world import WorldView
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.lessons.test_lessons import LESSONS
+from tests.lessons.test_trial import LESSONS
 from tuisim.batch.pool import run_many
 from tuisim.goals.judgement import GoalState
 from tuisim.lessons.spec import Lesson, OtherWorld, RunCheck

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from tests.marking.hazards import EVIL
+from tests.marks.hazards import EVIL
 from tests.running import PATIENCE_S
 from tuisim.config.program_file import ProgramSource
 from tuisim.errors import printable

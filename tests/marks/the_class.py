@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.marking.hazards import HAZARDS
-from tests.marking.near_misses import NEAR_MISSES
-from tests.marking.right import RIGHT
-from tests.marking.student import Student
+from tests.marks.hazards import HAZARDS
+from tests.marks.near_misses import NEAR_MISSES
+from tests.marks.right import RIGHT
+from tests.marks.student import Student
 
 CLASS: tuple[Student, ...] = (*RIGHT, *NEAR_MISSES, *HAZARDS)
 

@@ -18,6 +18,8 @@ from pathlib import Path
 
 from tuisim.errors import printable
 
+GOALS = Path(__file__).with_name("goals.toml")
+
 GOAL_POINTS: Mapping[str, float] = {"levels": 4, "place": 3, "heading": 1, "wall": 1, "done": 1}
 """The goals by name, with their points:
 

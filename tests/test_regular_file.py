@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.commands.test_damaged import record, row
+from tests.commands.test_runs_damaged import record, row
 from tests.conftest import ROOT, Command
 from tuisim.cli import EXIT_OUR_MISTAKE
 from tuisim.runs.records import HEADER_BYTES, OUTPUT_FILE, TELEMETRY_FILE, Stream, header

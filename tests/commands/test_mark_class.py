@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.marking.hazards import HAZARDS
-from tests.marking.student import EVERY
-from tests.marking.the_class import CLASS, write_class
+from tests.marks.hazards import HAZARDS
+from tests.marks.student import EVERY
+from tests.marks.the_class import CLASS, write_class
 
 
 def test_sixty_students_of_all_kinds_have_expected_marks(tmp_path: Path) -> None:

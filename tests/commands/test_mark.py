@@ -18,9 +18,9 @@ import pandas as pd
 import pytest
 
 from tests.conftest import ROOT, Command
-from tests.marking.student import GOAL_POINTS, Student
-from tests.marking.test_sheet import LONG_SHEET
-from tests.marking.the_class import CLASS, write_class
+from tests.marks.student import GOAL_POINTS, GOALS, Student
+from tests.marks.test_sheet import LONG_SHEET
+from tests.marks.the_class import CLASS, write_class
 from tests.running import PATIENCE_S
 from tuisim.batch import execute
 from tuisim.cli import run_command
@@ -29,7 +29,6 @@ from tuisim.errors import HostError
 from tuisim.marks.outcome import Outcome
 from tuisim.runs.handle import RunHandle
 
-GOALS = Path(__file__).with_name("goals.toml")
 SEEDS = "0,1"
 FEW = ("ada.py", "ben.py", "gustav.py", "raises.py", "empty.py", "zip.py", "viktor")
 PROCESSES_S = 600.0

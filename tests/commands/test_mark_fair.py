@@ -13,7 +13,7 @@ import pytest
 
 from tests.conftest import ROOT
 from tests.hosts import GOALS, HOSTS, MAGIC, Stored, hosted
-from tests.marking.fair import FAIR
+from tests.marks.fair import FAIR
 
 QUICK = ("plain", "busy_daemon", "raises", "exits", "condition")
 MOST_S = 900.0

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from tests.marking.right import HOPS, MAGIC
+from tests.marks.right import HOPS, MAGIC
 
 SECRET = "the secret of the tutor"
 OWN_RUN = """

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.marking.the_class import CLASS, write_class
+from tests.marks.the_class import CLASS, write_class
 from tuisim.errors import ConfigError
 from tuisim.marks import students
 from tuisim.marks.journal import Journal

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.marking.student import Student, single
+from tests.marks.student import Student, single
 
 MAGIC = "# %%sim_magic_preloaded -b Grey_bands\n"
 HOPS = (
