@@ -1,61 +1,16 @@
-"""Work on long logs, beside the screen; newer work takes the place of older."""
+"""The rows of a log: filtered, sorted, searched, also in stretches beside the screen."""
 
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 
 from tests.app.analyser.logs import long_log, model_of
-from tests.app.analyser.test_screen import opened, text_of, typed
-from tests.app.app_help import until
 from tuisim.analysis import table as rows_module
 from tuisim.analysis.model import Model
-from tuisim.analysis.source import LogRequest
 from tuisim.analysis.table import TableTask, conditions_of
-from tuisim.app.analyser import screen as screen_module
-from tuisim.app.analyser.app import AnalyserApp
-
-STEPS: list[tuple[list[str], Callable[[Model], bool]]] = [
-    (["F", "=value < 50 and name == a", "enter"], lambda model: len(model.rows) == 50),
-    (["o"], lambda model: model.rows.view.sorted_by == "time"),
-    (["U", "o"], lambda model: model.rows.view.sorted_by == "time" and len(model.rows) == 200),
-    (["o"], lambda model: model.rows.view.descending and model.rows.row(0) == 199),
-    (["U", "slash", "=77", "enter"], lambda model: model.row == 154),
-    (["d", "=v = slope(a)", "enter"], lambda model: model.selected == "v"),
-    (["c", "=a > 50", "enter"], lambda model: model.row == 100),
-]
-
-
-@pytest.mark.slow
-async def test_long_logs_are_worked_on_beside_the_screen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(screen_module, "AT_ONCE", 0)
-    lines = (f"{at / 10},{'ab'[at % 2]},{at // 2}" for at in range(200))
-    file = tmp_path / "log.csv"
-    file.write_text("\n".join(("time,name,value", *lines)) + "\n")
-    async with AnalyserApp(LogRequest(file=str(file))).run_test(size=(120, 40)) as pilot:
-        screen, _ = await opened(pilot)
-        await until(pilot, lambda: screen.is_open and screen.model.opened.done)
-        model = screen.model
-        assert model is not None
-        for keys, so in STEPS:
-            await typed(pilot, *keys)
-            await until(pilot, lambda: screen.job is None)
-            assert so(model), keys
-        await typed(pilot, "slash", "=nowhere at all", "enter")
-        await until(pilot, lambda: any("was not found" in told.message for told in pilot.app._notifications))
-        old, new = TableTask("older"), TableTask("newer")
-        screen.begin(old)
-        screen.begin(new)
-        assert old.stopped and "newer" in text_of(pilot)
-        screen.end(old, lambda: pytest.fail("the result of older work was taken"))
-        screen.end(new, lambda: model.go_to_row(3))
-        assert model.row == 3 and screen.job is None
-        screen.begin(old)
-        await pilot.press("U")
-        assert screen.job is None
+from tuisim.errors import LogError
 
 
 def test_a_search_goes_round_in_stretches(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -83,3 +38,65 @@ def test_a_search_tells_how_far_it_is_and_can_be_stopped(monkeypatch: pytest.Mon
     assert rows.find("nowhere", 0, 1, task) is None and str(task) == "searching … 100%"
     task = TableTask("searching …", stopped=True)
     assert rows.find("nowhere", 0, 1, task) is None and task.part == 0.25
+
+
+def values(model: Model) -> list[float]:
+    return [float(model.rows.text(model.rows.row(at), "value")) for at in range(len(model.rows))]
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("variable == Colour and value > 65", [90.0, 80.0, 70.0]),
+        ("variable ~ COL, time >= 8", [10.0, 0.0]),
+        ("value = 5", [5.0]),
+        ("variable != 'Left' and value <= 0", [0.0]),
+    ],
+    ids=["and", "comma", "equal", "not equal"],
+)
+def test_rows_that_fulfil_all_conditions(text: str, found: list[float]) -> None:
+    model = model_of(long_log())
+    model.rows.filter(tuple(conditions_of(text, model.rows.columns)))
+    assert values(model) == found
+
+
+@pytest.mark.parametrize("text", ["value", "nothing > 3", "value > x", "> 3"])
+def test_a_condition_that_is_none_is_said(text: str) -> None:
+    model = model_of(long_log())
+    with pytest.raises(LogError):
+        model.rows.filter(tuple(conditions_of(text, model.rows.columns)))
+    assert len(model.rows) == 20
+
+
+def test_sorting_goes_with_a_filter() -> None:
+    model = model_of(long_log())
+    model.rows.filter(tuple(conditions_of("variable == Colour", model.rows.columns)))
+    model.rows.sort("value", False)
+    assert values(model) == [float(10 * at) for at in range(10)]
+    model.rows.sort("value", True)
+    assert values(model)[0] == 90.0
+    assert model.rows.place(18) == 9
+    model.rows.sort("variable", False)
+    model.rows.filter(())
+    assert values(model)[:2] == [90.0, 80.0]
+
+
+def test_columns_are_hidden_and_kept_at_the_left() -> None:
+    rows = model_of(long_log()).rows
+    rows.choose(2)
+    rows.freeze()
+    assert (rows.columns[:2], rows.frozen, rows.chosen) == (["time", "variable"], 1, "time")
+    rows.freeze()
+    assert (rows.columns[0], rows.frozen) == ("time", 0)
+    rows.hide()
+    assert "time" not in rows.columns
+    rows.show_all()
+    assert rows.columns[:3] == ["variable", "value", "time"]
+
+
+def test_search_goes_round() -> None:
+    rows = model_of(long_log()).rows
+    assert rows.find("left", 0, 1) == 1
+    assert rows.find("left", 19, 1) == 1
+    assert rows.find("left", 0, -1) == 19
+    assert rows.find("no such text", 0, 1) is None

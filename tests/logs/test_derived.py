@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pyarrow as pa
 import pytest
+from numpy.testing import assert_allclose
 
 from tests.app.analyser.logs import long_log, model_of, wide_log
 from tuisim.analysis.model import derive
 from tuisim.app.analyser.panes import PANES
 from tuisim.app.dialogs.question import completed
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import RobotSpec
 from tuisim.errors import LogError
+from tuisim.logs.bands import distance_mm
 from tuisim.logs.columns import guess_columns
-from tuisim.logs.derived import NEEDED, definition_of, derived, reckoned_series
+from tuisim.logs.derived import NEEDED, dead_reckoning, definition_of, derived, error_mm, reckoned_series
 from tuisim.logs.log import Log
 
 FALLING = 90.0 - 10.0 * np.arange(10)
@@ -115,3 +121,41 @@ def test_columns_that_mean_something_else_have_nothing_derived() -> None:
     derive(model, "v = wave + 1")
     other = model.log.with_layout(model.log.layout)
     assert other.names == ("wave",) and other.table.column_names == ["time", "wave"]
+
+
+def column(*values: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    return np.array(values, np.float64)
+
+
+class TestReckoning:
+    def test_straight_and_turn(self) -> None:
+        robot = RobotSpec()
+        per_degree = math.pi * robot.wheel_diameter_mm / 360
+        quarter = math.pi / 2 * robot.wheel_spacing_mm / 2 / per_degree
+        left = column(0, 100 / per_degree, 100 / per_degree - quarter)
+        right = column(0, 100 / per_degree, 100 / per_degree + quarter)
+        got = dead_reckoning(left, right, Pose(10, 20, 0), robot)
+        assert_allclose(got.x_mm, [10, 110, 110], atol=1e-9)
+        assert_allclose(got.y_mm, [20, 20, 20], atol=1e-9)
+        assert_allclose(got.heading_deg, [0, 0, 90])
+
+    def test_the_positions_are_those_of_the_motors(self) -> None:
+        usual, geared = RobotSpec(), RobotSpec(left_reversed=True, gear_ratio=0.5)
+        left, right = column(0, 100, 130), column(0, 120, 160)
+        expected = dead_reckoning(left, right, Pose(0, 0, 0), usual)
+        got = dead_reckoning(left * -0.5, right * 0.5, Pose(0, 0, 0), geared)
+        assert_allclose([got.x_mm, got.y_mm, got.heading_deg], [expected.x_mm, expected.y_mm, expected.heading_deg])
+
+    def test_an_arc_is_round(self) -> None:
+        robot = RobotSpec()
+        per_degree = math.pi * robot.wheel_diameter_mm / 360
+        radius = 200.0
+        inner = math.pi / 2 * (radius - robot.wheel_spacing_mm / 2) / per_degree
+        outer = math.pi / 2 * (radius + robot.wheel_spacing_mm / 2) / per_degree
+        got = dead_reckoning(column(0, inner), column(0, outer), Pose(0, 0, 0), robot)
+        assert_allclose([got.x_mm[1], got.y_mm[1], got.heading_deg[1]], [radius, radius, 90])
+
+    def test_error_and_distance(self) -> None:
+        got = dead_reckoning(column(0, 0), column(0, 0), Pose(0, 0, 0), RobotSpec())
+        assert_allclose(error_mm(got, column(0, 3), column(0, 4)), [0, 5])
+        assert_allclose(distance_mm(column(0, 3, 3), column(0, 4, 6)), [0, 5, 7])

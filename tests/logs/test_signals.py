@@ -1,4 +1,4 @@
-"""Figures, signals, crossings, expressions and dead reckoning of columns with known answers."""
+"""Figures, signals and crossings of columns with known answers."""
 
 from __future__ import annotations
 
@@ -9,12 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tuisim.analysis.events import crossings
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import RobotSpec
 from tuisim.errors import LogError
-from tuisim.logs.bands import distance_mm
-from tuisim.logs.derived import dead_reckoning, error_mm
-from tuisim.logs.expressions import FUNCTIONS, evaluate
 from tuisim.logs.signals import (
     Between,
     derivative,
@@ -159,102 +154,3 @@ class TestCrossings:
     def test_refuses_a_negative_hysteresis(self) -> None:
         with pytest.raises(LogError, match="negative"):
             crossings(column(0), column(0), 5, -1)
-
-
-COLUMNS = {"left": column(1, 2, 3), "right": column(4, 0, 6), "odd name": column(7, 8, 9)}
-VALUES = {
-    "(left + right) / 2": [2.5, 1, 4.5],
-    "left - -right * 2 ** 2": [17, 2, 27],
-    "left < right": [1, 0, 1],
-    "1 < left <= 2": [0, 1, 0],
-    "left > 1 and not right > 5": [0, 1, 0],
-    "left == 1 or right == 6": [1, 0, 1],
-    "`odd name` % 4": [3, 0, 1],
-    "left if right else -1": [1, -1, 3],
-    "7 // left": [7, 3, 2],
-    "right / (left - 2)": [-4, NAN, 6],
-    "1 / right": [0.25, math.inf, 1 / 6],
-    "diff(left)": [NAN, 1, 1],
-    "shift(right)": [NAN, 4, 0],
-    "clip(right, 1, 5)": [4, 1, 5],
-    "where(left > 2, 10, left)": [1, 2, 10],
-    "sqrt(left * left) + abs(-1)": [2, 3, 4],
-    "hypot(3, 4) + round(0.6) + floor(0.6) + sign(-3)": [5, 5, 5],
-    "min(left, 2) + max(right, 1)": [5, 3, 8],
-    "sin(90) + cos(0) + exp(0) + log(1) + atan2(1, 1)": [48, 48, 48],
-    "2 * pi": [2 * math.pi] * 3,
-    "9" * 400: [math.inf] * 3,
-}
-
-
-@pytest.mark.parametrize(("text", "expected"), VALUES.items(), ids=VALUES)
-def test_expression(text: str, expected: list[float]) -> None:
-    assert_allclose(evaluate(text, COLUMNS), expected)
-
-
-def test_every_function_is_tried() -> None:
-    assert all(any(f"{name}(" in text for text in VALUES) for name in FUNCTIONS)
-
-
-REFUSED = {
-    "a call of something else": "open('x')",
-    "an attribute": "left.__class__",
-    "an index": "left[0]",
-    "a text": "'a' * 1000",
-    "a lambda": "(lambda: 1)()",
-    "a list": "[x for x in left]",
-    "a statement": "import os",
-    "no column": "lft + 1",
-    "no function": "eval(left)",
-    "too few values": "clip(left)",
-    "a name for a value": "abs(x=left)",
-    "nothing": "",
-    "an open bracket": "(left",
-    "an open backtick": "`odd name + 1",
-    "too deep": "(" * 400 + "1" + ")" * 400,
-    "too long": "1+" * 1000 + "1",
-    "a null character": "left\0",
-    "a complex number": "left * 2j",
-    "an assignment": "(left := 1)",
-    "f-string": "f'{left}'",
-}
-
-
-@pytest.mark.parametrize("text", REFUSED.values(), ids=REFUSED)
-def test_expression_is_refused(text: str) -> None:
-    with pytest.raises(LogError):
-        evaluate(text, COLUMNS)
-
-
-class TestReckoning:
-    def test_straight_and_turn(self) -> None:
-        robot = RobotSpec()
-        per_degree = math.pi * robot.wheel_diameter_mm / 360
-        quarter = math.pi / 2 * robot.wheel_spacing_mm / 2 / per_degree
-        left = column(0, 100 / per_degree, 100 / per_degree - quarter)
-        right = column(0, 100 / per_degree, 100 / per_degree + quarter)
-        got = dead_reckoning(left, right, Pose(10, 20, 0), robot)
-        assert_allclose(got.x_mm, [10, 110, 110], atol=1e-9)
-        assert_allclose(got.y_mm, [20, 20, 20], atol=1e-9)
-        assert_allclose(got.heading_deg, [0, 0, 90])
-
-    def test_the_positions_are_those_of_the_motors(self) -> None:
-        usual, geared = RobotSpec(), RobotSpec(left_reversed=True, gear_ratio=0.5)
-        left, right = column(0, 100, 130), column(0, 120, 160)
-        expected = dead_reckoning(left, right, Pose(0, 0, 0), usual)
-        got = dead_reckoning(left * -0.5, right * 0.5, Pose(0, 0, 0), geared)
-        assert_allclose([got.x_mm, got.y_mm, got.heading_deg], [expected.x_mm, expected.y_mm, expected.heading_deg])
-
-    def test_an_arc_is_round(self) -> None:
-        robot = RobotSpec()
-        per_degree = math.pi * robot.wheel_diameter_mm / 360
-        radius = 200.0
-        inner = math.pi / 2 * (radius - robot.wheel_spacing_mm / 2) / per_degree
-        outer = math.pi / 2 * (radius + robot.wheel_spacing_mm / 2) / per_degree
-        got = dead_reckoning(column(0, inner), column(0, outer), Pose(0, 0, 0), robot)
-        assert_allclose([got.x_mm[1], got.y_mm[1], got.heading_deg[1]], [radius, radius, 90])
-
-    def test_error_and_distance(self) -> None:
-        got = dead_reckoning(column(0, 0), column(0, 0), Pose(0, 0, 0), RobotSpec())
-        assert_allclose(error_mm(got, column(0, 3), column(0, 4)), [0, 5])
-        assert_allclose(distance_mm(column(0, 3, 3), column(0, 4, 6)), [0, 5, 7])

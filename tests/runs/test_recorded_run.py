@@ -16,7 +16,6 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.core.pen_marks import MarkedField, PenMarks
 from tuisim.runs.brick_state import LED_NAMES, led_row
-from tuisim.runs.diff import diff_runs, recording_in_words, setup_in_words
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.recorded_run import Recording, RowIndex
 from tuisim.runs.records import Mark, OutputWriter, Stream
@@ -121,15 +120,3 @@ def test_a_timeline_marks_what_the_user_and_breakpoints_did() -> None:
     assert timeline.advance_playback(12.0, 0.0)
     assert not timeline.playing
     assert timeline.record() is None
-
-
-def test_the_difference_of_two_runs_is_told() -> None:
-    text = "for speed in (30, 60):\n    tank_drive.on_for_seconds({}, speed, 0.5)\n    print('Speed: ' + str(speed))\n"
-    one, two = stored(text.format(30), seed=1), stored(text.format("speed"), seed=2)
-    found = diff_runs(one, two)
-    recording, setup = dict(recording_in_words(found)), dict(setup_in_words(found))
-    assert "x_mm" in recording["first differing tick"]
-    assert "mm apart" in recording["poses"]
-    assert setup["settings, seed"] == "1 | 2"
-    assert "--- prog.py" in [line for label, line in setup_in_words(found) if not label]
-    assert list(recording_in_words(diff_runs(one, one))) == [("bit-identical", "recording, output, settings")]

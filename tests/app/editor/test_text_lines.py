@@ -1,11 +1,12 @@
-"""Lines of a running text in the same text after it was edited: light, breakpoints, run to the cursor."""
+"""Lines of a text: changes, places, and the same lines in an edited text."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
-from tests.app.app_help import notices, ready, settings, until
-from tuisim.app.app import LabApp
+from tuisim.app.editor import text_lines
 from tuisim.app.editor.text_lines import MOST_COMPARED, LineMap, code_line
 
 
@@ -44,39 +45,51 @@ def test_of_a_text_that_is_all_new_only_its_ends_are_compared() -> None:
     assert lines.to_shown(5) == 0
 
 
-TURNS = """\
-import time
-n = 0
-while True:
-    n = n + 1
-    time.sleep(0.05)
-    m = n
-"""
+@pytest.mark.parametrize(
+    ("line", "indent"),
+    [
+        ("while x:", "    "),
+        ("    if x:  # why", "        "),
+        ("x = '#:'", ""),
+        ("    return 3", ""),
+        ("        pass", "    "),
+        ("f(", "    "),
+        ("    x = 1", "    "),
+        ("", ""),
+    ],
+)
+def test_the_indentation_after_a_line(line: str, indent: str) -> None:
+    assert text_lines.indent_after(line) == indent
 
 
-@pytest.mark.slow
-@pytest.mark.usefixtures("home")
-async def test_breakpoints_and_light_stay_on_their_lines_when_a_held_program_is_edited() -> None:
-    async with LabApp(settings(TURNS, speed=0.0)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+@pytest.mark.parametrize(
+    ("change", "before", "after"),
+    [
+        (text_lines.indented, ["a", "", "  b"], ["    a", "", "      b"]),
+        (text_lines.outdented, ["    a", "  b", "      c", "\td", "e"], ["a", "b", "    c", "d", "e"]),
+        (text_lines.comment_toggled, ["  a", "", "    b"], ["  # a", "", "  #   b"]),
+        (text_lines.comment_toggled, ["  # a", "", "  #   b", "#c"], ["  a", "", "    b", "c"]),
+        (text_lines.comment_toggled, ["# a", "b"], ["# # a", "# b"]),
+        (text_lines.comment_toggled, ["", " "], ["", " "]),
+    ],
+    ids=["in", "out", "comment", "code", "mixed", "empty"],
+)
+def test_lines_are_changed(change: Callable[[list[str]], list[str]], before: list[str], after: list[str]) -> None:
+    assert change(before) == after
 
-        def at(line: int) -> bool:
-            return app.debugger.view is not None and app.debugger.view.paused.line == line
 
-        await pilot.press("n")
-        await until(pilot, lambda: at(1))
-        app.debugger.toggle_line(6)
-        await pilot.press("d", "ctrl+home", "#", "enter", "escape")
-        assert app.debugger.texts == ("7",)
-        assert app.panel_area.code is not None
-        area = app.panel_area.code._area
-        await until(pilot, lambda: area._lit == 2)
-        await pilot.press("space")
-        await until(pilot, lambda: at(6) and area._lit == 7)
-        # The cursor is on a line that the run does not have, then on one that it has elsewhere.
-        area.move_cursor((0, 0))
-        await pilot.press("L")
-        assert "This line is not in the running text" in notices(app)
-        area.move_cursor((4, 0))
-        await pilot.press("L")
-        await until(pilot, lambda: at(4) and area._lit == 5)
+@pytest.mark.parametrize(
+    ("wanted", "found"),
+    [("speed", [(0, 0), (1, 4)]), ("Speed", [(1, 4)]), ("(", [(1, 9)]), ("", []), ("nothing", [])],
+)
+def test_places_of_a_text(wanted: str, found: list[tuple[int, int]]) -> None:
+    assert text_lines.places(["speed = 3", "x = Speed(1)"], wanted) == found
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "count"),
+    [("a\nb\nc", "a\nb\nc", 0), ("a\nb\nc", "a\nx\nc", 1), ("a", "a\nb\nc", 2), ("", "a", 1)],
+    ids=["same", "changed", "added", "from nothing"],
+)
+def test_how_many_lines_differ(one: str, other: str, count: int) -> None:
+    assert text_lines.differing_lines(one, other) == count

@@ -1,0 +1,34 @@
+"""Two runs compared."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from tests.app.app_help import program
+from tests.running import PATIENCE_S
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.runs.diff import diff_runs, recording_in_words, setup_in_words
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
+
+
+def stored(text: str, **choices: Any) -> StoredRun:
+    spec = build_run_spec(replace(Settings(background="Grey_bands"), **choices))
+    run = start_run(program(text), spec, RunOptions())
+    assert run.wait(PATIENCE_S)
+    return RunStore().load_run(run.run_id)
+
+
+def test_the_difference_of_two_runs_is_told() -> None:
+    text = "for speed in (30, 60):\n    tank_drive.on_for_seconds({}, speed, 0.5)\n    print('Speed: ' + str(speed))\n"
+    one, two = stored(text.format(30), seed=1), stored(text.format("speed"), seed=2)
+    found = diff_runs(one, two)
+    recording, setup = dict(recording_in_words(found)), dict(setup_in_words(found))
+    assert "x_mm" in recording["first differing tick"]
+    assert "mm apart" in recording["poses"]
+    assert setup["settings, seed"] == "1 | 2"
+    assert "--- prog.py" in [line for label, line in setup_in_words(found) if not label]
+    assert list(recording_in_words(diff_runs(one, one))) == [("bit-identical", "recording, output, settings")]
