@@ -12,7 +12,6 @@ from numpy.testing import assert_allclose
 from tests.app.analyser.logs import long_log, model_of, wide_log
 from tuisim.analysis.model import derive
 from tuisim.app.analyser.panes import PANES
-from tuisim.app.dialogs.question import completed
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import RobotSpec
 from tuisim.errors import LogError
@@ -108,12 +107,6 @@ def test_it_is_replaced_taken_away_and_kept_when_the_log_grows() -> None:
     derive(model, "v =")
     assert [trace.name for trace in model.traces] == ["wave"] and model.rows.columns == ["time", "wave"]
     assert model.selected == "wave" and len(model.rows) == 100
-
-
-def test_the_word_that_is_typed_is_ended() -> None:
-    words = ("Colour", "Left", "slope(", "`a b`")
-    lines = {"slope(Co": "slope(Colour", "2 * sl": "2 * slope(", "`a": "`a b`", "2 + 3": None, "Colour": None}
-    assert {line: completed(line, words) for line in lines} == lines
 
 
 def test_columns_that_mean_something_else_have_nothing_derived() -> None:

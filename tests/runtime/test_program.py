@@ -6,11 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.running import PATIENCE_S, Run
-from tuisim.core.profile import ROBOLAB
-from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.source import Program
+from tests.running import Run
 
 ENDS = {
     "nothing to do": ("pass", "finished", 0),
@@ -143,21 +139,6 @@ def test_stall_in_a_c_call_is_killed_and_names_the_line(run: Run) -> None:
     assert done.lines == ["A: 1"]
 
 
-@pytest.mark.slow
-def test_a_million_lines_are_all_kept(run: Run) -> None:
-    done = run("for i in range(1_000_000): print('A:', i)", time_limit_s=60.0)
-    assert done.ended.end == "finished"
-    assert len(done.lines) == 1_000_000
-    assert done.lines[-1] == "A: 999999"
-
-
-@pytest.mark.slow
-def test_too_much_output_ends_the_run(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    done = run("x = 'y' * 10_000_000\nwhile True: print(x)")
-    assert (done.ended.end, done.ended.error_line) == ("output_limit", 2)
-    assert "256 MiB" in done.ended.summary
-
-
 def test_answers_to_input(run: Run) -> None:
     done = run("name = input('Name? ')\nprint('hello ' + name)\ninput()", answers=("Ada",))
     assert done.lines == ["hello Ada"]
@@ -169,20 +150,6 @@ def test_speech_is_shown(run: Run) -> None:
     done = run('say("it\'s black", wait=True)\nprint(get_clock() > 0.5)')
     assert done.lines == ["it's black", "True"]
     assert [row.text for row in done.run.output.all_rows() if row.stream == 3] == ["it\u2019s black"]
-
-
-def test_an_error_in_a_module_beside_the_program_shows_its_place(tmp_path: Path) -> None:
-    (tmp_path / "helper.py").write_text("def bad():\n    return {}['k']\n")
-    program = tmp_path / "main.py"
-    program.write_text("import helper\nprint('A: 1', end='')\nhelper.bad()\n")
-    spec = RunSpec(RobotSpec(), WorldSpec(background="Grey_bands"), ROBOLAB)
-    run = start_run(Program("main.py", program.read_text(), path=str(program)), spec, RunOptions())
-    ended = run.wait(PATIENCE_S)
-    assert ended is not None
-    texts = [row.text for row in run.output.all_rows()]
-    assert texts[0] == "A: 1"
-    assert any("helper.py" in text for text in texts)
-    assert (ended.error_line, ended.summary) == (3, "KeyError: 'k' (line 3)")
 
 
 def test_the_end_of_a_program_closes_what_it_left_open(run: Run, tmp_path: Path) -> None:
@@ -230,23 +197,3 @@ CHANCE = (
 def test_every_kind_of_chance_comes_from_the_seed(run: Run) -> None:
     assert run(CHANCE).lines == run(CHANCE).lines
     assert run(CHANCE, seed=1).lines != run(CHANCE, seed=2).lines
-
-
-@pytest.mark.parametrize(("last", "end", "exit_code"), [("sys.exit(3)", "finished", 3), ("1 / 0", "raised", 1)])
-def test_other_threads_go_on_after_an_error_or_exit_of_the_main_thread(
-    run: Run, last: str, end: str, exit_code: int
-) -> None:
-    done = run(f"import sys, threading\nthreading.Timer(0.3, print, ('late',)).start()\n{last}")
-    assert (done.lines, done.ended.end, done.ended.exit_code) == (["late"], end, exit_code)
-
-
-@pytest.mark.slow
-def test_pandas_and_a_thread_pool_work_in_programs(run: Run) -> None:
-    done = run(
-        "import datetime, time\nimport pandas as pd\nfrom multiprocessing.pool import ThreadPool\n"
-        "print(pd.DataFrame({'a': [1, 2]}).a.sum(), datetime.datetime.now().year)\n"
-        "print(isinstance(datetime.datetime.now() + datetime.timedelta(1), datetime.date))\n"
-        "def f(x):\n    time.sleep(0.1)\n    return x * x\n"
-        "with ThreadPool(3) as pool: print(pool.map(f, range(5)))"
-    )
-    assert done.lines == ["3 2020", "True", "[0, 1, 4, 9, 16]"]

@@ -15,7 +15,7 @@ from textual.screen import Screen
 from textual.widgets import Input, OptionList, Static
 
 import tuisim.app
-from tests.app.app_help import LOGS, ready, screen_text, settings, until
+from tests.app.app_help import LOGS, ready, settings, until
 from tests.app.monkey import at_once, key_event
 from tuisim.analysis.source import LogRequest
 from tuisim.app.action import Palette
@@ -126,28 +126,6 @@ async def test_a_click_beside_the_list_of_a_dialog_leaves_the_keys_to_the_dialog
         await until(pilot, lambda: isinstance(app.focused, OptionList))
         await pilot.click(offset=(1, 1))
         assert isinstance(app.focused, OptionList)
-
-
-NO_NAMES = {"too long": "x" * 300 + ".toml", "of nobody's home": "~no-such-user/lab.toml", "with a zero": "a\0b.toml"}
-
-
-@pytest.mark.quick_cases("ctrl+s")
-@pytest.mark.parametrize("key", ["ctrl+s", "o"])
-async def test_what_cannot_be_the_name_of_a_file_is_refused(key: str) -> None:
-    async with LabApp(settings()).run_test(size=(80, 24), notifications=True) as pilot:
-        app = await ready(pilot)
-        for kind, name in NO_NAMES.items():
-            await pilot.press(key)
-            dialog, field = app.screen, app.screen.query_one(Input)
-            field.focus()
-            field.value = name
-            await pilot.press("enter")
-            await until(pilot, lambda: "cannot be the name of a file" in screen_text(app), kind)
-            assert app.screen is dialog, kind
-            await pilot.press("escape")
-            await until(pilot, lambda: len(app.screen_stack) == 1, kind)
-            app.clear_notifications()
-            await until(pilot, lambda: "cannot be the name of a file" not in screen_text(app), kind)
 
 
 async def test_a_dialog_gives_its_result_once() -> None:
