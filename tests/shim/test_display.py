@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 
 from tests.running import Done
+from tests.shim.checking import Table, Tables, cases, check
 from tests.shim.conftest import RunOn
-from tests.shim.table_console import SCREENS
+from tests.shim.table_display import DISPLAY, FRAME_BUFFER
+from tests.shim.test_console import SCREENS
 from tuisim.runs.brick_state import BLANK, DISPLAY_WIDTH, ROW_BYTES, BrickState, face_after
 from tuisim.runs.records import OutputRow, Stream
 
@@ -124,3 +126,15 @@ def test_live_and_headless_show_the_same(run_on: RunOn) -> None:
     headless, live = run_on(text), run_on(text, live=True)
     assert headless.recording == live.recording
     assert len(shown(headless)) >= 10
+
+
+TABLES: Tables = {
+    "display": (DISPLAY, "plain", "empty"),
+    "frame buffer": (FRAME_BUFFER, "plain", "empty"),
+}
+
+
+@pytest.mark.slow_cases("display")
+@cases(TABLES)
+def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+    check(run_on, table, robot, world)

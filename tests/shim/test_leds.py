@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from tests.running import Done
+from tests.shim.checking import Table, Tables, cases, check
 from tests.shim.conftest import RunOn
+from tests.shim.table_led import LED
 from tuisim.runs.brick_state import BrickState, face_after
 from tuisim.runs.records import OutputRow, Stream
 
@@ -58,3 +60,13 @@ def test_a_blinking_light_is_written_down_each_time(run_on: RunOn) -> None:
 def test_blinking_does_not_change_which_line_lets_time_pass(run_on: RunOn) -> None:
     done = run_on(BLINKING)
     assert {done.run.telemetry.record(tick).line for tick in range(1, 125)} == {6}
+
+
+TABLES: Tables = {
+    "lights": (LED, "plain", "empty"),
+}
+
+
+@cases(TABLES)
+def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+    check(run_on, table, robot, world)

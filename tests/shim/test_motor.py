@@ -5,6 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.running import over
+from tests.shim import table_groups, table_motor
+from tests.shim.checking import Table, Tables, cases, check
 from tests.shim.conftest import START, RunOn
 from tuisim.runs.frames import telemetry_frame
 from tuisim.runs.rerun import rerun, same
@@ -117,3 +119,18 @@ def test_a_stored_run_of_such_a_robot_gives_the_same_bits_again(run_on: RunOn, t
     again = rerun(stored, RunStore())
     over(again)
     assert same(stored, again.stored()).same
+
+
+TABLES: Tables = {
+    "speeds": (table_motor.SPEEDS, "plain", "empty"),
+    "motor": (table_motor.MOTOR, "eyes", "empty"),
+    "motor set": (table_groups.SET, "plain", "empty"),
+    "tank": (table_groups.TANK, "plain", "empty"),
+    "steering": (table_groups.STEERING, "plain", "empty"),
+    "differential": (table_groups.DIFFERENTIAL, "plain", "empty"),
+}
+
+
+@cases(TABLES)
+def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+    check(run_on, table, robot, world)

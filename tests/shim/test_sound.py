@@ -6,8 +6,9 @@ import json
 
 import pytest
 
+from tests.shim.checking import Table, Tables, cases, check
 from tests.shim.conftest import FAR_WALL, PLAIN, RunOn
-from tests.shim.table_sound import FILE, HEARD
+from tests.shim.table_sound import FILE, HEARD, SOUND
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import RunSpec
 from tuisim.protocol import Spoke
@@ -100,3 +101,13 @@ def test_beep_takes(words: str, tones: list[Tone]) -> None:
 def test_beep_refuses(words: str) -> None:
     with pytest.raises(ValueError):
         parse_beep(words.split())
+
+
+TABLES: Tables = {
+    "sound": (SOUND, "plain", "empty"),
+}
+
+
+@cases(TABLES)
+def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+    check(run_on, table, robot, world)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from tests.shim.checking import Check, Table
+from tests.shim.checking import Check, Table, Tables, cases, check
+from tests.shim.conftest import RunOn
 
 CONSOLE = Table(
     "ev3dev2.console",
@@ -52,3 +53,13 @@ SCREENS: dict[str, Shown] = {
     "c.set_font('Lat15-VGA8')": ("|||||||||||||||", ()),
 }
 """By statement, carried out one after the other: the rows that are on the screen then, and what is in reverse."""
+
+
+TABLES: Tables = {
+    "console": (CONSOLE, "plain", "empty"),
+}
+
+
+@cases(TABLES)
+def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+    check(run_on, table, robot, world)

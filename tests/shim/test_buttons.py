@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from tests.shim.checking import Check, Table
+from tests.shim.checking import Check, Table, Tables, cases, check
+from tests.shim.conftest import RunOn
 
 PRESSES = (
     "up@1-2", "enter@1.5-2.5",
@@ -108,3 +109,13 @@ BUTTON = Table(
     ),
     PRESSES,
 )  # fmt: skip
+
+
+TABLES: Tables = {
+    "buttons": (BUTTON, "plain", "empty"),
+}
+
+
+@cases(TABLES)
+def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+    check(run_on, table, robot, world)

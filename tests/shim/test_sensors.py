@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from tests.shim.checking import Check, Table
+import pytest
+
+from tests.shim.checking import Check, Table, Tables, cases, check
+from tests.shim.conftest import RunOn
 
 SENSOR = Table(
     "ev3dev2.sensor",
@@ -221,3 +224,18 @@ REMOTE = Table(
               "(None, [400, 0], None, [0, 0])", "ev3dev2.control.rc_tank:RemoteControlledTank.main"),
     ),
 )  # fmt: skip
+
+
+TABLES: Tables = {
+    "sensor": (SENSOR, "default", "red"),
+    "colour": (COLOR, "default", "red"),
+    "ultrasonic and gyro": (RANGE, "default", "empty"),
+    "touch and infrared": (EYES, "eyes", "furnished"),
+    "remote control": (REMOTE, "eyes", "remote"),
+}
+
+
+@pytest.mark.slow_cases("remote control")
+@cases(TABLES)
+def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+    check(run_on, table, robot, world)

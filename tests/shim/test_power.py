@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from tests.shim.checking import Check, Table
+import pytest
+
+from tests.shim.checking import Check, Table, Tables, cases, check
+from tests.shim.conftest import RunOn
 
 POWER = Table(
     "ev3dev2.power",
@@ -79,3 +82,16 @@ EMPTY_PORT = Table(
         ),
     ),
 )
+
+
+TABLES: Tables = {
+    "battery": (POWER, "plain", "empty"),
+    "ports": (PORT, "eyes", "empty"),
+    "empty ports": (EMPTY_PORT, "plain", "empty"),
+}
+
+
+@pytest.mark.slow_cases("battery")
+@cases(TABLES)
+def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+    check(run_on, table, robot, world)
