@@ -195,21 +195,6 @@ def test_stored_runs_are_listed_shown_exported_and_removed(
     assert [run["number"] for run in json.loads(here("runs", "--json").stdout)] == [2]
 
 
-@pytest.mark.parametrize(
-    ("command", "name"),
-    [
-        ("backgrounds", "Grey_bands"),
-        ("robots", "Small_Robot"),
-        ("obstacles", "Square_posts"),
-        ("programs", "log_greys.py"),
-        ("profiles", "robolab"),
-    ],
-)
-def test_lists(command: str, name: str, here: Command) -> None:
-    assert name in here(command).stdout
-    assert name in [entry["name"] for entry in json.loads(here(command, "--json").stdout)]
-
-
 @pytest.mark.parametrize("command", ["", *COMMANDS])
 def test_every_command_has_a_help(command: str, here: Command) -> None:
     done = here(*filter(None, [command]), "--help")

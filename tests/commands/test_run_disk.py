@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import fcntl
 import os
 import resource
@@ -30,11 +29,10 @@ from tuisim.runs import run_folder
 from tuisim.runs import store as store_module
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.packed_files import PACKED_SUFFIX
-from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_CHUNK, TELEMETRY_FILE, OutputWriter, TelemetryWriter
+from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_CHUNK, TELEMETRY_FILE
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
 from tuisim.runs.side_files import STACK_FILE
 from tuisim.runs.store import PACKER_LOCK_FILE, PACKERS, RunStore
-from tuisim.runs.views import TelemetryView
 from tuisim.source import Program
 
 ENDLESS = """
@@ -106,46 +104,6 @@ def test_run_without_room_to_begin_leaves_nothing_reserved(start: Start) -> None
         done = over(start("print(1)"))
     assert (done.ended.end, done.ended.tick) == ("disk_full", 0)
     assert not [name for name in (TELEMETRY_FILE, OUTPUT_FILE) if (done.run.folder / name).exists()]
-
-
-class _Full(Exception):
-    pass
-
-
-def _say_full(_: OSError) -> Exception:
-    return _Full()
-
-
-def test_writers_ask_for_less_and_lose_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    real, free = os.posix_fallocate, 1_500_000
-
-    def reserve(fd: int, start: int, size: int) -> None:
-        if start + size > free:
-            raise OSError(errno.ENOSPC, "full")
-        real(fd, start, size)
-
-    monkeypatch.setattr(os, "posix_fallocate", reserve)
-    writer = TelemetryWriter(tmp_path)
-    writer.full = _say_full
-    while True:
-        try:
-            room = writer.room(1)
-        except _Full:
-            break
-        at = 64 + 64 * writer.count
-        room[at : at + 4] = writer.count.to_bytes(4, "little")
-        writer.publish(writer.count + 1)
-    writer.close()
-    assert writer.count == (free - 64) // 64
-    assert TelemetryView(tmp_path).array()["tick"].tolist() == list(range(writer.count))
-
-
-def test_room_is_reserved_where_there_is_no_call_for_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delattr(os, "posix_fallocate")
-    writer = OutputWriter(tmp_path)
-    found = (tmp_path / OUTPUT_FILE).stat()
-    assert 512 * found.st_blocks >= found.st_size > 1 << 16
-    writer.close()
 
 
 def test_end_that_cannot_be_stored_costs_no_row(

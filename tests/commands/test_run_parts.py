@@ -121,10 +121,6 @@ def test_missing_part_of_the_prelude_is_told_where_it_is_used(
     assert "line 3" in done.stderr
 
 
-def test_list_of_robots_tells_their_ports(here: Command) -> None:
-    assert "in1 bumper, in2 left, in3 infrared" in here("robots").stdout
-
-
 BAD = {
     "no port": ("[touch_sensors.nose]\nx_mm = 1", "touch_sensors.nose.port: is missing"),
     "a port twice": ("[touch_sensors.nose]\nport = 'in2'", "two sensors are on in2"),

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Mapping
-from functools import partial
-from pathlib import Path
 from typing import Any
 
 import pytest
 from textual.widgets import Input, OptionList, Static
 
-from tests.app.app_help import LOGS, lab, notices, ready, screen_text, settings, until
+from tests.app.app_help import LOGS, notices, ready, screen_text, settings, until
 from tuisim.app.action import Action, fitting
 from tuisim.app.actions.keys import ACTIONS, working
 from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
 from tuisim.app.app import LabApp
 from tuisim.app.guide.screen import GuideScreen
-from tuisim.app.panels import PANELS, TerminalSize
+from tuisim.app.panels import PANELS
 from tuisim.app.panels.position import parse_field
 from tuisim.app.snapshot import RunPhase, Situation
 from tuisim.core.geometry import Pose
@@ -36,40 +33,6 @@ async def test_first_picture(size: tuple[int, int]) -> None:
 
 
 @pytest.mark.slow
-async def test_every_panels_key_shows_and_hides_it() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(200, 60)) as pilot:
-        app = await ready(pilot)
-        for panel in PANELS.values():
-            at_first = TerminalSize.LARGE in panel.sizes
-            assert app.panel_area.shown(panel.id) is at_first, panel.id
-            for shown in (not at_first, at_first):
-                await pilot.press(panel.key)
-                assert app.panel_area.shown(panel.id) is shown, panel.id
-                await pilot.pause()
-                assert bool(re.search(f"[─━] {panel.title}", screen_text(app))) is shown, panel.id
-
-
-@pytest.mark.slow
-async def test_a_panel_that_its_key_opens_takes_the_focus_and_gives_it_back() -> None:
-    panels = PANELS.keys() - {"world", "output"}
-    async with LabApp(settings(LOGS, panels_off=frozenset(panels))).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-
-        def has_focus(panel: str) -> bool:
-            return app.focused is not None and app.panel_area.panels[panel] in app.focused.ancestors_with_self
-
-        for panel in panels:
-            await pilot.press(PANELS[panel].key)
-            await until(pilot, partial(app.panel_area.shown, panel), panel)
-            # Those that hear no keys leave the focus where it is.
-            deaf = panel in ("instrumentation", "arrays", "controls")
-            await until(pilot, partial(has_focus, "world" if deaf else panel), panel)
-            await pilot.press(PANELS[panel].key)
-            await until(pilot, partial(has_focus, "world"), panel)
-            assert not app.panel_area.shown(panel), panel
-
-
-@pytest.mark.slow
 async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
     app = LabApp(settings(LOGS, panels_on=frozenset({"chart", "output"}), autorun=True, speed=0.0))
     async with app.run_test(size=(120, 40)) as pilot:
@@ -80,39 +43,6 @@ async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
         assert "[x] Colour" not in screen_text(app)
         assert recording is not None
         assert any("Colour" in row.text for row in recording.rows.rows(0))
-
-
-@pytest.mark.slow
-async def test_help_has_as_many_columns_as_there_is_room_for() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=SIZES[0]) as pilot:
-        app = await ready(pilot)
-        groups = {"In the code", *(action.group for action in ACTIONS.values())}
-
-        def top() -> str:
-            """The row in which each column begins with the name of a group."""
-            return next((row for row in screen_text(app).split("\n") if re.search(r" {3}Program  ", row)), "")
-
-        def has_columns(count: int) -> bool:
-            return sum(f" {group}  " in top() for group in groups) == count
-
-        for columns, size in zip((1, 1, 2), SIZES, strict=True):
-            await pilot.resize_terminal(*size)
-            await pilot.press("question_mark")
-            await until(pilot, partial(has_columns, columns), str(size))
-            await pilot.press("escape")
-
-
-@pytest.mark.slow
-async def test_a_panel_without_room_takes_the_place_of_another() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
-        await pilot.press("X", "H")
-        assert app.panel_area.shown("positioning")
-        assert app.panel_area.shown("controls")
-        assert not app.panel_area.shown("instrumentation")
-        assert "Simulator controls replaces Instrumentation (i)" in notices(app)
-        await pilot.press("H")
-        assert app.panel_area.shown("instrumentation")
 
 
 @pytest.mark.slow
@@ -127,17 +57,6 @@ async def test_resize_there_and_back() -> None:
         await pilot.resize_terminal(80, 24)
         await until(pilot, lambda: not app.panel_area.shown("chart"))
         await until(pilot, lambda: screen_text(app) == before)
-
-
-@pytest.mark.slow
-async def test_switched_off_stays_off_in_every_size() -> None:
-    off = settings(LOGS, panels_off=frozenset({"world"}), panels_on=frozenset({"arrays", "no such panel"}))
-    async with LabApp(off).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
-        assert app.panel_area.shown("arrays")
-        await pilot.resize_terminal(200, 60)
-        await until(pilot, lambda: app.panel_area.shown("chart"))
-        assert not app.panel_area.shown("world")
 
 
 async def test_a_key_that_does_nothing_says_why() -> None:
@@ -271,40 +190,6 @@ async def test_choosing_a_mat_lays_it_out_with_its_start() -> None:
         assert app.run_controller.program is not None
 
 
-@pytest.mark.slow
-async def test_opening_a_program_by_its_path(tmp_path: Path) -> None:
-    path = tmp_path / "mine.py"
-    path.write_text("# %%sim_magic_preloaded -b Square -x 500\nprint(1)\n")
-    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        await pilot.press("o")
-        entry = app.screen.query_one(Input)
-        entry.focus()
-        entry.value = str(path)
-        await pilot.press("enter")
-        await until(pilot, lambda: app.run_controller.mat is not None and app.run_controller.mat.name == "Square")
-        assert app.run_controller.program is not None
-        assert app.run_controller.program.name == "mine.py"
-        assert app.run_controller.pose.x_mm == 500
-        assert app.run_controller.state == RunPhase.IDLE
-
-
-async def test_a_program_that_is_not_there_is_a_notice(tmp_path: Path) -> None:
-    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        app.loader.open_file(str(tmp_path / "none.py"))
-        await pilot.pause()
-        assert "there is no such program" in notices(app)[0]
-        assert app.run_controller.program is None
-
-
-async def test_quit_without_a_run_asks_nothing() -> None:
-    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
-        await pilot.press("q")
-        assert not lab(pilot).is_running or lab(pilot)._exit
-
-
 @pytest.mark.parametrize("width", [60, 80, 120, 200])
 @pytest.mark.parametrize("state", [RunPhase.IDLE, RunPhase.RUNNING, RunPhase.PAUSED])
 def test_footer_fits_and_always_shows_help_and_quit(width: int, state: RunPhase) -> None:
@@ -342,14 +227,3 @@ def test_in_the_past_the_footer_begins_with_the_ways_out() -> None:
         [ACTIONS[one] for one in working(Situation(RunPhase.PAUSED, True, True, in_past=True, looks_back=True))], 80
     )
     assert [action.id for action in shown[:2]] == ["now", "branch"]
-
-
-async def test_nothing_is_opened_while_the_app_ends() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        app.exit()
-        # What was typed quickly after q, and what was to be done soon after the start.
-        for action in ("open", "runs", "panel-settings", "breaks", "analyse"):
-            app.action_act(action)
-        app._begin()
-        assert len(app.screen_stack) == 1

@@ -22,28 +22,6 @@ def test_table(run_on: RunOn, table: Table, robot: str) -> None:
     assert "\n".join(differences(table, done.lines)) == ""
 
 
-READINGS = """
-import time
-from ev3dev2.motor import LargeMotor
-from ev3dev2.sensor.lego import ColorSensor, GyroSensor, UltrasonicSensor
-motor, parts = LargeMotor('outB'), [ColorSensor('in2'), UltrasonicSensor(), GyroSensor()]
-
-def cost(call):
-    start = time.monotonic_ns()
-    call()
-    return time.monotonic_ns() - start
-
-for device, name in [(motor, 'position'), (motor, 'state'), *((part, 'value0') for part in parts)]:
-    with open(f'{device._path}/{name}') as file:
-        print(cost(lambda: device.get_attr_string(None, name)) == cost(file.read) > 1_000_000)
-"""
-
-
-@pytest.mark.parametrize("profile", ["robolab", "ev3"])
-def test_reading_a_file_costs_what_the_library_costs(run_on: RunOn, profile: str) -> None:
-    assert run_on(READINGS, "default", profile=profile).lines == ["True"] * 5
-
-
 IN_THE_SHELL = """
 import os, subprocess
 led = '/sys/class/leds/led0:red:brick-status/'

@@ -181,16 +181,6 @@ def test_other_processes_are_refused_by_name(seen: dict[str, Seen], statement: s
     assert seen[statement] == Seen([f"NotSimulated: {NOT_THERE[statement]}"], [], [])
 
 
-@pytest.mark.parametrize("profile", PROFILES)
-def test_a_command_that_is_not_there_has_return_code_127(run_on: RunOn, profile: str) -> None:
-    done = run_on(
-        f"{SETUP}print(os.waitstatus_to_exitcode(os.system('ls')), subprocess.run(['ls']).returncode, "
-        "subprocess.run('ls', shell=True).returncode, Popen(['ls']).wait())",
-        profile=profile,
-    )
-    assert done.lines == ["127 127 127 127"]
-
-
 def test_commands_for_the_text_screen(run_on: RunOn) -> None:
     done = run_on(
         f"{SETUP}from ev3dev2.console import Console\nConsole().text_at('Hello')\n"
