@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import pytest
-from textual.widgets import Input, OptionList, Static
+from textual.widgets import OptionList
 
 from tests.app.app_help import LOGS, notices, ready, screen_text, settings, until
 from tuisim.app.action import Action, fitting
@@ -16,7 +16,6 @@ from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
 from tuisim.app.app import LabApp
 from tuisim.app.guide.screen import GuideScreen
 from tuisim.app.panels import PANELS
-from tuisim.app.panels.position import parse_field
 from tuisim.app.snapshot import RunPhase, Situation
 from tuisim.core.geometry import Pose
 
@@ -139,42 +138,6 @@ async def test_help_lists_every_key() -> None:
             assert action.id.startswith("nudge") or action.title in text
         await pilot.press("escape")
         assert not isinstance(app.screen, GuideScreen)
-
-
-@pytest.mark.slow
-async def test_bad_position_is_refused_with_a_reason() -> None:
-    async with LabApp(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
-        for field, typed, message in (
-            ("x", "abc", "X: a number from -10000 to 10000, not 'abc'"),
-            ("x", "nan", "X: a number from -10000 to 10000, not 'nan'"),
-            ("x", "150", "Enter places the robot"),
-            ("y", "1e9", "Y: a number from -10000 to 10000, not '1e9'"),
-            ("y", "500", "Enter places the robot"),
-            ("angle", "", "Angle: a number from -36000 to 36000, not 'nothing'"),
-        ):
-            entry = app.query_one(f"#{field}", Input)
-            entry.focus()
-            entry.value = typed
-            await pilot.press("enter")
-            await pilot.pause()
-            assert str(app.query_one("Positioning #message", Static).render()) == message
-            assert app.run_controller.pose == Pose(150, 500, 0)
-
-
-async def test_good_position_is_applied() -> None:
-    async with LabApp(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
-        app.query_one("#x", Input).focus()
-        await pilot.press("4", "0", "0", "comma", "5", "enter")
-        await until(pilot, lambda: app.run_controller.pose == Pose(400.5, 500, 0))
-
-
-@pytest.mark.parametrize("text", ["1", " -2.5 ", "3,5", "+4e2"])
-def test_numbers_that_may_be_typed(text: str) -> None:
-    assert parse_field("x", text) == float(text.replace(",", "."))
 
 
 @pytest.mark.slow

@@ -1,25 +1,17 @@
-"""The device files, through everything that reaches files: tables of checks, each run as one program in the child."""
+"""The device files, through everything that reaches files."""
 
 from __future__ import annotations
 
-import pytest
-
-from tests.shim.checking import Table, differences
+from tests.shim.checking import Table, Tables, cases, check
 from tests.shim.conftest import RunOn
-from tests.shim.files.table_files import PATHS, READS, WAITS
+from tests.shim.files.table_files import WAITS
 
-TABLES: dict[str, tuple[Table, str]] = {
-    "paths": (PATHS, "default"),
-    "reads and writes": (READS, "default"),
-    "waits": (WAITS, "plain"),
-}
-"""By name: table, robot."""
+TABLES: Tables = {"waits": (WAITS, "plain", "empty")}
 
 
-@pytest.mark.parametrize(("table", "robot"), TABLES.values(), ids=TABLES)
-def test_table(run_on: RunOn, table: Table, robot: str) -> None:
-    done = run_on(table.program, robot, presses=table.presses)
-    assert "\n".join(differences(table, done.lines)) == ""
+@cases(TABLES)
+def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+    check(run_on, table, robot, world)
 
 
 IN_THE_SHELL = """
