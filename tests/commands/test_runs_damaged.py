@@ -13,13 +13,12 @@ from typing import Any
 import pytest
 
 from tests.conftest import ROOT, Command
-from tests.runs.run_recorder import PROGRAM, Recorder
+from tests.runs.run_recorder import begun
 from tuisim.cli import EXIT_OUR_MISTAKE
 from tuisim.core.profile import ROBOLAB
-from tuisim.core.simulation import Simulation
 from tuisim.core.spec import MotorSpec, RobotSpec, RunSpec, WorldSpec
 from tuisim.runs.catalogue import CATALOGUE_FILE
-from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, Stream, TelemetryWriter
+from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, Stream
 from tuisim.runs.run_folder import RUN_FILE
 from tuisim.runs.side_files import ACTIONS_FILE, STOP_FILE
 from tuisim.runs.store import RunStore, compact_run
@@ -30,10 +29,8 @@ Damage = Callable[[Path], Any]
 
 def record(packed: bool = False) -> Path:
     """Store a run that drove, printed and was acted upon, and return its folder."""
-    store, spec = RunStore(), RunSpec(RobotSpec(extra_motors=(MotorSpec("outA"),)), WorldSpec(), ROBOLAB)
-    run = store.new_run(PROGRAM, spec)
-    telemetry = TelemetryWriter(run.folder)
-    recorder = Recorder(store, run, spec, telemetry, OutputWriter(run.folder), Simulation(spec, telemetry))
+    robot = RobotSpec(extra_motors=(MotorSpec("outA"),))
+    recorder = begun(RunStore(), RunSpec(robot, WorldSpec(), ROBOLAB))
     recorder.print("[[0.0, 10.0]]", stream=Stream.MOTORS)
     for at in range(6):
         recorder.drive(100, 100, 20)
@@ -42,7 +39,7 @@ def record(packed: bool = False) -> Path:
     stored = recorder.end()
     if packed:
         compact_run(stored)
-    return run.folder
+    return stored.folder
 
 
 def at(name: str, place: int, data: bytes) -> Damage:
