@@ -24,7 +24,9 @@ SHAPES: dict[str, tuple[GlyphShape, ...] | None] = {
 def painted(shapes: tuple[GlyphShape, ...] | None) -> set[tuple[int, int]]:
     """Pixels that areas cover."""
     areas = [shape for shape in shapes or () if isinstance(shape, Area)]
-    return {(x, y) for at in areas for x in range(at.left, at.right) for y in range(at.top, at.bottom)}
+    return {
+        (x, y) for at in areas for x in range(int(at.left), int(at.right)) for y in range(int(at.top), int(at.bottom))
+    }
 
 
 @pytest.mark.parametrize(("char", "shapes"), SHAPES.items(), ids=[hex(ord(char[0])) + char for char in SHAPES])
