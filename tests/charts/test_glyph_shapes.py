@@ -24,9 +24,8 @@ SHAPES: dict[str, tuple[GlyphShape, ...] | None] = {
 def painted(shapes: tuple[GlyphShape, ...] | None) -> set[tuple[int, int]]:
     """Pixels that areas cover."""
     areas = [shape for shape in shapes or () if isinstance(shape, Area)]
-    return {
-        (x, y) for at in areas for x in range(int(at.left), int(at.right)) for y in range(int(at.top), int(at.bottom))
-    }
+    edges = [tuple(map(int, (at.left, at.top, at.right, at.bottom))) for at in areas]
+    return {(x, y) for left, top, right, bottom in edges for x in range(left, right) for y in range(top, bottom)}
 
 
 @pytest.mark.parametrize(("char", "shapes"), SHAPES.items(), ids=[hex(ord(char[0])) + char for char in SHAPES])

@@ -19,7 +19,7 @@ from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
 SPEC = RunSpec(RobotSpec(), WorldSpec(start=Pose(300, 500, 0)), ROBOLAB)
-POSES = {"x_mm": [1.0, 2.0], "y_mm": [3.0, 4.0], "heading_deg": [5.0, None]}
+POSES: dict[str, list[float | None]] = {"x_mm": [1.0, 2.0], "y_mm": [3.0, 4.0], "heading_deg": [5.0, None]}
 
 
 def opened(metadata: dict[str, object], **columns: list[float | None]) -> OpenedLog:
