@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import pytest
+from textual.pilot import Pilot
 
-from tests.app.app_help import ready, settings, until
+from tests.app.app_help import lab, ready, settings, until
 from tests.app.panel_help import screen_text
 from tuisim.app.app import LabApp
 
@@ -21,19 +23,27 @@ EMPTY = {
 }
 
 
+async def _open_and_close(pilot: Pilot[Any], panel: str) -> None:
+    """Make sure that a panel says what it must, on an app that does not show it, or always does."""
+    app, (key, words) = lab(pilot), EMPTY[panel]
+    if key:
+        await pilot.press(key)
+        await until(pilot, lambda: app.panel_area.shown(panel), panel)
+    # The keys of the panel itself are shown while it has the focus.
+    app.set_focus(None)
+    await until(pilot, lambda: _has(screen_text(app), words), panel)
+    if key:
+        await pilot.press(key)
+        await until(pilot, lambda: not app.panel_area.shown(panel), panel)
+
+
 @pytest.mark.usefixtures("home")
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80", "120"])
-@pytest.mark.parametrize("panel", EMPTY)
-async def test_empty_panel_says_what_to_do(panel: str, size: tuple[int, int]) -> None:
-    key, words = EMPTY[panel]
+async def test_each_empty_panel_says_what_to_do(size: tuple[int, int]) -> None:
     async with LabApp(settings("x = 1\n")).run_test(size=size) as pilot:
-        app = await ready(pilot)
-        if key:
-            await pilot.press(key)
-            await until(pilot, lambda: app.panel_area.shown(panel))
-        # The keys of the panel itself are shown while it has the focus.
-        app.set_focus(None)
-        await until(pilot, lambda: _has(screen_text(app), words))
+        await ready(pilot)
+        for panel in EMPTY:
+            await _open_and_close(pilot, panel)
 
 
 def _has(screen: Sequence[str], words: str) -> bool:

@@ -151,6 +151,7 @@ async def test_on_a_slow_link_half_blocks_are_sent_for_what_moves(
         assert len("".join(wire_of(pilot).sent)) < 20_000
 
 
+@pytest.mark.quick_cases("kitty")
 @pytest.mark.parametrize("protocol", Protocol)
 async def test_half_blocks_become_pixels_once_the_picture_stands_still(protocol: Protocol) -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
