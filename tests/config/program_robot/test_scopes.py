@@ -31,7 +31,7 @@ def test_a_name_may_be_bound_more_than_once() -> None:
 
 def test_names_that_are_unpacked_have_their_place() -> None:
     names = scope("a, (b, c) = 1, (2, 3)").names
-    assert [names[name][0].path for name in "abc" if isinstance(names[name][0], Bound)] == [(0,), (1, 0), (1, 1)]
+    assert [one.path for name in "abc" for one in names[name] if isinstance(one, Bound)] == [(0,), (1, 0), (1, 1)]
 
 
 def test_parameters_belong_to_the_function() -> None:
