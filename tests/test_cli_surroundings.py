@@ -1,4 +1,4 @@
-"""Where a run finds odd surroundings it is told in a sentence, or does not matter."""
+"""Runs in odd surroundings work, or say in one sentence why not."""
 
 from __future__ import annotations
 

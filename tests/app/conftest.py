@@ -48,7 +48,7 @@ async def _settle() -> None:
         await asyncio.sleep(0)
         if not loop._ready:
             return
-        assert time.monotonic() < give_up, "it never comes to rest"
+        assert time.monotonic() < give_up, "the event loop is never idle"
 
 
 @pytest.fixture(autouse=True)

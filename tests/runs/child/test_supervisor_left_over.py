@@ -1,4 +1,4 @@
-"""Whatever a program has started below Python is over when its run is."""
+"""Processes that a program starts without Python end with its run."""
 
 from __future__ import annotations
 
