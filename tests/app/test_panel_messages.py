@@ -1,41 +1,37 @@
-"""What the panels tell the app."""
+"""The brick panel is named once to whoever runs a program that needs it."""
 
 from __future__ import annotations
 
 import pytest
-from textual.widgets import Input, Static
 
-from tests.app.app_help import LOGS, ready, settings, until
+from tests.app.app_help import notices, ready, settings, until
 from tuisim.app.app import LabApp
-from tuisim.core.geometry import Pose
+from tuisim.app.brick_hint import looks_at_buttons
+from tuisim.app.snapshot import RunPhase
+
+DRAWS = "from ev3dev2.display import Display\nDisplay().update()\n"
 
 
-@pytest.mark.slow
-async def test_bad_position_is_refused_with_a_reason() -> None:
-    async with LabApp(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(size=(120, 40)) as pilot:
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("import time\nfrom ev3dev2.button import Button\n", True),
+        ("from ev3dev2 import button\n", True),
+        ("    import ev3dev2.button as b\n", True),
+        ("# from ev3dev2.button import Button\nprint('button')\n", False),
+        ("from ev3dev2.motor import MoveTank\nbutton = 3\n", False),
+    ],
+)
+def test_a_program_that_looks_at_the_buttons(text: str, expected: bool) -> None:
+    assert looks_at_buttons(text) == expected
+
+
+@pytest.mark.usefixtures("home")
+async def test_the_panel_is_named_once_while_it_is_hidden() -> None:
+    async with LabApp(settings(DRAWS, speed=0.0)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
-        for field, typed, message in (
-            ("x", "abc", "X: a number from -10000 to 10000, not 'abc'"),
-            ("x", "nan", "X: a number from -10000 to 10000, not 'nan'"),
-            ("x", "150", "Enter places the robot"),
-            ("y", "1e9", "Y: a number from -10000 to 10000, not '1e9'"),
-            ("y", "500", "Enter places the robot"),
-            ("angle", "", "Angle: a number from -36000 to 36000, not 'nothing'"),
-        ):
-            entry = app.query_one(f"#{field}", Input)
-            entry.focus()
-            entry.value = typed
-            await pilot.press("enter")
-            await pilot.pause()
-            assert str(app.query_one("Positioning #message", Static).render()) == message
-            assert app.run_controller.pose == Pose(150, 500, 0)
-
-
-async def test_good_position_is_applied() -> None:
-    async with LabApp(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
-        app.query_one("#x", Input).focus()
-        await pilot.press("4", "0", "0", "comma", "5", "enter")
-        await until(pilot, lambda: app.run_controller.pose == Pose(400.5, 500, 0))
+        for _ in range(2):
+            await pilot.press("R")
+            await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED and not app._last_words)
+        expected = [notice for notice in notices(app) if notice.startswith("The program")]
+        assert expected == ["The program uses the brick's display: K opens its panel"]

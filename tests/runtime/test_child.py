@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ import pytest
 from tests.running import PATIENCE_S, Start, until
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.protocol import End, Ended, SetPose
+from tuisim.runs.child import process
 from tuisim.runs.child.events import decode_event
 
 
@@ -44,9 +46,18 @@ def test_a_run_whose_folder_cannot_be_used_says_why(tmp_path: Path) -> None:
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_commands_before_the_first_line_wait_for_it(start: Start) -> None:
+def test_commands_before_the_first_line_wait_for_it(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
+    make, written = process._pipe, list[int]()
+
+    def pipe(reader: ExitStack, writer: ExitStack) -> tuple[int, int]:
+        """The first pipe is that of the commands: one is in it before there is a child."""
+        ends = make(reader, writer)
+        if not written:
+            written.append(os.write(ends[1], SetPose(1500.0, 500.0, 0.0).encode()))
+        return ends
+
+    monkeypatch.setattr(process, "_pipe", pipe)
     run = start("print(colorLeft.color)", live=True)
-    run.send(SetPose(1500.0, 500.0, 0.0))
     ended = run.wait(PATIENCE_S)
     assert ended is not None
     assert (ended.end, [row.text for row in run.output.all_rows()]) == ("finished", ["1"])
