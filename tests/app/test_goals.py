@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,12 +11,12 @@ from textual.pilot import Pilot
 from textual.widgets import Input
 
 from tests.app.app_help import notices, ready, screen_text, settings, until, until_shown
+from tests.app.render.test_goals import texts
 from tests.conftest import Command
 from tests.running import PATIENCE_S
 from tuisim.app import goals as app_goals
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.snapshot import RunPhase
-from tuisim.charts.text_runs import Line
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import settings_of
 from tuisim.goals.files import load_goals
@@ -74,10 +73,6 @@ def shown(app: LabApp) -> list[str]:
 def state(app: LabApp, name: str) -> str:
     """Sign and state of a goal in the list."""
     return next((text[:9].rstrip() for text in shown(app) if text[9:].startswith(f"{name} ")), "")
-
-
-def texts(lines: Sequence[Line]) -> list[str]:
-    return ["".join(text for text, _ in line).rstrip() for line in lines]
 
 
 async def test_without_goals_the_panel_says_what_to_do_next() -> None:

@@ -2,34 +2,22 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from tests.batch.test_pool import LOGS, task
 from tests.running import over
 from tuisim.batch.execute import _prepared, execute
-from tuisim.batch.task import Keep, Task
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
+from tuisim.batch.task import Keep
 from tuisim.errors import LogError
 from tuisim.goals.judgement import GoalState
 from tuisim.goals.spec import FinishCondition, Goal, ReachCondition
 from tuisim.runs import temporary
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.store import RunStore
-from tuisim.source import Program
-
-LOGS = """
-import random, time
-tank_drive.on(30, 20 + random.randint(0, 9))
-for _ in range(10):
-    print('Light:', colorLeft.reflected_light_intensity_pc)
-    time.sleep(0.1)
-"""
-
 
 ENDS = {
     "finished": ("print('A: 1')", 0, ""),
@@ -38,12 +26,6 @@ ENDS = {
     "output_limit": ("while True: print('x' * 1000000)", 0, ""),
     "stalled": ("import signal\nsum(range(10**12))", 1, ""),
 }
-
-
-def task(text: str, index: int = 0, prelude: str = "preloaded", **changes: object) -> Task:
-    spec = replace(build_run_spec(Settings(light_noise=20, motor_noise=50)), seed=index)
-    program = Program("p.py", text, prelude=prelude, working_directory=os.getcwd())
-    return replace(Task(index, program, spec), **changes)  # type: ignore[arg-type]
 
 
 def test_a_task_gives_what_a_single_run_gives(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""`tuisim batch`: its table, its pictures, what interrupts it and goes on, and what it refuses."""
+"""`tuisim batch`: its table, its pictures, and what interrupts it and goes on."""
 
 from __future__ import annotations
 

@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.app.analyser.logs import long_log, model_of, wide_log
+from tests.logs.test_signals import column
 from tuisim.analysis.model import derive
 from tuisim.app.analyser.panes import PANES
 from tuisim.core.geometry import Pose
@@ -114,10 +115,6 @@ def test_columns_that_mean_something_else_have_nothing_derived() -> None:
     derive(model, "v = wave + 1")
     other = model.log.with_layout(model.log.layout)
     assert other.names == ("wave",) and other.table.column_names == ["time", "wave"]
-
-
-def column(*values: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    return np.array(values, np.float64)
 
 
 class TestReckoning:

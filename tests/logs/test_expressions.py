@@ -4,19 +4,12 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from tests.logs.test_signals import NAN, column
 from tuisim.errors import LogError
 from tuisim.logs.expressions import FUNCTIONS, evaluate
-
-NAN = float("nan")
-
-
-def column(*values: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    return np.array(values, np.float64)
-
 
 COLUMNS = {"left": column(1, 2, 3), "right": column(4, 0, 6), "odd name": column(7, 8, 9)}
 

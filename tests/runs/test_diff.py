@@ -2,24 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any
-
-from tests.app.app_help import program
-from tests.running import PATIENCE_S
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
+from tests.runs.test_recorded_run import stored
 from tuisim.runs.diff import diff_runs, recording_in_words, setup_in_words
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.store import RunStore
-
-
-def stored(text: str, **choices: Any) -> StoredRun:
-    spec = build_run_spec(replace(Settings(background="Grey_bands"), **choices))
-    run = start_run(program(text), spec, RunOptions())
-    assert run.wait(PATIENCE_S)
-    return RunStore().load_run(run.run_id)
 
 
 def test_the_difference_of_two_runs_is_told() -> None:

@@ -1,4 +1,4 @@
-"""What a recording tells of a former tick: rows, marks of the pen, what stands out; and two runs compared."""
+"""What a recording tells of a former tick: rows, marks of the pen, what stands out."""
 
 from __future__ import annotations
 

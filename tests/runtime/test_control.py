@@ -1,4 +1,4 @@
-"""Stop, pause, step, user actions; and what is left when somebody is killed."""
+"""Pause, step, speed and user actions of a live run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Keys, panels, dialogs and sizes, in the app without a terminal."""
+"""Keys of the lab: what they do, why they do nothing, and what the footer and the help say of them."""
 
 from __future__ import annotations
 

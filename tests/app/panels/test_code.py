@@ -1,4 +1,4 @@
-"""The code panel by itself: typing, marks, the line that is lit, finding."""
+"""The code panel by itself: what it asks of the app, and a text that is loaded again."""
 
 from __future__ import annotations
 

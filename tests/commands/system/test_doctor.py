@@ -1,4 +1,4 @@
-"""`tuisim doctor`: what it judges, what it asks of a terminal, and that it restores one."""
+"""`tuisim doctor`: what it asks of a terminal, and that it restores one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stepping through awkward programs, looking at each hold, and stopping there."""
+"""Values of awkward programs, looked at while they are held."""
 
 from __future__ import annotations
 

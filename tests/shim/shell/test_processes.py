@@ -5,14 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.shim.conftest import RunOn
+from tests.shim.shell.test_commands import SETUP
 from tuisim.core.profile import PROFILES
-
-SETUP = """
-import asyncio, concurrent.futures, contextlib, io, multiprocessing, os, subprocess, time
-from multiprocessing import shared_memory
-from subprocess import PIPE, DEVNULL, STDOUT, Popen
-def ms(): return round((time.time() - start) * 1000)
-"""
 
 
 @pytest.mark.parametrize("profile", PROFILES)

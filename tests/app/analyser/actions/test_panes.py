@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
-import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from tests.app.analyser.test_panes import stepped
 from tests.app.analyser.test_screen import opened, text_of, typed
 from tests.app.app_help import until
 from tuisim.analysis.model import Model
@@ -56,14 +55,6 @@ async def test_long_logs_are_worked_on_beside_the_screen(tmp_path: Path, monkeyp
         screen.begin(old)
         await pilot.press("U")
         assert screen.job is None
-
-
-LEVELS = (100.0, 86.27, 50.2, 0.0)
-
-
-def stepped(rows: int, band_samples: int) -> pa.Table:
-    values = np.array(LEVELS)[np.arange(rows) // band_samples % len(LEVELS)]
-    return pa.table({"time": np.arange(rows) / 100.0, "Colour": values})
 
 
 @pytest.mark.slow
