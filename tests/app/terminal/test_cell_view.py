@@ -143,9 +143,9 @@ async def test_on_a_slow_link_half_blocks_are_sent_for_what_moves(
         with monkeypatch.context() as patch:
             patch.setattr(Sharpness, "is_still", False)
             await pilot.press("right")
-            assert world._tiles is not None and world._tiles.is_coarse
-            codes = "".join(wire_of(pilot).sent)
-            assert "▀" in codes and len(codes) < 4_000
+            await until(pilot, lambda: world._tiles is not None and world._tiles.is_coarse)
+            await until(pilot, lambda: "▀" in "".join(wire_of(pilot).sent))
+            assert len("".join(wire_of(pilot).sent)) < 4_000
             wire_of(pilot).sent.clear()
         await sharp(pilot, world)
         assert len("".join(wire_of(pilot).sent)) < 20_000
