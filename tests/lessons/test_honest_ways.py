@@ -150,6 +150,25 @@ while d > 20:
     d = ultrasonic.distance_centimeters
 tank_drive.off()
 """,
+    "poll-or-block poll stop-then-slower": """\
+tank_drive.on(60, 60)
+while ultrasonic.distance_centimeters > 40:
+    pass
+tank_drive.off()
+tank_drive.on(15, 15)
+while ultrasonic.distance_centimeters > 20:
+    pass
+tank_drive.off()
+""",
+    "poll-or-block poll too-near-and-back": """\
+tank_drive.on(40, 40)
+while ultrasonic.distance_centimeters > 15:
+    pass
+tank_drive.on(-20, -20)
+while ultrasonic.distance_centimeters < 20:
+    pass
+tank_drive.off()
+""",
     "poll-or-block poll function": """\
 def far():
     return ultrasonic.distance_centimeters > 20
