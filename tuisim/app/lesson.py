@@ -143,6 +143,7 @@ class LessonController:
     def begin(self) -> None:
         """Begin with the lesson that was opened at the start."""
         if self.lesson is not None:
+            self._goals.judges_always = True
             self._enter(self.lesson)
 
     def open(self, name: str) -> None:
@@ -158,6 +159,7 @@ class LessonController:
     def _load(self, lesson: Lesson, anew: bool = False) -> None:
         path = stored.prepare_program(lesson, anew)
         self._loader.open_task(str(path), lesson.settings, goals_of(lesson))
+        self._goals.judges_always = True
         # What the last run has shown belongs to another lesson.
         self._run_controller.close()
         self._app.run_changed()
@@ -169,7 +171,6 @@ class LessonController:
         except ConfigError as error:
             self.progress = LessonProgress()
             self._app.complain(error)
-        self._goals.judges_always = True
         self._keep(replace(self.progress, opened_at=stored.now()))
         self._panel_area.request(self._panels_for(lesson))
         if self._panel_area.world:

@@ -99,6 +99,17 @@ async def test_skip_and_start_over(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("home")
+async def test_run_after_starting_over_is_judged(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        app.lesson.start_over()
+        app.lesson.skip_step()
+        await run_over(pilot, app)
+        await until(pilot, lambda: "✓ Drive" in shown(app))
+
+
+@pytest.mark.usefixtures("home")
 async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
