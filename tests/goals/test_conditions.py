@@ -322,6 +322,21 @@ COUNTED = (says("a: 1"), says("a: 1"), says("n: 2", 4))
 READINGS = {
     "log as read": Case(f"{MEASURED} }}", (*ON_GREY, says("Grey: 50.196", 2)), "met", line=2, world=GREY, text=LOOKS),
     "log as read, rounded": Case(f"{MEASURED} }}", (*ON_GREY, says("Grey: 50", 2)), "met", world=GREY, text=LOOKS),
+    "log as read, cut": Case(
+        MEASURED.replace("as_read", "within = 1, as_read") + " }",
+        (*ON_GREY, says("Grey: 49.3", 2)),
+        "met",
+        world=GREY,
+        text=LOOKS,
+    ),
+    "log as read, too low": Case(
+        MEASURED.replace("as_read", "within = 2, as_read") + " }",
+        (*ON_GREY, says("Grey: 49", 2)),
+        "missed",
+        reason="but that is not what the colour sensor gave where the program had read it.",
+        world=GREY,
+        text=LOOKS,
+    ),
     "log a literal": Case(
         f"{MEASURED} }}",
         (*ON_GREY, says("Grey: 50.2", 3)),

@@ -205,12 +205,12 @@ def _chosen(question: QuestionCheck, text: str) -> str:
 
 
 def _same(text: str, wanted: str) -> bool:
-    """Compare two texts without regard to case, spaces and a full stop at the end."""
+    """Compare two texts without regard to case, spaces, quotes around them and a full stop at the end."""
     return _plain(text) == _plain(wanted)
 
 
 def _plain(text: str) -> str:
-    return "".join(text.split()).casefold().removesuffix(".")
+    return "".join(text.split()).casefold().strip("\"'`“”„‘’.!")
 
 
 def _is_noted(check: NoteCheck, event: Noted) -> bool:
