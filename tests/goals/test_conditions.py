@@ -194,6 +194,14 @@ OUTPUT = {
     "print": Case("print = 'do.e'", PRINTED, "met", 2.0, line=6),
     "print nothing": Case("print = 'x'", (wait(1, 2),), "missed", 1.0, "The program printed nothing.", 0),
     "print another line": Case("print = '^one$'", PRINTED, "missed", 2.0, "the last of the 4 is 'done'", 6),
+    "print what is told in words": Case(
+        "print = '(?i)^(?!.*not).*THREE$'",
+        PRINTED,
+        "missed",
+        2.0,
+        "No printed line says what is asked for; the last of the 4 is 'done'",
+        6,
+    ),
     "print lines": Case("print = ['start', 'done']", PRINTED, "met", 2.0, line=6),
     "print lines in another order": Case(
         "print = ['done', 'start']", PRINTED, "missed", 2.0, "'start' was printed, but not after", 6
