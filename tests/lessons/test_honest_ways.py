@@ -70,6 +70,26 @@ while last != "Black":
     last = name
 tank_drive.off()
 """,
+    "band-values names as-the-hints-say": """\
+import time
+def name_of(light):
+    if light < 25: return "black"
+    elif light < 66: return "dark"
+    elif light < 84.5: return "mid"
+    elif light < 93: return "pale"
+    return "white"
+tank_drive.on(30, 30)
+last = "white"
+while last != "black":
+    name = name_of(colorLeft.reflected_light_intensity_pc)
+    time.sleep(0.1)
+    again = name_of(colorLeft.reflected_light_intensity_pc)
+    if name == again and name != last:
+        last = name
+        if name != "white":
+            print(name)
+tank_drive.off()
+""",
     "first-run say by-degrees": """\
 tank_drive.on_for_degrees(SpeedPercent(50), SpeedPercent(50), 2050)
 print("Now I stand on dark gray.")
