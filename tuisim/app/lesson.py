@@ -184,8 +184,10 @@ class LessonController:
         beside = [info.id for info in PANELS.values() if info.place is PanelPlace.SIDE]
         if self._panel_area.size.height >= _ROOMY_ROWS:
             beside.remove("instrumentation")
+        # A chart that an earlier lesson has opened would be in the place of the output that this one speaks of.
+        usual = dict.fromkeys(("output", "chart"), None) if not self.progress.steps else {}
         asked = dict.fromkeys((*lesson.settings.get("panels_on", ()), "code", "lesson"), True)
-        return {**dict.fromkeys(beside, False), **asked}
+        return {**dict.fromkeys(beside, False), **usual, **asked}
 
     def _begin_step(self) -> None:
         assert self.lesson is not None

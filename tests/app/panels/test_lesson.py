@@ -454,6 +454,23 @@ async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) 
 
 
 @pytest.mark.usefixtures("home")
+async def test_output_is_back_when_another_lesson_begins(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        await pilot.press("c")
+        await until(pilot, lambda: app.panel_area.shown("chart") and not app.panel_area.shown("output"))
+        app.lesson.open("first-run")
+        await until(pilot, lambda: app.panel_area.shown("output") and not app.panel_area.shown("chart"))
+        app.lesson.skip_step()
+        await pilot.press("c")
+        await until(pilot, lambda: app.panel_area.shown("chart"))
+        # What was opened in a lesson stays for the rest of it.
+        app.lesson.open("first-run")
+        await until(pilot, lambda: "2. Where is it now?" in shown(app))
+        assert app.panel_area.shown("chart")
+
+
+@pytest.mark.usefixtures("home")
 async def test_arrow_keys_move_the_robot_when_another_lesson_begins(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
