@@ -123,7 +123,6 @@ class LessonController:
         """The step that has just been done."""
         self._elsewhere: RunSpec | None = None
         """What a run was that did not begin in the lesson's world; None if the last one did."""
-        """Whether the run in view did not begin at the lesson's start."""
         self._counted = ""
         """Id of the last run that was counted as a try."""
         self._next_look_s = 0.0
