@@ -181,10 +181,12 @@ class LessonController:
     def _panels_for(self, lesson: Lesson) -> dict[str, bool | None]:
         """Return which panels to show and hide: the text gets the side column, but for readings where there is room."""
         beside = [info.id for info in PANELS.values() if info.place is PanelPlace.SIDE]
+        usual: dict[str, None] = {}
         if self._panel_area.size.height >= _ROOMY_ROWS:
             beside.remove("instrumentation")
-        # A chart that an earlier lesson has opened would be in the place of the output that this one speaks of.
-        usual = dict.fromkeys(("output", "chart"), None) if not self.progress.steps else {}
+        elif not any(step.check == ShowCheck("chart") for step in lesson.steps):
+            # A chart that was opened in another lesson would be in the place of the output that this one speaks of.
+            usual = dict.fromkeys(("output", "chart"))
         asked = dict.fromkeys((*lesson.settings.get("panels_on", ()), "code", "lesson"), True)
         return {**dict.fromkeys(beside, False), **usual, **asked}
 

@@ -454,20 +454,31 @@ async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) 
 
 
 @pytest.mark.usefixtures("home")
-async def test_output_is_back_when_another_lesson_begins(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+@pytest.mark.parametrize(("size", "is_shown"), [(SMALL, False), (LARGE, True)])
+async def test_output_is_back_when_another_lesson_is_opened(
+    size: tuple[int, int], is_shown: bool, tmp_path: Path
+) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=size) as pilot:
         app = await ready(pilot)
-        await pilot.press("c")
-        await until(pilot, lambda: app.panel_area.shown("chart") and not app.panel_area.shown("output"))
+        if not app.panel_area.shown("chart"):
+            await pilot.press("c")
+        await until(pilot, lambda: app.panel_area.shown("chart"))
         app.lesson.open("first-run")
-        await until(pilot, lambda: app.panel_area.shown("output") and not app.panel_area.shown("chart"))
+        await until(pilot, lambda: app.panel_area.shown("output") and app.panel_area.shown("chart") is is_shown)
+
+
+@pytest.mark.usefixtures("home")
+async def test_chart_stays_in_the_lesson_that_asks_for_it(tmp_path: Path) -> None:
+    made = opened(tmp_path)
+    async with LabApp(made).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
         app.lesson.skip_step()
         await pilot.press("c")
-        await until(pilot, lambda: app.panel_area.shown("chart"))
-        # What was opened in a lesson stays for the rest of it.
-        app.lesson.open("first-run")
-        await until(pilot, lambda: "2. Where is it now?" in shown(app))
-        assert app.panel_area.shown("chart")
+        await until(pilot, lambda: states()["do"] == "done")
+    async with LabApp(made).run_test(size=SMALL) as pilot:
+        again = await ready(pilot)
+        await until(pilot, lambda: again.panel_area.shown("chart"))
 
 
 @pytest.mark.usefixtures("home")
