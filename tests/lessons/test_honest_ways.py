@@ -60,6 +60,16 @@ while last != "black":
     last = name
 tank_drive.off()
 """,
+    "places-colours all right-sensor": """\
+tank_drive.on(30, 30)
+last = "White"
+while last != "Black":
+    name = colorRight.color_name
+    if name != last and name != "White":
+        print(f"Now I see {name}")
+    last = name
+tank_drive.off()
+""",
     "places-colours places two-in-a-line": """\
 tank_drive.on(30, 30)
 last = "White"
