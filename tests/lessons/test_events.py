@@ -79,7 +79,7 @@ CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
     "text": (QuestionCheck("Q", "time.sleep(0.1)"), [Typed("Time.sleep( 0.1 )")], True),
     "one of several texts": (QuestionCheck("Q", ("left", "the left one")), [Typed("the left one.")], True),
     "text in quotes": (QuestionCheck("Q", "White"), [Typed("'white'")], True),
-    "text in other quotes": (QuestionCheck("Q", "White"), [Typed("„White.“")], True),
+    "text in other quotes": (QuestionCheck("Q", "White"), [Typed("“White.”")], True),
     "another text": (QuestionCheck("Q", "left"), [Typed("right")], False),
     "choice by number": (CHOICE, [Typed("2")], True),
     "choice by text": (CHOICE, [Typed("the light")], True),

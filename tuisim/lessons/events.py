@@ -210,7 +210,7 @@ def _same(text: str, wanted: str) -> bool:
 
 
 def _plain(text: str) -> str:
-    return "".join(text.split()).casefold().strip("\"'`“”„‘’.!")
+    return "".join(text.split()).casefold().strip("\"'`“”‘’.!")
 
 
 def _is_noted(check: NoteCheck, event: Noted) -> bool:
