@@ -194,6 +194,14 @@ OUTPUT = {
     "print": Case("print = 'do.e'", PRINTED, "met", 2.0, line=6),
     "print nothing": Case("print = 'x'", (wait(1, 2),), "missed", 1.0, "The program printed nothing.", 0),
     "print another line": Case("print = '^one$'", PRINTED, "missed", 2.0, "the last of the 4 is 'done'", 6),
+    "print what is told in words": Case(
+        "print = '(?i)^(?!.*not).*THREE$'",
+        PRINTED,
+        "missed",
+        2.0,
+        "No printed line says what is asked for; the last of the 4 is 'done'",
+        6,
+    ),
     "print lines": Case("print = ['start', 'done']", PRINTED, "met", 2.0, line=6),
     "print lines in another order": Case(
         "print = ['done', 'start']", PRINTED, "missed", 2.0, "'start' was printed, but not after", 6
@@ -322,6 +330,21 @@ COUNTED = (says("a: 1"), says("a: 1"), says("n: 2", 4))
 READINGS = {
     "log as read": Case(f"{MEASURED} }}", (*ON_GREY, says("Grey: 50.196", 2)), "met", line=2, world=GREY, text=LOOKS),
     "log as read, rounded": Case(f"{MEASURED} }}", (*ON_GREY, says("Grey: 50", 2)), "met", world=GREY, text=LOOKS),
+    "log as read, cut": Case(
+        MEASURED.replace("as_read", "within = 1, as_read") + " }",
+        (*ON_GREY, says("Grey: 49.3", 2)),
+        "met",
+        world=GREY,
+        text=LOOKS,
+    ),
+    "log as read, too low": Case(
+        MEASURED.replace("as_read", "within = 2, as_read") + " }",
+        (*ON_GREY, says("Grey: 49", 2)),
+        "missed",
+        reason="but that is not what the colour sensor gave where the program had read it.",
+        world=GREY,
+        text=LOOKS,
+    ),
     "log a literal": Case(
         f"{MEASURED} }}",
         (*ON_GREY, says("Grey: 50.2", 3)),

@@ -90,6 +90,13 @@ def test_answer_is_what_a_student_measures(name: str) -> None:
     assert MEASURED[name](LESSONS[lesson]) == pytest.approx(step.check.answer, abs=step.check.within)
 
 
+def test_question_about_the_end_of_a_run_leads_back_to_its_start() -> None:
+    checks = [step.check for lesson in LESSONS.values() for step in lesson.steps]
+    words = [check.where for check in checks if isinstance(check, QuestionCheck) and check.run and check.at_x_mm]
+    # A robot that was moved by hand begins its next run where it stands, and would end elsewhere once more.
+    assert words and all("m and R" in each for each in words)
+
+
 def test_names_are_not_those_of_commands_or_examples() -> None:
     taken = {*COMMANDS, *learn.listing, *(file.path.stem for file in programs())}
     assert set(LESSONS) & taken == set()

@@ -43,6 +43,63 @@ while "black" not in done:
     time.sleep(0.1)
 tank_drive.off()
 """,
+    "sensor-eyes alike cut": """\
+W = 3.14159 * 56
+tank_drive.on_for_rotations(30, 30, 795 / W)
+print("Grey:", int(colorLeft.reflected_light_intensity_pc))
+tank_drive.on_for_rotations(30, 30, 300 / W)
+print("Edge:", int(colorLeft.reflected_light_intensity_pc))
+""",
+    "places-colours all lower-case": """\
+tank_drive.on(30, 30)
+last = "white"
+while last != "black":
+    name = colorLeft.color_name.lower()
+    if name != last and name != "white":
+        print(name)
+    last = name
+tank_drive.off()
+""",
+    "places-colours all right-sensor": """\
+tank_drive.on(30, 30)
+last = "White"
+while last != "Black":
+    name = colorRight.color_name
+    if name != last and name != "White":
+        print(f"Now I see {name}")
+    last = name
+tank_drive.off()
+""",
+    "places-colours places two-in-a-line": """\
+tank_drive.on(30, 30)
+last = "White"
+while last != "Black":
+    name = colorLeft.color_name
+    if name != last and name != "White":
+        print(name); print(f"Place: {130 + tank_drive.left_motor.position / 360 * 176:.0f}")
+    last = name
+tank_drive.off()
+""",
+    "band-values names as-the-hints-say": """\
+import time
+def name_of(light):
+    if light < 25: return "black"
+    elif light < 66: return "dark"
+    elif light < 84.5: return "mid"
+    elif light < 93: return "pale"
+    return "white"
+tank_drive.on(30, 30)
+last = "white"
+while last != "black":
+    name = name_of(colorLeft.reflected_light_intensity_pc)
+    time.sleep(0.1)
+    again = name_of(colorLeft.reflected_light_intensity_pc)
+    if name == again and name != last:
+        last = name
+        if name != "white":
+            print(name)
+tank_drive.off()
+""",
     "first-run say by-degrees": """\
 tank_drive.on_for_degrees(SpeedPercent(50), SpeedPercent(50), 2050)
 print("Now I stand on dark gray.")
@@ -148,6 +205,25 @@ d = ultrasonic.distance_centimeters
 while d > 20:
     tank_drive.on(SpeedPercent(min(30, d / 2)), SpeedPercent(min(30, d / 2)))
     d = ultrasonic.distance_centimeters
+tank_drive.off()
+""",
+    "poll-or-block poll stop-then-slower": """\
+tank_drive.on(60, 60)
+while ultrasonic.distance_centimeters > 40:
+    pass
+tank_drive.off()
+tank_drive.on(15, 15)
+while ultrasonic.distance_centimeters > 20:
+    pass
+tank_drive.off()
+""",
+    "poll-or-block poll too-near-and-back": """\
+tank_drive.on(40, 40)
+while ultrasonic.distance_centimeters > 15:
+    pass
+tank_drive.on(-20, -20)
+while ultrasonic.distance_centimeters < 20:
+    pass
 tank_drive.off()
 """,
     "poll-or-block poll function": """\

@@ -97,6 +97,17 @@ async def test_skip_and_start_over(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("home")
+async def test_run_after_starting_over_is_judged(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        app.lesson.start_over()
+        app.lesson.skip_step()
+        await run_over(pilot, app)
+        await until(pilot, lambda: "✓ Drive" in shown(app))
+
+
+@pytest.mark.usefixtures("home")
 async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -407,6 +418,34 @@ async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) 
         listed = app.screen.query_one(OptionList)
         assert listed.region.bottom <= app.screen.query_one(".dialog").content_region.bottom
         assert listed.show_vertical_scrollbar
+
+
+@pytest.mark.usefixtures("home")
+@pytest.mark.parametrize(("size", "is_shown"), [(SMALL, False), (LARGE, True)])
+async def test_output_is_back_when_another_lesson_is_opened(
+    size: tuple[int, int], is_shown: bool, tmp_path: Path
+) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        if not app.panel_area.shown("chart"):
+            await pilot.press("c")
+        await until(pilot, lambda: app.panel_area.shown("chart"))
+        app.lesson.open("first-run")
+        await until(pilot, lambda: app.panel_area.shown("output") and app.panel_area.shown("chart") is is_shown)
+
+
+@pytest.mark.usefixtures("home")
+async def test_chart_stays_in_the_lesson_that_asks_for_it(tmp_path: Path) -> None:
+    made = opened(tmp_path)
+    async with LabApp(made).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        app.lesson.skip_step()
+        await pilot.press("c")
+        await until(pilot, lambda: states()["do"] == "done")
+    async with LabApp(made).run_test(size=SMALL) as pilot:
+        again = await ready(pilot)
+        await until(pilot, lambda: again.panel_area.shown("chart"))
 
 
 @pytest.mark.usefixtures("home")
