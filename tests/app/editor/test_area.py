@@ -11,6 +11,7 @@ from tests.app.panel_help import moment, screen_text
 Keys = list[str]
 
 
+@pytest.mark.quick_cases("letters*", "typing", "redo", "outdent", "comment", "after*", "cut*")
 @pytest.mark.parametrize(
     ("keys", "after"),
     [
