@@ -72,7 +72,7 @@ def until(run: RunHandle, ready: Callable[[], bool], seen: list[Message] | None 
     """Pump until something holds."""
     give_up = time.monotonic() + PATIENCE_S
     while not ready():
-        assert time.monotonic() < give_up, "it never came"
+        assert time.monotonic() < give_up, "still not so"
         run.wait_for_event(0.01)
         events = run.pump()
         if seen is not None:

@@ -8,7 +8,7 @@ import pytest
 
 from tests.conftest import Command
 from tests.hosts import HOSTS, hosted
-from tests.marking.attackers import TO_ALL
+from tests.marks.attackers import TO_ALL
 
 OTHER = "tank_drive.on_for_rotations(50, 50, 1)\nprint('A: 1')"
 PROGRAMS = {"ada": f"{OTHER}  # ada", "eve": f"{TO_ALL}print('B: 1')", "zoe": f"{OTHER}  # zoe"}

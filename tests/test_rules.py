@@ -31,6 +31,39 @@ UNFINISHED = "|".join(("TO" + "DO", "FIX" + "ME", "XX" + "X", "NotImplemented" +
 PLACES = "|".join(f"/{place}/" for place in ("work", "farm", "root", "home"))
 LEFT_OPEN = re.compile(rf"\b({UNFINISHED})\b|(?<![\w.$])({PLACES})")
 
+LONG_LINES = 150
+"""A module that is longer has a test of its own."""
+TESTED_BESIDE = {
+    "app/feed.py": "app/test_timeline.py",
+    "app/setup/fields.py": "app/setup/test_next_run.py",
+    "config/worlds.py": "config/test_files.py",
+    "goals/evidence.py": "goals/test_judge_conditions.py",
+    "goals/output.py": "goals/test_judge_conditions.py",
+    "goals/places.py": "goals/test_judge_conditions.py",
+    "goals/readings.py": "goals/test_judge_conditions.py",
+    "goals/spec.py": "goals/test_files.py",
+    "lessons/spec.py": "lessons/test_files.py",
+    "runtime/debugger/conditions.py": "runtime/debugger/test_debugger.py",
+}
+"""Long modules whose only caller is tested, with every case of theirs: by module, the test."""
+OF_NO_MODULE = {
+    "config/golden/test_golden_programs.py": "what runs gave before",
+    "config/golden/test_golden_settings.py": "what settings gave before",
+    "guide/test_claims.py": "what the pages claim",
+    "guide/test_documents.py": "what the pages run and name",
+    "guide/test_readme_picture.py": "README's picture",
+    "test_brick_programs.py": "programs of others, as a whole",
+    "test_hosts.py": "an enemy in every host",
+    "test_licences.py": "the packages that an install brings",
+    "test_nested_json.py": "one kind of damage in each file that is read",
+    "test_programs.py": "the examples",
+    "test_readme.py": "README and guide beside all tables",
+    "test_real_programs.py": "programs of others, as a whole",
+    "test_rules.py": "all files",
+    "test_wheel.py": "an installed copy",
+}
+"""Tests that stand among those of modules, with what they test."""
+
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
@@ -71,6 +104,13 @@ def python_files(folder: str) -> list[Path]:
 PACKAGE = python_files("tuisim")
 TESTS = python_files("tests")
 CODE = [*PACKAGE, *TESTS, *python_files("backgrounds")]
+MIRRORED = [
+    path
+    for path in TESTS
+    if path.name.startswith("test_")
+    and path.relative_to(ROOT / "tests").parts[0] not in ("backgrounds", "bench", "proof")
+]
+"""Tests of the package, at the paths of its modules."""
 PROSE = [ROOT / "README.md", ROOT / "pyproject.toml", ROOT / ".ci" / "run"]
 
 
@@ -176,6 +216,39 @@ def skipped_tests(source: Source) -> Iterable[object]:
     return [node.lineno for node in source.attributes if node.attr in ("skip", "xfail")]
 
 
+def subject(test: Path) -> str:
+    """Return the module or package at the path of a test that it is named after: `test_NAME.py` or
+    `test_NAME_ASPECT.py`; empty if there is none."""
+    folder = ROOT / "tuisim" / test.parent.relative_to(ROOT / "tests")
+    words = test.stem.removeprefix("test_").split("_")
+    for count in range(len(words), 0, -1):
+        path = folder / "_".join(words[:count])
+        for file in (path.with_suffix(".py"), path / "__init__.py"):
+            if file.is_file():
+                return file.relative_to(ROOT / "tuisim").as_posix()
+    return ""
+
+
+@cache
+def subjects() -> frozenset[str]:
+    return frozenset(map(subject, MIRRORED))
+
+
+def untested(source: Source) -> Iterable[object]:
+    """A long module has a test that is named after it, or is in the table of those that have not; never both."""
+    module = source.path.relative_to(ROOT / "tuisim").as_posix()
+    is_tested = module in subjects() or len(source.lines) <= LONG_LINES or source.path.stem == "__init__"
+    if module not in TESTED_BESIDE:
+        return [] if is_tested else [f"{len(source.lines)} lines and no test"]
+    beside = ROOT / "tests" / TESTED_BESIDE[module]
+    return ["needs no exception"] if is_tested or not beside.is_file() else []
+
+
+def misnamed(source: Source) -> Iterable[object]:
+    name = source.path.relative_to(ROOT / "tests").as_posix()
+    return ["named after no module"] if bool(subject(source.path)) == (name in OF_NO_MODULE) else []
+
+
 RULES: dict[str, tuple[Callable[[Source], Iterable[object]], list[Path]]] = {
     "files are small": (too_many_lines, CODE),
     "functions are small": (long_functions, CODE),
@@ -186,6 +259,8 @@ RULES: dict[str, tuple[Callable[[Source], Iterable[object]], list[Path]]] = {
     "commands print by echo": (prints, python_files("tuisim/commands")),
     "core has no clock and no global random": (clocks_and_global_random, python_files("tuisim/core")),
     "no test is skipped": (skipped_tests, TESTS),
+    "long modules have tests of their own": (untested, PACKAGE),
+    "tests are named after modules": (misnamed, MIRRORED),
 }
 
 

@@ -1,4 +1,4 @@
-"""What the tests of the app share: settings, and waiting for something to come about."""
+"""What the tests of the app share: settings, and waiting until something is so."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ async def until(pilot: Pilot[Any], condition: Callable[[], bool], case: str = ""
     """Let the app go on until something is so; `case` names the row of a table that a test works through."""
     give_up = time.monotonic() + PATIENCE_S
     while not condition():
-        assert time.monotonic() < give_up, f"it did not come about {case}"
+        assert time.monotonic() < give_up, f"still not so: {case}"
         await pilot.pause(0.01)
 
 

@@ -5,54 +5,20 @@ from __future__ import annotations
 import asyncio
 import os
 import time
-from collections.abc import Callable, Iterator, Mapping
-from functools import cache
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from textual import app as textual_app
 from textual import pilot as textual_pilot
-from textual._compositor import Compositor
-from textual._context import active_app, visible_screen_stack
 from textual._wait import wait_for_idle as seem_idle
 from textual._xterm_parser import XTermParser
-from textual.css import stylesheet
-from textual.css.model import RuleSet
-from textual.css.parse import parse
-from textual.css.tokenize import tokenize_values
-from textual.css.tokenizer import Token
 from textual.notifications import Notification
 
 from tests.app.terminals import Terminal
 from tests.running import PATIENCE_S
 from tuisim.config import preferences, user_config
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _style_sheets_are_parsed_once() -> Iterator[None]:
-    """Keep parsed style sheets for all apps: each app parses the same ones anew."""
-
-    @cache
-    def tokens(values: tuple[tuple[str, str], ...]) -> dict[str, list[Token]]:
-        return tokenize_values(dict(values))
-
-    def tokenize_once(values: Mapping[str, str]) -> dict[str, list[Token]]:
-        return tokens(tuple(values.items()))
-
-    kept: dict[tuple[object, ...], list[RuleSet]] = {}
-
-    def parse_once(*words: Any, **more: Any) -> list[RuleSet]:
-        # The tokens of one theme are one object, which `tokens` keeps.
-        key = (*words, *(id(value) if name == "variable_tokens" else value for name, value in more.items()))
-        if key not in kept:
-            kept[key] = list(parse(*words, **more))
-        return kept[key]
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(stylesheet, "tokenize_values", tokenize_once)
-        patch.setattr(stylesheet, "parse", parse_once)
-        yield
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -82,35 +48,7 @@ async def _settle() -> None:
         await asyncio.sleep(0)
         if not loop._ready:
             return
-        assert time.monotonic() < give_up, "it never comes to rest"
-
-
-_DRAWN: set[tuple[object, ...]] = set()
-"""Each arrangement of widgets that was drawn, by its size."""
-
-
-@pytest.fixture(autouse=True)
-def _drawn_where_somebody_looks(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draw an app without a terminal only where it shows what no other test has shown, and where a test looks at it.
-
-    Drawing is half of what such an app costs, and nobody gets to see it. Slow tests, and apps on a `Wire`, draw
-    everything.
-    """
-    draw = Compositor.render_update
-
-    def render_update(self: Compositor, full: bool = False, **how: Any) -> Any:
-        if full or not active_app.get().is_headless:
-            return draw(self, full, **how)
-        shown = (self.size, *sorted((type(widget).__name__, widget.id or "") for widget in self.visible_widgets))
-        if shown not in _DRAWN:
-            _DRAWN.add(shown)
-            return draw(self, full, **how)
-        visible_screen_stack.set(how.get("screen_stack") or [])
-        self._dirty_regions.clear()
-        return None
-
-    if not any(map(request.node.get_closest_marker, ("slow", "soak"))):
-        monkeypatch.setattr(Compositor, "render_update", render_update)
+        assert time.monotonic() < give_up, "the event loop is never idle"
 
 
 @pytest.fixture(autouse=True)

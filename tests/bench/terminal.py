@@ -86,7 +86,7 @@ class Terminal:
         """Take what the app writes, and answer it, until something is so.
 
         Raises:
-            AssertionError: it did not come about in time, or the app has ended.
+            AssertionError: it was not so in time, or the app has ended.
         """
         give_up = time.monotonic() + patience_s
         while not condition():

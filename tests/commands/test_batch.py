@@ -1,4 +1,4 @@
-"""`tuisim batch`: its table, its pictures, what interrupts it and goes on, and what it refuses."""
+"""`tuisim batch`: its table, its pictures, and what interrupts it and goes on."""
 
 from __future__ import annotations
 
@@ -12,32 +12,13 @@ import pandas as pd
 import pytest
 
 import tuisim
-from tests.batch.stand_in import result_of, run_backwards
+from tests.batch.stand_in import result_of
+from tests.commands.conftest import PROGRAM, SPEC, Batch
 from tuisim.batch import workers
 from tuisim.batch.task import Result, Task
 from tuisim.cli import run_command
 from tuisim.goals.judgement import Change, GoalState, Judgement
 from tuisim.runs.store import RunStore
-
-PROGRAM = "tank_drive.on_for_seconds(40, 40, 0.3)\nprint('Gyro: ' + str(gyro.angle))\n"
-SPEC = """
-[batch]
-program = "mine.py"
-seeds = "0..2"
-out = "rows.csv"
-set.noise.motor = [0, 20]
-expressions.far_mm = "hypot(x_mm, y_mm)"
-"""
-Batch = Callable[..., int]
-
-
-@pytest.fixture
-def batch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Batch:
-    """Run the command in an own folder, with results that are computed and come in reverse order."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(workers, "run_many", run_backwards)
-    Path("mine.py").write_text(PROGRAM)
-    return lambda *words: run_command(["batch", *words])
 
 
 def interrupt_after(count: int) -> Callable[..., Iterator[Result]]:
@@ -82,27 +63,6 @@ def test_a_batch_file_holds_everything(batch: Batch) -> None:
     assert (len(frame), "far_mm" in frame.columns) == (6, True)
 
 
-@pytest.mark.parametrize(
-    "words, rows",
-    [
-        pytest.param(("--seeds", "7"), [[0, 7], [20, 7]], id="seeds"),
-        pytest.param(("--set", "noise.motor=5"), [[5, 0], [5, 1], [5, 2]], id="a parameter"),
-        pytest.param(("--seed", "4"), [[0, 4], [20, 4]], id="the option for the seed"),
-    ],
-)
-def test_options_override_the_batch_file(batch: Batch, words: tuple[str, ...], rows: list[list[int]]) -> None:
-    Path("spec.toml").write_text(SPEC)
-    assert batch("spec.toml", *words) == 0
-    assert pd.read_csv("rows.csv")[["noise.motor", "seed"]].to_numpy().tolist() == rows
-
-
-def test_the_option_for_a_parameter_of_the_batch_file_replaces_it(batch: Batch) -> None:
-    Path("spec.toml").write_text(SPEC)
-    assert batch("spec.toml", "-M", "30") == 0
-    frame = pd.read_csv("rows.csv")
-    assert ("noise.motor" in frame.columns, frame["x_mm"].tolist()) == (False, [100, 130, 160])
-
-
 GOALS = 'program = "mine.py"\n[[goal]]\nname = "end"\nsay = "End."\npoints = 2\nfinish = true\n'
 
 
@@ -132,45 +92,6 @@ def test_several_programs_are_compared(batch: Batch, capsys: pytest.CaptureFixtu
     assert pd.read_csv("rows.csv")["program"].tolist() == ["mine.py"] * 2 + ["other.py"] * 2
     lines = [line.split()[:2] for line in capsys.readouterr().out.split("\n")[2:4]]
     assert lines == [["x_mm", "mine.py"], ["x_mm", "other.py"]]
-
-
-@pytest.mark.parametrize(
-    "words, message",
-    [
-        pytest.param(("--set", "noise.motr=1"), "--set: noise.motr: no such key (did you mean motor?)", id="key"),
-        pytest.param(("--set", "noise.motor=1", "-M", "5"), "noise.motor varies what an option sets", id="option"),
-        pytest.param(("--scheduler", "localhost"), "--scheduler: is no address of a scheduler: 'localhost'", id="port"),
-        pytest.param(("--seeds", "1..3", "--seed", "5"), "seed varies what an option sets", id="seed option"),
-        pytest.param(("--seeds", "1..3", "--set", "seed=5"), "--seeds: is given together with", id="two seeds"),
-        pytest.param(("--set", "pen.down=on", "--set", "pen.down=off"), "pen.down is given twice", id="twice"),
-        pytest.param(("--expr", "x"), "--expr: must be NAME=EXPR", id="expression"),
-        pytest.param(("--expr", "a=x_m"), "--expr a: there will be no column 'x_m'", id="column of an expression"),
-        pytest.param(("--resume",), "--resume: needs the table", id="resume nothing"),
-        pytest.param(("--out", "rows.txt"), "unknown format '.txt'", id="format"),
-        pytest.param(("--picture", "a.gif"), "unknown format '.gif' (a picture ends in .svg, .png)", id="picture"),
-        pytest.param(("--picture-of", "x_mm"), "--picture-of: cannot draw 'x_mm' (only poses,", id="column"),
-        pytest.param(("--goals", "none.toml"), "none.toml: there is no such file", id="goals"),
-        pytest.param(("--jobs", "0"), "--jobs: must be a whole number from 1", id="jobs"),
-        pytest.param(("--jobs", "2", "--workers", "2"), "--workers: is given together with --jobs", id="workers"),
-        pytest.param(("--scheduler", "tcp://a:1", "--workers", "2"), "--workers: is given together with", id="cluster"),
-        pytest.param(("--speed", "1"), "no such option: --speed", id="speed"),
-    ],
-)  # fmt: skip
-def test_what_is_wrong_is_said_before_anything_is_run(
-    batch: Batch,
-    words: tuple[str, ...],
-    message: str,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(workers, "run_many", None)
-    assert batch("mine.py", *words) == 2
-    assert message in capsys.readouterr().err
-
-
-def test_a_batch_needs_a_program(batch: Batch, capsys: pytest.CaptureFixture[str]) -> None:
-    assert batch("--seeds", "1") == 2
-    assert "no program is named (tuisim batch PROGRAM…)" in capsys.readouterr().err
 
 
 def test_an_interrupted_batch_keeps_what_is_done(

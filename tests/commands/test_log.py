@@ -3,10 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
-import os
-import subprocess
-import sys
 from collections.abc import Callable
 from io import StringIO
 from pathlib import Path
@@ -14,8 +10,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from tests.conftest import ROOT, Command
-from tests.running import PATIENCE_S, told
+from tests.conftest import Command
+from tests.running import told
 from tuisim.cli import run_command
 from tuisim.commands.log import OPTIONS, SUBCOMMANDS, Subcommand
 
@@ -67,26 +63,12 @@ def test_signals(here: Command, log: Path, action: str, how: tuple[tuple[str, ..
     assert how[1](frame_of(here("log", action, str(log), *how[0]).stdout))
 
 
-def test_summary(here: Command, log: Path) -> None:
-    left, right = json.loads(here("log", "summary", str(log), "--json").stdout)
-    assert (left["variable"], left["count"], left["mean"], left["max"]) == ("left", 10, 4.5, 9.0)
-    assert (right["min"], right["first_s"], right["last_s"]) == (1.0, 0.0, 4.5)
-
-
 def test_events(here: Command, log: Path) -> None:
     found = json.loads(here("log", "events", str(log), "--at", "4.5", "--json").stdout)
     assert [(event["variable"], event["time_s"], event["crossing"]) for event in found] == [
         ("left", 2.25, "rises"),
         ("right", 2.75, "falls"),
     ]
-
-
-def test_reckoning_without_noise_is_exact(here: Command) -> None:
-    here("run", "square")
-    found = frame_of(here("log", "reckon", "last").stdout)
-    assert found.error_mm.max() < 1.0
-    here("run", "square", "-M", "300")
-    assert frame_of(here("log", "reckon", "last").stdout).error_mm.max() < 1000.0
 
 
 @pytest.mark.parametrize("suffix", ["csv", "parquet", "jsonl", "arrow"])
@@ -96,14 +78,6 @@ def test_export_keeps_the_values(here: Command, tmp_path: Path, suffix: str) -> 
     here("log", "export", "last", "--out", str(target))
     found = json.loads(here("log", "summary", str(target), "--json").stdout)
     assert (found[0]["variable"], found[0]["count"], found[0]["min"]) == ("Colour", 51, 0.0)
-
-
-@pytest.mark.slow
-def test_a_pipe(tmp_path: Path) -> None:
-    command = f"{sys.executable} -m tuisim run log_greys | {sys.executable} -m tuisim log summary - --json"
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, shell=True, env=environment, cwd=tmp_path, capture_output=True, timeout=PATIENCE_S)
-    assert json.loads(done.stdout)[0]["count"] == 51
 
 
 BAD = {
@@ -139,23 +113,6 @@ def test_bad_input(here: Command, log: Path, words: tuple[str, ...], expected: s
     assert len(told(done)) == 1
 
 
-def test_json_has_every_digit(here: Command, tmp_path: Path) -> None:
-    path = tmp_path / "a.csv"
-    path.write_text("time,v\n0,0.30000000000000004\n300000,1.3\n300000,inf\n")
-    rows = [json.loads(line) for line in here("log", "derive", str(path), "--json").stdout.splitlines()]
-    assert [row["value"] for row in rows] == [0.1 + 0.2, 1.3, None]
-    assert rows[0]["derivative"] == (1.3 - (0.1 + 0.2)) / 3e5
-
-
-def test_no_column_takes_the_place_of_another(here: Command, tmp_path: Path) -> None:
-    path = tmp_path / "a.jsonl"
-    rows = ((0, None, 7), (1, "time", 5), (2, "result", 6))
-    path.write_text("".join(json.dumps({"time": t, "variable": n, "value": v}) + "\n" for t, n, v in rows))
-    frame = frame_of(here("log", "calc", str(path), "--expression", "2 * result").stdout)
-    assert list(frame.columns) == ["time", "time (2)", "result", "result (2)"]
-    assert frame.iloc[-1].tolist() == [2, 5, 6, 12]
-
-
 def test_help_lists_every_subcommand(capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command(["log", "--help"]) == 0
     said = capsys.readouterr().out
@@ -170,12 +127,3 @@ def test_a_subcommand_is_there_and_its_options_are_declared(entry: Subcommand) -
 
 def test_no_option_is_declared_for_nothing() -> None:
     assert {option for entry in SUBCOMMANDS.values() for option in entry.options} == set(OPTIONS)
-
-
-def test_empty_run_says_how_to_log(here: Command, tmp_path: Path) -> None:
-    program = tmp_path / "quiet.py"
-    program.write_text("x = 1\n")
-    here("run", str(program))
-    done = here("log", "bands", "last")
-    assert (done.returncode, "Colour: 50" in done.stderr) == (2, True)
-    assert not math.isnan(json.loads(here("log", "summary", "last", "--telemetry", "--json").stdout)[0]["mean"])

@@ -13,17 +13,16 @@ from PIL import Image
 
 from tests.conftest import Command
 from tests.running import told
-from tests.runs.run_recorder import PROGRAM, Recorder
+from tests.runs.run_recorder import PROGRAM, begun
 from tuisim.charts.world_image import COLORED, Viewport, fitting_view, pen_trace
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
-from tuisim.core.simulation import Simulation
 from tuisim.core.spec import PenSpec, RobotSpec, RunSpec, WorldSpec
 from tuisim.core.tick_record import TICK_FIELDS
 from tuisim.movies.clip import END_MS, Recorded
 from tuisim.movies.files import SMALL_BYTES, small_movie
 from tuisim.movies.painter import FramePainter
-from tuisim.runs.records import HEADER_BYTES, OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, TelemetryWriter
+from tuisim.runs.records import HEADER_BYTES, OUTPUT_FILE, TELEMETRY_FILE
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
@@ -36,10 +35,7 @@ SPEC = RunSpec(ROBOT, WorldSpec("Grey_bands", start=START), ROBOLAB)
 
 def record(*speeds_dps: float) -> StoredRun:
     """Store a run that drives each speed for half a second."""
-    store, spec = RunStore(), SPEC
-    new = store.new_run(PROGRAM, spec)
-    telemetry = TelemetryWriter(new.folder)
-    recorder = Recorder(store, new, spec, telemetry, OutputWriter(new.folder), Simulation(spec, telemetry))
+    recorder = begun(RunStore(), SPEC)
     for number, speed_dps in enumerate(speeds_dps):
         recorder.print(f"Colour: {100.0 / (number + 1)}")
         recorder.drive(speed_dps, speed_dps, 50)

@@ -14,16 +14,15 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Command
-from tests.runs.run_recorder import PROGRAM, Recorder
+from tests.runs.run_recorder import PROGRAM, begun
 from tuisim.cli import run_command
 from tuisim.commands import runs as runs_command
 from tuisim.commands.echo import size
 from tuisim.core.profile import ROBOLAB
-from tuisim.core.simulation import Simulation
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.runs import store as store_module
 from tuisim.runs.catalogue import CATALOGUE_FILE
-from tuisim.runs.records import TELEMETRY_FILE, OutputRow, OutputWriter, TelemetryWriter
+from tuisim.runs.records import TELEMETRY_FILE, OutputRow
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.side_files import READS_FILE
 from tuisim.runs.store import RunStore
@@ -38,10 +37,7 @@ def make(home: Path) -> Make:
     """`make(*lines)`: store a finished run that printed these lines."""
 
     def record(*lines: str) -> StoredRun:
-        store, spec = RunStore(), RunSpec(RobotSpec(), WorldSpec(), ROBOLAB)
-        run = store.new_run(PROGRAM, spec)
-        telemetry = TelemetryWriter(run.folder)
-        recorder = Recorder(store, run, spec, telemetry, OutputWriter(run.folder), Simulation(spec, telemetry))
+        recorder = begun(RunStore(), RunSpec(RobotSpec(), WorldSpec(), ROBOLAB))
         for line in lines:
             recorder.drive(100, 100, 1)
             recorder.print(line)

@@ -18,8 +18,8 @@ from tests.running import PATIENCE_S
 from tuisim.core import tree
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
-from tuisim.core.spec import Obstacle, RobotSpec, RunSpec, TouchSpec, WorldSpec
-from tuisim.errors import ConfigError, ObstacleError, RobotError
+from tuisim.core.spec import RobotSpec, RunSpec, TouchSpec, WorldSpec
+from tuisim.errors import ConfigError, RobotError
 
 RUN = RunSpec(RobotSpec(touch_sensors=(TouchSpec(),), ultrasonic=None), WorldSpec(), ROBOLAB)
 
@@ -84,15 +84,6 @@ def test_plain_data_of_a_run_are_that_run() -> None:
     # What came later is left out where it is as it was.
     assert "gear_ratio" not in plain["robot"]
     assert plain["robot"]["ultrasonic"] is None
-
-
-def test_a_spec_cannot_be_changed_and_has_no_other_values() -> None:
-    with pytest.raises(AttributeError, match="frozen"):
-        RUN.seed = 3  # type: ignore[misc]
-    with pytest.raises(TypeError, match="WorldSpec has no fog"):
-        WorldSpec(fog=1)  # type: ignore[call-arg]
-    with pytest.raises(ObstacleError, match="must be above 0"):
-        Obstacle(0, 0, 0, 1)
 
 
 def test_every_leaf_that_an_option_sets_says_what_it_is() -> None:

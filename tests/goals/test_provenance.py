@@ -68,3 +68,9 @@ def test_lines_that_read() -> None:
 
 def test_text_that_is_no_python() -> None:
     assert provenance_of("print(", Reading.COLOR) is None
+
+
+@pytest.mark.parametrize(("name", "given"), [("G", True), ("L", False), ("", False)])
+def test_line_that_prints_twice_is_about_what_has_the_name(name: str, given: bool) -> None:
+    found = Provenance("print('L: 5'); print(f'G: {colorLeft.color:.0f}')", Reading.COLOR)
+    assert found.gives(1, name) is given

@@ -36,8 +36,8 @@ RUN_ELSEWHERE = {
     "sh run": ".ci/run",
     "sh test": ".ci/run",
     "sh cluster": "tests/batch/test_cluster.py",
-    "python notebook": "tests/notebook/test_responder.py",
-    "toml": "tests/config/test_config_files.py",
+    "python notebook": "tests/notebook/test_lab_responder.py",
+    "toml": "tests/config/test_files.py",
 }
 """Where blocks are run that need a fresh environment, several processes, a notebook or the other files of the guide."""
 WITH_BLOCKS = [name for name in DOCUMENTS if any(one.kind in ("sh", "sh app", "python") for one in blocks(name))]

@@ -20,6 +20,7 @@ from tuisim.lessons.events import (
     is_met,
     note_fault,
     unready,
+    wanted_form,
 )
 from tuisim.lessons.spec import (
     BreakCheck,
@@ -70,10 +71,15 @@ CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
     "number, too far off": (NUMBER, [Typed("50.8")], False),
     "number, negative": (NUMBER, [Typed("-50.2")], False),
     "number, two of them": (NUMBER, [Typed("50.2 51")], False),
+    "number, in words": (NUMBER, [Typed("x = 50.2 %")], True),
+    "number, in a word": (NUMBER, [Typed("x50.2")], False),
+    "number, negative, in words": (NUMBER, [Typed("x = -50.2")], False),
     "number, none": (NUMBER, [Typed("")], False),
     "a wrong answer, then the right one": (NUMBER, [Typed("1"), Typed("50")], True),
     "text": (QuestionCheck("Q", "time.sleep(0.1)"), [Typed("Time.sleep( 0.1 )")], True),
     "one of several texts": (QuestionCheck("Q", ("left", "the left one")), [Typed("the left one.")], True),
+    "text in quotes": (QuestionCheck("Q", "White"), [Typed("'white'")], True),
+    "text in other quotes": (QuestionCheck("Q", "White"), [Typed("“White.”")], True),
     "another text": (QuestionCheck("Q", "left"), [Typed("right")], False),
     "choice by number": (CHOICE, [Typed("2")], True),
     "choice by text": (CHOICE, [Typed("the light")], True),
@@ -142,3 +148,21 @@ def test_why_a_note_does_not_pass(note: Noted, words: str) -> None:
     found = note_fault(NOTE, note)
     assert found.startswith(words)
     assert bool(found) is bool(words)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("50.2 cm", "the number in mm"),
+        ("0.502m", "the number in mm"),
+        ("502 mm", ""),
+        ("502", ""),
+        ("far", "a number, such as 12.5"),
+    ],
+)
+def test_number_in_another_unit_is_asked_for_again(text: str, words: str) -> None:
+    assert wanted_form(QuestionCheck("At which x, in mm?", 502, within=4), text) == words
+
+
+def test_any_unit_will_do_where_none_is_asked_for() -> None:
+    assert wanted_form(QuestionCheck("How far?", 502, within=4), "50.2 cm") == ""

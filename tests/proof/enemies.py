@@ -18,7 +18,7 @@ import numpy as np
 
 from tests.hosts import HOSTS, Hosted, Stored, hosted, isolated
 from tests.isolated import refusal
-from tests.marking.attackers import DISK, FILES, MEMORY, OWN_RUN, PROC, PROCESSES, SECRET
+from tests.marks.attackers import DISK, FILES, MEMORY, OWN_RUN, PROC, PROCESSES, SECRET
 from tests.proof.commands import check_said
 from tests.proof.kind import FaultError, Kind, home, in_time
 from tuisim.cli import EXIT_OUR_MISTAKE

@@ -18,7 +18,7 @@ from random import Random
 from tempfile import TemporaryDirectory
 
 from tests.hosts import GOALS, MAGIC
-from tests.marking.attackers import NAMES, SECRET
+from tests.marks.attackers import NAMES, SECRET
 from tests.proof.commands import check_said
 from tests.proof.kind import FaultError, Kind, home, in_time
 

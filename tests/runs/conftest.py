@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
-from tests.runs.run_recorder import PROGRAM, Recorder
+from tests.runs.run_recorder import Recorder, begun
 from tuisim.core.field import Field, disc_mask
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
-from tuisim.core.simulation import Simulation
 from tuisim.core.spec import NoiseSpec, RobotSpec, RunSpec, WorldSpec
-from tuisim.runs.records import OutputWriter, TelemetryWriter
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
@@ -44,13 +42,7 @@ def noisy_spec(spec: RunSpec) -> RunSpec:
 def record(store: RunStore) -> Callable[..., Recorder]:
     """Start a run that is written by hand."""
 
-    def start(spec: RunSpec, **options: Any) -> Recorder:
-        run = store.new_run(PROGRAM, spec, **options)
-        telemetry = TelemetryWriter(run.folder)
-        simulation = Simulation(spec, telemetry)
-        return Recorder(store, run, spec, telemetry, OutputWriter(run.folder), simulation)
-
-    return start
+    return partial(begun, store)
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass
+from typing import Any
 from weakref import finalize
 
 from tuisim.core.simulation import Simulation
@@ -63,3 +64,10 @@ class Recorder:
         self.store.finish(self.run, Ended(end, tick, self.simulation.due_ns(tick), summary=summary))
         self._unlock()
         return self.store.load_run(self.run.id)
+
+
+def begun(store: RunStore, spec: RunSpec, **options: Any) -> Recorder:
+    """Begin a run in a store."""
+    run = store.new_run(PROGRAM, spec, **options)
+    telemetry = TelemetryWriter(run.folder)
+    return Recorder(store, run, spec, telemetry, OutputWriter(run.folder), Simulation(spec, telemetry))

@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
+
+import pytest
+
+from tests.shim.conftest import RunOn
 
 
 @dataclass(frozen=True)
@@ -68,3 +73,19 @@ def differences(table: Table, lines: list[str]) -> list[str]:
     if len(lines) != len(table.checks):
         found.append(f"{len(lines)} lines for {len(table.checks)} checks, last: {lines[-1:]}")
     return found
+
+
+Tables = Mapping[str, tuple[Table, str, str]]
+"""By name: table, robot, world."""
+
+
+def cases(tables: Tables) -> pytest.MarkDecorator:
+    """Let a test be called with each table, its robot and its world."""
+    return pytest.mark.parametrize(("table", "robot", "world"), tables.values(), ids=tables)
+
+
+def check(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+    """Run a table as a program, and make sure that each of its checks shows what it must."""
+    done = run_on(table.program, robot, world, presses=table.presses)
+    assert "\n".join(differences(table, done.lines)) == ""
+    assert done.ended.end == "finished", done.errors

@@ -6,7 +6,9 @@ import pytest
 from PIL.ImageFont import ImageFont
 
 from tests.running import Run
+from tests.shim.checking import Table, Tables, cases, check
 from tests.shim.conftest import RunOn
+from tests.shim.table_display import FONTS
 from tuisim.shim.fonts import FACES, drawn
 
 LATIN = "".join(map(chr, (*range(33, 127), *range(161, 256))))
@@ -79,3 +81,14 @@ def test_fonts_that_are_drawn_are_told_once(run_on: RunOn, profile: str) -> None
 def test_what_later_versions_of_pillow_remove_is_no_news_to_a_program_for_the_brick(run: Run) -> None:
     warn = "warnings.warn('x is deprecated and will be removed in Pillow 14 (2027-10-15).', DeprecationWarning)"
     assert not run(f"import warnings\nfrom PIL import Image\n{warn}", prelude="none").errors
+
+
+TABLES: Tables = {
+    "fonts": (FONTS, "plain", "empty"),
+}
+
+
+@pytest.mark.slow_cases("fonts")
+@cases(TABLES)
+def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+    check(run_on, table, robot, world)

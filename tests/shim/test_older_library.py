@@ -6,25 +6,22 @@ import sys
 
 import pytest
 
-from tests.shim.checking import Table, differences
+from tests.shim.checking import Table, Tables, cases, check
 from tests.shim.conftest import RunOn
 from tests.shim.table_older import BRICK, COLOR, MOTORS, SENSORS
 from tuisim.shim.older_library import MissingLibrary, surroundings
 
-TABLES: dict[str, tuple[Table, str, str]] = {
+TABLES: Tables = {
     "motors": (MOTORS, "eyes", "empty"),
     "brick": (BRICK, "plain", "empty"),
     "sensors": (SENSORS, "eyes", "furnished"),
     "colour": (COLOR, "default", "red"),
 }
-"""By name: table, robot, world."""
 
 
-@pytest.mark.parametrize(("table", "robot", "world"), TABLES.values(), ids=TABLES)
+@cases(TABLES)
 def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
-    done = run_on(table.program, robot, world, presses=table.presses)
-    assert "\n".join(differences(table, done.lines)) == ""
-    assert done.ended.end == "finished", done.errors
+    check(run_on, table, robot, world)
 
 
 SQUARE = """

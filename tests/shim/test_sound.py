@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import json
 
-import pytest
-
+from tests.shim.checking import Table, Tables, cases, check
 from tests.shim.conftest import FAR_WALL, PLAIN, RunOn
-from tests.shim.table_sound import FILE, HEARD
+from tests.shim.table_sound import FILE, HEARD, SOUND
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import RunSpec
 from tuisim.protocol import Spoke
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.records import Stream
-from tuisim.shim.tones import Tone, parse_beep
 from tuisim.source import Program
 
 
@@ -78,25 +76,11 @@ def test_threads_take_turns_while_a_song_plays(run_on: RunOn) -> None:
     assert sorted(heard) == ["[tone 880 Hz 0.01 s]"] * 4 + ["[♪ song of 3 notes, 1.5 s]"]
 
 
-@pytest.mark.parametrize(
-    ("words", "tones"),
-    [
-        ("", [Tone(440, 200)]),
-        ("-f 500", [Tone(500, 200)]),
-        ("-f500 -l 10", [Tone(500, 10)]),
-        ("-r 2", [Tone(440, 200, 100), Tone(440, 200)]),
-        ("-r 2 -D 5", [Tone(440, 200, 5)] * 2),
-        ("-r 0", []),
-        ("-l 1 -n -l 2 --new -l 3 -d 9", [Tone(440, 1), Tone(440, 2), Tone(440, 3)]),
-    ],
-)
-def test_beep_takes(words: str, tones: list[Tone]) -> None:
-    assert parse_beep(words.split()) == tones
+TABLES: Tables = {
+    "sound": (SOUND, "plain", "empty"),
+}
 
 
-@pytest.mark.parametrize(
-    "words", ["-f", "-f x", "-f 20001", "-f -1", "-l -1", "-l inf", "-D nan", "-r 1e9", "-r -1", "-x", "loud"]
-)
-def test_beep_refuses(words: str) -> None:
-    with pytest.raises(ValueError):
-        parse_beep(words.split())
+@cases(TABLES)
+def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+    check(run_on, table, robot, world)

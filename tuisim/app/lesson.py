@@ -123,7 +123,6 @@ class LessonController:
         """The step that has just been done."""
         self._elsewhere: RunSpec | None = None
         """What a run was that did not begin in the lesson's world; None if the last one did."""
-        """Whether the run in view did not begin at the lesson's start."""
         self._counted = ""
         """Id of the last run that was counted as a try."""
         self._next_look_s = 0.0
@@ -143,6 +142,7 @@ class LessonController:
     def begin(self) -> None:
         """Begin with the lesson that was opened at the start."""
         if self.lesson is not None:
+            self._goals.judges_always = True
             self._enter(self.lesson)
 
     def open(self, name: str) -> None:
@@ -158,6 +158,7 @@ class LessonController:
     def _load(self, lesson: Lesson, anew: bool = False) -> None:
         path = stored.prepare_program(lesson, anew)
         self._loader.open_task(str(path), lesson.settings, goals_of(lesson))
+        self._goals.judges_always = True
         # What the last run has shown belongs to another lesson.
         self._run_controller.close()
         self._app.run_changed()
@@ -169,7 +170,6 @@ class LessonController:
         except ConfigError as error:
             self.progress = LessonProgress()
             self._app.complain(error)
-        self._goals.judges_always = True
         self._keep(replace(self.progress, opened_at=stored.now()))
         self._panel_area.request(self._panels_for(lesson))
         if self._panel_area.world:
@@ -181,10 +181,14 @@ class LessonController:
     def _panels_for(self, lesson: Lesson) -> dict[str, bool | None]:
         """Return which panels to show and hide: the text gets the side column, but for readings where there is room."""
         beside = [info.id for info in PANELS.values() if info.place is PanelPlace.SIDE]
+        usual: dict[str, None] = {}
         if self._panel_area.size.height >= _ROOMY_ROWS:
             beside.remove("instrumentation")
+        elif not any(step.check == ShowCheck("chart") for step in lesson.steps):
+            # A chart that was opened in another lesson would be in the place of the output that this one speaks of.
+            usual = dict.fromkeys(("output", "chart"))
         asked = dict.fromkeys((*lesson.settings.get("panels_on", ()), "code", "lesson"), True)
-        return {**dict.fromkeys(beside, False), **asked}
+        return {**dict.fromkeys(beside, False), **usual, **asked}
 
     def _begin_step(self) -> None:
         assert self.lesson is not None

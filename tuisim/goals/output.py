@@ -34,9 +34,12 @@ _MOST_TRIED = 1000
 
 
 def _asked(pattern: str) -> str:
-    """Return a pattern as a reason names it: its words, if it is nothing but words."""
+    """Return how a line that fits a pattern is named in a reason: by its words, if it is nothing but words."""
     words = re.sub(r"\(\?i\)|\\b|[\^$]", "", pattern)
-    return _shown(words if words == re.escape(words).replace("\\ ", " ") else pattern)
+    if words == re.escape(words).replace("\\ ", " "):
+        return f"matches {_shown(words)}"
+    # What a line must not say is told by the goal's own words, and no student reads it from the pattern.
+    return "says what is asked for" if re.search(r"\(\?<?[=!]", pattern) else f"matches {_shown(pattern)}"
 
 
 def _shown(text: str) -> str:
@@ -171,10 +174,10 @@ def _no_line(condition: PrintCondition, pattern: str, rows: list[tuple[int, Outp
     if not rows:
         return "The program printed nothing."
     if some and condition.in_order and any(re.search(pattern, row.text) for _, row in rows):
-        return f"A line that matches {_asked(pattern)} was printed, but not after the lines before it."
+        return f"A line that {_asked(pattern)} was printed, but not after the lines before it."
     last = _shown(rows[-1][1].text)
     printed = "the only one is" if len(rows) == 1 else f"the last of the {len(rows):,} is"
-    return f"No printed line matches {_asked(pattern)}; {printed} {last}."
+    return f"No printed line {_asked(pattern)}; {printed} {last}."
 
 
 def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
@@ -235,7 +238,7 @@ def _not_measured(condition: LogCondition, count: int, sample: Sample, evidence:
         return f"{value}, but the program had printed {counted(printed, 'sample')} {condition.counts}."
     reading, place = condition.reading, _range(condition, count)
     known = provenance_of(evidence.program.text, reading) if reading else None
-    if reading is not None and known is not None and not known.gives(sample.line):
+    if reading is not None and known is not None and not known.gives(sample.line, sample.name):
         return f"{value}, but line {sample.line} does not compute it from what the {NOUNS[reading]} read."
     if reading is None or reading is Reading.MOTOR:
         fault = _elsewhere(condition, count, sample.tick, evidence)

@@ -80,18 +80,24 @@ class Provenance:
         pauses = [node.lineno for node in ast.walk(self._tree) if isinstance(node, ast.Call) and _pauses(node)]
         return self.lines() & frozenset(pauses)
 
-    def gives(self, line: int) -> bool:
-        """Return whether what a line prints is computed from a reading; also if the line is not known."""
-        return all(value for value, _ in self._printed_at(line))
+    def gives(self, line: int, name: str = "") -> bool:
+        """Return whether what a line prints is computed from a reading; also if the line is not known.
+
+        Args:
+            line: Its number.
+            name: What is printed with the value, if the line also prints something else.
+        """
+        return all(value for value, _ in self._printed_at(line, name))
 
     def decides(self, line: int) -> bool:
         """Return whether a reading decides that a line comes, or what it does; also if the line is not known."""
         return all(value or decided for value, decided in self._printed_at(line))
 
-    def _printed_at(self, line: int) -> list[tuple[bool, bool]]:
+    def _printed_at(self, line: int, name: str = "") -> list[tuple[bool, bool]]:
         found = [each for each in self._found if each[0].lineno <= line <= (each[0].end_lineno or 0)]  # type: ignore[attr-defined]
         prints = [each for each in found if _PRINTS & {_called(call) for call in _calls(each[0])}]
-        return [(value, decided) for _, value, decided in prints or found]
+        named = [each for each in prints if name and _says(each[0], name)]
+        return [(value, decided) for _, value, decided in named or prints or found]
 
     # Walking
 
@@ -218,6 +224,12 @@ def _names(node: ast.AST) -> set[str]:
 
 def _calls(node: ast.AST) -> list[ast.Call]:
     return [part for part in ast.walk(node) if isinstance(part, ast.Call)]
+
+
+def _says(node: ast.AST, name: str) -> bool:
+    """Return whether a name is in a text in a piece of the program."""
+    texts = (part.value for part in ast.walk(node) if isinstance(part, ast.Constant))
+    return any(isinstance(text, str) and name in text for text in texts)
 
 
 def _pauses(call: ast.Call) -> bool:

@@ -28,8 +28,8 @@ NOUNS: Mapping[Reading, str] = {
     Reading.GYRO: "gyro",
     Reading.MOTOR: "motors",
 }
-_ROUNDED = 0.5
-"""How far a printed level may be off the reading: programs round."""
+_ABOVE, _BELOW = 0.5, 1.0
+"""How far a printed level may be off the reading: programs round it, or cut off what is behind the point."""
 _NOISE_SHARE = 0.1
 """The same for each percent of the light's noise."""
 
@@ -81,9 +81,9 @@ def is_as_read(value: float, ticks: Array, evidence: Evidence) -> bool:
     every = read_ticks(Reading.COLOR, evidence)
     if "light as read" not in evidence.memo:
         evidence.memo["light as read"] = _light(evidence.records[every], evidence)
-    off = _ROUNDED + _NOISE_SHARE * evidence.spec.world.noise.light
-    there = evidence.memo["light as read"][:, np.isin(every, ticks)]
-    return bool((np.abs(there - value) <= off).any())
+    scatter = _NOISE_SHARE * evidence.spec.world.noise.light
+    missing = evidence.memo["light as read"][:, np.isin(every, ticks)] - value
+    return bool(((missing >= -_ABOVE - scatter) & (missing <= _BELOW + scatter)).any())
 
 
 def _light(records: Array, evidence: Evidence) -> Array:

@@ -108,7 +108,11 @@ Event: TypeAlias = (
     JudgedRun | TriedElsewhere | Typed | ExpressionWatched | BreakMet | Exported | Noted | Visited | Shown
 )
 
-_NUMBER = re.compile(r"\s*([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?)\s*[^\d.,]*$")
+_NUMBER = re.compile(
+    r"(?:[^\d.,+-]*[^\w.,+-])?([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>[^\d.,]*)$"
+)
+"""A number, such as in `x = 12.5 mm`."""
+_OTHER_LENGTHS = frozenset({"m", "dm", "cm", "in", "inch", "inches"})
 
 
 def is_met(check: Check, events: Sequence[Event]) -> bool:
@@ -183,7 +187,11 @@ def unready(question: QuestionCheck, event: Typed) -> str:
 def wanted_form(question: QuestionCheck, text: str) -> str:
     """Return in words what form an answer must have; empty if the text has it."""
     if isinstance(question.answer, int | float):
-        return "" if _NUMBER.match(text) else "a number, such as 12.5"
+        found = _NUMBER.match(text)
+        if found is None:
+            return "a number, such as 12.5"
+        is_other_length = found["unit"].strip() in _OTHER_LENGTHS and re.search(r"\bmm\b", question.ask)
+        return "the number in mm" if is_other_length else ""
     if question.choices and not any(_same(_chosen(question, text), choice) for choice in question.choices):
         return f"the number of a choice, 1 to {len(question.choices)}"
     return ""
@@ -197,12 +205,12 @@ def _chosen(question: QuestionCheck, text: str) -> str:
 
 
 def _same(text: str, wanted: str) -> bool:
-    """Compare two texts without regard to case, spaces and a full stop at the end."""
+    """Compare two texts without regard to case, spaces, quotes around them and a full stop at the end."""
     return _plain(text) == _plain(wanted)
 
 
 def _plain(text: str) -> str:
-    return "".join(text.split()).casefold().removesuffix(".")
+    return "".join(text.split()).casefold().strip("\"'`“”‘’.!")
 
 
 def _is_noted(check: NoteCheck, event: Noted) -> bool:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.app.app_help import LOGS, notices, ready, settings, until
-from tests.app.editor.test_editor import own
+from tests.app.editor.test_document import own
 from tests.app.terminals import Terminal
 from tuisim.app.app import LabApp
 from tuisim.app.editor.own_editor import own_editor

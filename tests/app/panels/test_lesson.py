@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Awaitable, Callable, Sequence
-from dataclasses import replace
+from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +17,9 @@ from tuisim.analysis.source import NOTES_FILE, Note, write_notes
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.panels import PANELS
-from tuisim.app.render.lesson import Away, LessonPicture, LessonView, draw_lesson
+from tuisim.app.render.lesson import LessonPicture
 from tuisim.app.snapshot import RunPhase
-from tuisim.goals.judgement import Change, GoalState, Judgement
-from tuisim.lessons.progress import StepState, load_progress, program_path
+from tuisim.lessons.progress import load_progress, program_path
 from tuisim.lessons.spec import SHOWABLE
 
 
@@ -96,6 +94,17 @@ async def test_skip_and_start_over(tmp_path: Path) -> None:
         assert app.run_controller.program is not None
         assert app.run_controller.program.text == PROGRAM
         assert program_path(app.lesson.lesson).with_suffix(".old.py").read_text() == "pass\n"  # type: ignore[arg-type]
+
+
+@pytest.mark.usefixtures("home")
+async def test_run_after_starting_over_is_judged(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        app.lesson.start_over()
+        app.lesson.skip_step()
+        await run_over(pilot, app)
+        await until(pilot, lambda: "✓ Drive" in shown(app))
 
 
 @pytest.mark.usefixtures("home")
@@ -355,37 +364,6 @@ async def test_damaged_progress_is_reported_and_kept(home: Path, tmp_path: Path)
     assert json.loads((home / "lessons" / "progress.json").read_text()) == [1]
 
 
-def _lesson_view(tmp_path: Path, **changes: Any) -> LessonView:
-    opened_lesson = opened(tmp_path).lesson
-    assert opened_lesson is not None
-    open_steps = (StepState.OPEN,) * 3
-    return replace(LessonView(opened_lesson, open_steps, 0), **changes)
-
-
-@pytest.mark.usefixtures("home")
-def test_pages_of_a_lesson(tmp_path: Path) -> None:
-    view = _lesson_view(tmp_path, states=(StepState.DONE, StepState.SKIPPED, StepState.OPEN), at=2)
-    view = replace(view, story="Your run: so.", done=replace(view.lesson.steps[1], why="Far enough."))  # type: ignore[union-attr]
-    missed = Judgement(view.lesson.goals[0], (Change(1, 0.1, GoalState.MISSED, 1, 2),), "Too short.")  # type: ignore[union-attr]
-
-    def page(number: int, **changes: Any) -> Sequence[str]:
-        lines = draw_lesson(replace(view, **changes), number, 0, 40, 30).lines
-        return ["".join(text for text, _ in line).rstrip() for line in lines]
-
-    assert page(2)[:4] == ["Try it                               ✓–●", "✓ Drive", "Your run: so.", "Far enough."]
-    assert page(2)[4:7] == ["M shows the steps before again.", "", "3. Do it"]
-    assert "skipped" in page(1)
-    assert {"✗ Drive.", "  Too short."} <= set(page(1, at=1, judgements=(missed,)))
-    failed = page(1, at=1, judgements=(missed,), error="NameError: no x (line 3)")
-    assert failed[2] == "The program stopped with an error:"
-    assert "· Drive." in failed
-    assert "  Too short." not in failed
-    assert page(2)[-1] == "Next: open the panel Chart."
-    assert page(3)[1].startswith("The end of the lesson: a model answer")
-    assert "A model answer:" not in page(3, states=(StepState.SKIPPED,) * 3, at=None)
-    assert draw_lesson(LessonView(), 0, 0, 40, 5).lines[0][0][0] == "No lesson is open: M opens one"
-
-
 def test_steps_can_ask_for_every_panel() -> None:
     assert set(SHOWABLE) == set(PANELS) - {"lesson"}
 
@@ -443,6 +421,34 @@ async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) 
 
 
 @pytest.mark.usefixtures("home")
+@pytest.mark.parametrize(("size", "is_shown"), [(SMALL, False), (LARGE, True)])
+async def test_output_is_back_when_another_lesson_is_opened(
+    size: tuple[int, int], is_shown: bool, tmp_path: Path
+) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        if not app.panel_area.shown("chart"):
+            await pilot.press("c")
+        await until(pilot, lambda: app.panel_area.shown("chart"))
+        app.lesson.open("first-run")
+        await until(pilot, lambda: app.panel_area.shown("output") and app.panel_area.shown("chart") is is_shown)
+
+
+@pytest.mark.usefixtures("home")
+async def test_chart_stays_in_the_lesson_that_asks_for_it(tmp_path: Path) -> None:
+    made = opened(tmp_path)
+    async with LabApp(made).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        app.lesson.skip_step()
+        await pilot.press("c")
+        await until(pilot, lambda: states()["do"] == "done")
+    async with LabApp(made).run_test(size=SMALL) as pilot:
+        again = await ready(pilot)
+        await until(pilot, lambda: again.panel_area.shown("chart"))
+
+
+@pytest.mark.usefixtures("home")
 async def test_arrow_keys_move_the_robot_when_another_lesson_begins(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -453,20 +459,3 @@ async def test_arrow_keys_move_the_robot_when_another_lesson_begins(tmp_path: Pa
         assert code is not None and code.has_focus_within
         app.lesson.open("sensor-eyes")
         await until(pilot, lambda: app.focused is app.panel_area.world)
-
-
-@pytest.mark.parametrize(
-    ("at", "text"),
-    [(0, "Q types"), (0, "Y shows hint"), (1, "d edits the program, R runs it"), (1, "M shows the steps")],
-)
-def test_keys_that_need_escape_first_are_called_so(at: int, text: str, tmp_path: Path) -> None:
-    lesson = opened(tmp_path).lesson
-    assert lesson is not None
-    view = LessonView(lesson, tuple(StepState.OPEN for _ in lesson.steps), at, done=lesson.steps[0])
-    lines = draw_lesson(view, at, 0, 80, 60, Away.LOG).lines
-    assert f"escape, then {text}" in "\n".join("".join(part for part, _ in line) for line in lines)
-
-
-def test_the_editor_has_a_key_of_its_own_that_runs_the_program(tmp_path: Path) -> None:
-    lines = draw_lesson(_lesson_view(tmp_path, at=1), 1, 0, 80, 60, Away.EDITOR).lines
-    assert "ctrl+r runs the program." in ["".join(part for part, _ in line) for line in lines]

@@ -395,7 +395,7 @@ def built_in_cases() -> Iterator[Case]:
         yield Case(f"built in goals of {task}", ("batch", "--goals", task, task, "--seeds", "0"))
         yield Case(f"built in world of {task}", ("run", f"{task}_goals.toml"))
     for at, program in enumerate(BRICK_PROGRAMS):
-        for words in ((), ("--json",), ("--out", "r.toml")):
-            yield Case(f"built in {at} of a brick {words}", ("robots", "--from", "p.py", *words), {"p.py": program})
+        for more in ((), ("--json",), ("--out", "r.toml")):
+            yield Case(f"built in {at} of a brick {more}", ("robots", "--from", "p.py", *more), {"p.py": program})
     for lesson in range(1, 17):
         yield Case(f"built in lesson {lesson}", ("learn", "open", str(lesson)))

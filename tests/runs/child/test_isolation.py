@@ -11,7 +11,7 @@ import pytest
 
 from tests.conftest import ROOT, Command
 from tests.isolated import needs_isolation, refusal
-from tests.marking.right import HOPS
+from tests.marks.right import HOPS
 from tuisim.batch.execute import execute
 from tuisim.batch.task import Task
 from tuisim.core.spec import RunSpec

@@ -21,24 +21,8 @@ from tuisim.runs.run_folder import field_files
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
 
-SURROUNDINGS = {
-    "modules": "print(sorted(sys.modules))",
-    "environment": "print(sorted(os.environ.items()))",
-    # Another test may replace a file of the cache, which is then "(deleted)".
-    "files": "print(sorted(os.path.basename(os.path.realpath(f'/proc/self/fd/{fd}')).partition(':')[0]"
-    ".partition(' ')[0] for fd in os.listdir('/proc/self/fd') if os.path.exists(f'/proc/self/fd/{fd}')))",
-    "limits": "print([resource.getrlimit(getattr(resource, n)) for n in dir(resource) if n.startswith('RLIMIT')])",
-    "random": "print(random.random(), os.urandom(4), hash('a'), uuid.uuid4())",
-    "interpreter": "print(sys.flags, sys.path, list(map(type, sys.meta_path)), gc.get_threshold(), gc.isenabled())",
-    "signals": "print([(n, type(signal.getsignal(n))) for n in range(1, 32)], signal.pthread_sigmask(0, []))",
-    "session": "print(os.getcwd(), os.getsid(0) == os.getpid(), os.getpgrp() == os.getpid(), os.umask(0o77))",
-    "threads": "print(threading.active_count(), _thread._count(), os.listdir('/proc/self/task') == [str(os.getpid())])",
-    "times": "print(time.time(), time.process_time(), datetime.datetime.now())",
-}
-IMPORTS = "import datetime, gc, os, random, resource, signal, sys, threading, time, uuid, _thread\n"
 
-
-def _printed(text: str, of_many: bool = False, prelude: str = "none") -> list[str]:
+def printed(text: str, of_many: bool = False, prelude: str = "none") -> list[str]:
     spec, store = build_run_spec(Settings({"seed": 3, "noise.light": 10})), RunStore()
     program = Program("p.py", text, prelude=prelude)
     handle = RunHandle(program, spec, field_files(spec), RunOptions(), store, of_many=of_many)
@@ -46,20 +30,6 @@ def _printed(text: str, of_many: bool = False, prelude: str = "none") -> list[st
     assert handle.ended is not None
     assert handle.ended.end == "finished", handle.ended.error
     return [row.text for row in handle.output.all_rows()]
-
-
-@pytest.mark.quick_cases("modules-preloaded", "environment-preloaded", "random-preloaded")
-@pytest.mark.parametrize("prelude", ["none", "preloaded"])
-@pytest.mark.parametrize("name", SURROUNDINGS)
-def test_a_program_cannot_tell_how_it_was_started(name: str, prelude: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    # The kept one may be older than a limit of this process.
-    process.cool_down()
-    text = (IMPORTS if name != "modules" else "import os, sys\n") + SURROUNDINGS[name]
-    _printed("print('prepares the template')", True, prelude)
-    forked = _printed(text, False, prelude), _printed(text, True, prelude)
-    monkeypatch.setattr(process, "_fork", lambda *_: None)
-    alone = _printed(text, False, prelude)
-    assert forked == (alone, alone)
 
 
 def _start(text: str = "import time\ntime.sleep(1e6)\n") -> RunHandle:
@@ -80,7 +50,7 @@ def warm(monkeypatch: pytest.MonkeyPatch) -> Iterator[WarmProcess]:
 def test_without_its_warm_process_a_run_is_started_by_itself(warm: WarmProcess) -> None:
     os.kill(warm._process.pid, signal.SIGKILL)
     warm._process.wait()
-    assert _printed("print('on')") == ["on"]
+    assert printed("print('on')") == ["on"]
 
 
 def test_a_run_whose_warm_process_was_killed_is_not_left_behind(warm: WarmProcess) -> None:
@@ -152,19 +122,6 @@ def test_a_program_that_harms_its_parent_does_not_keep_the_next_one_from_running
     over(start("print('A: 1')"))
     over(start(f"import os, signal\nos.kill(os.getppid(), signal.{harm})"))
     assert over(start("print('A: 1')")).lines == ["A: 1"]
-
-
-@pytest.mark.usefixtures("real_mats", "home")
-def test_a_template_does_not_keep_a_damaged_mat() -> None:
-    text = "print(colorLeft.reflected_light_intensity_pc)"
-    (seen,) = _printed(text, True, "preloaded")
-    files = field_files(build_run_spec(Settings({"seed": 3, "noise.light": 10})))
-    for path in (files.pixels, *(path for _, path in files.sums)):
-        # In place: the template has mapped it.
-        with path.open("r+b") as stream:
-            stream.write(bytes(path.stat().st_size))
-    assert _printed(text, True, "preloaded") == [seen]
-    assert float(seen) > 0
 
 
 @pytest.mark.parametrize("text", ["print(1)", "1 / 0", "import os; os._exit(3)", "while True: pass"])

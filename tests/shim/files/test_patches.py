@@ -1,47 +1,17 @@
-"""The device files, through everything that reaches files: tables of checks, each run as one program in the child."""
+"""The device files, through everything that reaches files."""
 
 from __future__ import annotations
 
-import pytest
-
-from tests.shim.checking import Table, differences
+from tests.shim.checking import Table, Tables, cases, check
 from tests.shim.conftest import RunOn
-from tests.shim.files.table_files import PATHS, READS, WAITS
+from tests.shim.files.table_files import WAITS
 
-TABLES: dict[str, tuple[Table, str]] = {
-    "paths": (PATHS, "default"),
-    "reads and writes": (READS, "default"),
-    "waits": (WAITS, "plain"),
-}
-"""By name: table, robot."""
+TABLES: Tables = {"waits": (WAITS, "plain", "empty")}
 
 
-@pytest.mark.parametrize(("table", "robot"), TABLES.values(), ids=TABLES)
-def test_table(run_on: RunOn, table: Table, robot: str) -> None:
-    done = run_on(table.program, robot, presses=table.presses)
-    assert "\n".join(differences(table, done.lines)) == ""
-
-
-READINGS = """
-import time
-from ev3dev2.motor import LargeMotor
-from ev3dev2.sensor.lego import ColorSensor, GyroSensor, UltrasonicSensor
-motor, parts = LargeMotor('outB'), [ColorSensor('in2'), UltrasonicSensor(), GyroSensor()]
-
-def cost(call):
-    start = time.monotonic_ns()
-    call()
-    return time.monotonic_ns() - start
-
-for device, name in [(motor, 'position'), (motor, 'state'), *((part, 'value0') for part in parts)]:
-    with open(f'{device._path}/{name}') as file:
-        print(cost(lambda: device.get_attr_string(None, name)) == cost(file.read) > 1_000_000)
-"""
-
-
-@pytest.mark.parametrize("profile", ["robolab", "ev3"])
-def test_reading_a_file_costs_what_the_library_costs(run_on: RunOn, profile: str) -> None:
-    assert run_on(READINGS, "default", profile=profile).lines == ["True"] * 5
+@cases(TABLES)
+def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
+    check(run_on, table, robot, world)
 
 
 IN_THE_SHELL = """

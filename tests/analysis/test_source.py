@@ -1,0 +1,47 @@
+"""Where a log comes from, and the notes that are kept with it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.app.analyser.logs import long_log, model_of
+from tuisim.analysis.model import Model
+from tuisim.analysis.source import LogRequest, Note, OpenedLog, notes_of_file, read_notes, write_notes
+from tuisim.errors import LogError
+
+
+def test_notes_are_kept_with_a_file(tmp_path: Path, home: Path) -> None:
+    file = tmp_path / "log.csv"
+    file.write_text("time,value\n0,1\n")
+    opened = OpenedLog(LogRequest(file=str(file)), long_log())
+    model = Model(opened)
+    model.add_note("second", 2.0, 3.0, "Colour", 0)
+    model.add_note("first", 1.0, 1.0, "", 0)
+    assert [note.text for _, note in Model(opened).notes] == ["first", "second"]
+    file.write_text("time,value\n0,1\n1,2\n")
+    assert len(Model(opened).notes) == 2
+    model.drop_note(*model.notes[0])
+    assert [note.text for _, note in Model(opened).notes] == ["second"]
+    assert [path.parent for path in home.rglob("*.jsonl")] == [home / "notes"]
+
+
+def test_a_log_from_a_pipe_keeps_no_notes() -> None:
+    with pytest.raises(LogError, match="cannot be kept"):
+        model_of(long_log()).add_note("text", 0.0, 0.0, "", 0)
+
+
+def test_damaged_notes_are_said_with_their_row(tmp_path: Path) -> None:
+    place = tmp_path / "notes.jsonl"
+    write_notes(place, [Note("ü\nx", 0.5, 1.5, "Colour")])
+    assert read_notes(place) == (Note("ü\nx", 0.5, 1.5, "Colour"),)
+    place.write_bytes(place.read_bytes() + b"{}\n")
+    with pytest.raises(LogError, match="not a note") as caught:
+        read_notes(place)
+    assert "2" in str(caught.value)
+
+
+def test_notes_of_a_missing_file_are_said(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match="cannot be read"):
+        notes_of_file(tmp_path / "none.csv")

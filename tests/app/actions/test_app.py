@@ -1,0 +1,111 @@
+"""Panels, help and the end of the app, by keys."""
+
+from __future__ import annotations
+
+import re
+from functools import partial
+
+import pytest
+
+from tests.app.app_help import LOGS, lab, notices, ready, screen_text, settings, until
+from tuisim.app.actions.keys import ACTIONS
+from tuisim.app.app import LabApp
+from tuisim.app.panels import PANELS, TerminalSize
+
+SIZES = [(80, 24), (120, 40), (200, 60)]
+
+
+@pytest.mark.slow
+async def test_every_panels_key_shows_and_hides_it() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(200, 60)) as pilot:
+        app = await ready(pilot)
+        for panel in PANELS.values():
+            at_first = TerminalSize.LARGE in panel.sizes
+            assert app.panel_area.shown(panel.id) is at_first, panel.id
+            for shown in (not at_first, at_first):
+                await pilot.press(panel.key)
+                assert app.panel_area.shown(panel.id) is shown, panel.id
+                await pilot.pause()
+                assert bool(re.search(f"[─━] {panel.title}", screen_text(app))) is shown, panel.id
+
+
+@pytest.mark.slow
+async def test_a_panel_that_its_key_opens_takes_the_focus_and_gives_it_back() -> None:
+    panels = PANELS.keys() - {"world", "output"}
+    async with LabApp(settings(LOGS, panels_off=frozenset(panels))).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+
+        def has_focus(panel: str) -> bool:
+            return app.focused is not None and app.panel_area.panels[panel] in app.focused.ancestors_with_self
+
+        for panel in panels:
+            await pilot.press(PANELS[panel].key)
+            await until(pilot, partial(app.panel_area.shown, panel), panel)
+            # Those that hear no keys leave the focus where it is.
+            deaf = panel in ("instrumentation", "arrays", "controls")
+            await until(pilot, partial(has_focus, "world" if deaf else panel), panel)
+            await pilot.press(PANELS[panel].key)
+            await until(pilot, partial(has_focus, "world"), panel)
+            assert not app.panel_area.shown(panel), panel
+
+
+@pytest.mark.slow
+async def test_help_has_as_many_columns_as_there_is_room_for() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=SIZES[0]) as pilot:
+        app = await ready(pilot)
+        groups = {"In the code", *(action.group for action in ACTIONS.values())}
+
+        def top() -> str:
+            """The row in which each column begins with the name of a group."""
+            return next((row for row in screen_text(app).split("\n") if re.search(r" {3}Program  ", row)), "")
+
+        def has_columns(count: int) -> bool:
+            return sum(f" {group}  " in top() for group in groups) == count
+
+        for columns, size in zip((1, 1, 2), SIZES, strict=True):
+            await pilot.resize_terminal(*size)
+            await pilot.press("question_mark")
+            await until(pilot, partial(has_columns, columns), str(size))
+            await pilot.press("escape")
+
+
+@pytest.mark.slow
+async def test_a_panel_without_room_takes_the_place_of_another() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("X", "H")
+        assert app.panel_area.shown("positioning")
+        assert app.panel_area.shown("controls")
+        assert not app.panel_area.shown("instrumentation")
+        assert "Simulator controls replaces Instrumentation (i)" in notices(app)
+        await pilot.press("H")
+        assert app.panel_area.shown("instrumentation")
+
+
+@pytest.mark.slow
+async def test_switched_off_stays_off_in_every_size() -> None:
+    off = settings(LOGS, panels_off=frozenset({"world"}), panels_on=frozenset({"arrays", "no such panel"}))
+    async with LabApp(off).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        assert app.panel_area.shown("arrays")
+        await pilot.resize_terminal(200, 60)
+        await until(pilot, lambda: app.panel_area.shown("chart"))
+        assert not app.panel_area.shown("world")
+
+
+async def test_quit_without_a_run_asks_nothing() -> None:
+    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        await pilot.press("q")
+        assert not lab(pilot).is_running or lab(pilot)._exit
+
+
+async def test_nothing_is_opened_while_the_app_ends() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        app.exit()
+        # What was typed quickly after q, and what was to be done soon after the start.
+        for action in ("open", "runs", "panel-settings", "breaks", "analyse"):
+            app.action_act(action)
+        app._begin()
+        assert len(app.screen_stack) == 1

@@ -1,0 +1,39 @@
+"""Opening a program by its path."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from textual.widgets import Input
+
+from tests.app.app_help import notices, ready, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.snapshot import RunPhase
+
+
+@pytest.mark.slow
+async def test_opening_a_program_by_its_path(tmp_path: Path) -> None:
+    path = tmp_path / "mine.py"
+    path.write_text("# %%sim_magic_preloaded -b Square -x 500\nprint(1)\n")
+    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("o")
+        entry = app.screen.query_one(Input)
+        entry.focus()
+        entry.value = str(path)
+        await pilot.press("enter")
+        await until(pilot, lambda: app.run_controller.mat is not None and app.run_controller.mat.name == "Square")
+        assert app.run_controller.program is not None
+        assert app.run_controller.program.name == "mine.py"
+        assert app.run_controller.pose.x_mm == 500
+        assert app.run_controller.state == RunPhase.IDLE
+
+
+async def test_a_program_that_is_not_there_is_a_notice(tmp_path: Path) -> None:
+    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        app.loader.open_file(str(tmp_path / "none.py"))
+        await pilot.pause()
+        assert "there is no such program" in notices(app)[0]
+        assert app.run_controller.program is None

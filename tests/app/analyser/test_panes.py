@@ -1,0 +1,76 @@
+"""The panes of the analyser as lines: table, bands, statistics, notes, runs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from tests.app.analyser.logs import long_log, model_of
+from tuisim.analysis.model import Model
+from tuisim.app.analyser.panes import pane_lines
+from tuisim.logs.columns import guess_columns
+from tuisim.logs.log import Log
+
+LEVELS = (100.0, 86.27, 50.2, 0.0)
+
+
+def stepped(rows: int, band_samples: int) -> pa.Table:
+    values = np.array(LEVELS)[np.arange(rows) // band_samples % len(LEVELS)]
+    return pa.table({"time": np.arange(rows) / 100.0, "Colour": values})
+
+
+def test_of_many_bands_those_around_the_chosen_one_are_shown() -> None:
+    table = stepped(12_000, 8)
+    model = model_of(Log("test", table, guess_columns(table)))
+    model.find_bands(model.unsearched())
+    assert len(model.bands()) == 1500
+    shown = ["".join(part for part, _ in line) for line in pane_lines("bands", model, 1250, 80, 20)]
+    numbers = [int(line.split()[1]) for line in shown[1:12]]
+    assert 1251 in numbers and numbers == list(range(numbers[0], numbers[0] + 11))
+    assert "4 levels" in " ".join(shown)
+
+
+def text_of(model: Model, pane: str = "table", width: int = 100, height: int = 30) -> str:
+    lines = pane_lines(pane, model, 0, width, height)
+    return "\n".join("".join(text for text, _ in line) for line in lines)
+
+
+def test_a_row_without_the_name_of_its_variable_is_shown_all_the_same() -> None:
+    table = pa.table({"variable": ["A", None, "A"], "value": [1.0, 2.0, 3.0], "time": [0.0, 1.0, 2.0]})
+    model = model_of(Log("test", table, guess_columns(table)))
+    model.go_to_row(1)
+    assert (model.trace_of_row(1).name, model.cursor_s) == ("A", 2.0)
+    assert "2" in text_of(model)
+
+
+def test_a_narrow_table_shows_the_chosen_column() -> None:
+    model = model_of(long_log())
+    model.rows.choose(5)
+    assert "y_mm" in text_of(model, width=30).splitlines()[0]
+
+
+@pytest.mark.parametrize(
+    ("pane", "words"),
+    [
+        ("table", "Colour"),
+        ("bands", "stays at a level"),
+        ("statistics", "mean"),
+        ("notes", "No notes yet"),
+        ("runs", "This log is a file"),
+    ],
+)
+@pytest.mark.parametrize("size", [(20, 1), (48, 9), (130, 40)], ids=str)
+def test_every_pane_fits_its_size(pane: str, words: str, size: tuple[int, int]) -> None:
+    model = model_of(long_log())
+    model.find_bands(model.unsearched())
+    text = text_of(model, pane, *size)
+    assert len(text.splitlines()) <= max(size[1], 3)
+    if size[0] == 130:
+        assert words in text
+
+
+def test_an_empty_log_says_how_to_make_one() -> None:
+    log = long_log()
+    model = model_of(type(log)("none", log.table.slice(0, 0), log.layout))
+    assert "print('Colour: '" in text_of(model)

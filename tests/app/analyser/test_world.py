@@ -1,0 +1,72 @@
+"""The world beside a log: which logs have one, and where the robot is in it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pyarrow as pa
+import pytest
+
+from tests.runs.run_recorder import begun
+from tuisim.analysis.source import LogRequest, OpenedLog
+from tuisim.app.analyser.world import has_poses, world_at
+from tuisim.core.geometry import Pose
+from tuisim.core.profile import ROBOLAB
+from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.core.tree import to_plain
+from tuisim.logs.columns import guess_columns
+from tuisim.logs.log import Log
+from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
+
+SPEC = RunSpec(RobotSpec(), WorldSpec(start=Pose(300, 500, 0)), ROBOLAB)
+POSES: dict[str, list[float | None]] = {"x_mm": [1.0, 2.0], "y_mm": [3.0, 4.0], "heading_deg": [5.0, None]}
+
+
+def opened(metadata: dict[str, object], **columns: list[float | None]) -> OpenedLog:
+    """A file with metadata."""
+    table = pa.table({"time": [0.0, 1.0], "light": [1.0, 2.0], **columns})
+    return OpenedLog(LogRequest(file="a.csv"), Log("a.csv", table, guess_columns(table), metadata=metadata))
+
+
+@pytest.fixture
+def run(home: Path) -> StoredRun:
+    """A run of half a second in two lines."""
+    recorder = begun(RunStore(), SPEC)
+    recorder.drive(360, 360, 20, line=3)
+    recorder.drive(0, 0, 30, line=4)
+    return recorder.end()
+
+
+@pytest.mark.parametrize(
+    ("log", "has"),
+    [
+        (opened({"runs": [to_plain(SPEC)]}, **POSES), True),
+        (opened({"runs": [{**to_plain(SPEC), "run": 1, "program": "p.py"}]}, **POSES), True),
+        (opened({"runs": [to_plain(SPEC)]}, x_mm=POSES["x_mm"]), False),
+        (opened({"runs": [{"robot": 3}]}, **POSES), False),
+        (opened({}, **POSES), False),
+    ],
+    ids=["poses", "as exported", "no heading", "damaged", "nothing known"],
+)
+def test_a_file_has_a_world_if_it_says_which(log: OpenedLog, has: bool) -> None:
+    assert has_poses(log) is has
+    assert (world_at(log, 0) is not None) is has
+
+
+def test_the_pose_of_a_file_is_that_of_its_row(home: Path) -> None:
+    world = world_at(opened({"runs": [to_plain(SPEC)]}, **POSES), 0)
+    assert world is not None
+    assert [world.at(float(row), row).instant.pose for row in (0, 1)] == [Pose(1, 3, 5), Pose(2, 4, 0)]
+
+
+def test_of_a_stored_run_every_instant_is_known(run: StoredRun) -> None:
+    table = pa.table({"time": [0.0], "light": [1.0]})
+    log = OpenedLog(LogRequest(runs=(run.id,)), Log("run", table, guess_columns(table)), runs=(run,))
+    world = world_at(log, 0)
+    assert world is not None and has_poses(log)
+    assert [world.at(time_s, 0).line for time_s in (0.1, 0.4)] == [3, 4]
+    assert world.at(0.1, 0).instant.pose.x_mm < world.at(0.4, 0).instant.pose.x_mm
+    # Before the first and after the last tick stand the ends.
+    assert world.at(-5.0, 0).instant.pose == SPEC.world.start
+    assert world.at(99.0, 0).instant.tick == 50

@@ -1,0 +1,118 @@
+"""The editor's text area: keys, gutter, light, finding."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.app.app_help import until
+from tests.app.code_help import TEXT, CodeApp, alone
+from tests.app.panel_help import moment, screen_text
+
+Keys = list[str]
+
+
+@pytest.mark.quick_cases("letters*", "typing", "redo", "outdent", "comment", "after*", "cut*")
+@pytest.mark.parametrize(
+    ("keys", "after"),
+    [
+        (["x", "R", "space"], TEXT),
+        (["enter", "x"], "x" + TEXT),
+        (["enter", "x", "escape", "y"], "x" + TEXT),
+        (["enter", "x", "ctrl+z"], TEXT),
+        (["enter", "x", "ctrl+z", "ctrl+y"], "x" + TEXT),
+        (["enter", "tab"], "    " + TEXT),
+        (["enter", "shift+down", "shift+down", "tab"], "    " + TEXT.replace("for", "    for")),
+        (["down", "down", "enter", "shift+tab"], TEXT.replace("    ", "")),
+        (["enter", "ctrl+underscore"], "# " + TEXT),
+        (["down", "enter", "end", "enter", "p"], TEXT.replace(":\n", ":\n    p\n")),
+        (["down", "down", "down", "enter", "i", "f", "colon", "enter", "p"], TEXT + "if:\n    p"),
+        (["down", "down", "enter", "home", "backspace"], TEXT.replace("    ", "")),
+        (["down", "down", "enter", "home", "right", "backspace"], TEXT.replace("    p", "    ")),
+        (["down", "enter", "ctrl+a", "x"], "x"),
+        (["enter", "ctrl+end", "x"], TEXT + "x"),
+        (["down", "enter", "end", "ctrl+home", "x"], "x" + TEXT),
+        (["enter", "shift+end", "ctrl+x", "down", "ctrl+v"], "\nprint('A: 1')" + TEXT.split("\n", 1)[1]),
+    ],
+    ids=[
+        "letters are no text", "typing", "escape ends it", "undo", "redo", "tab", "indent", "outdent",
+        "comment", "indented line", "after a colon", "backspace in an indent", "backspace in code", "select all",
+        "end of the text", "start of the text", "cut and paste",
+    ],
+)  # fmt: skip
+async def test_keys_change_the_text(keys: Keys, after: str) -> None:
+    async with CodeApp().run_test(size=(60, 12)) as pilot:
+        _, area = await alone(pilot)
+        await pilot.press(*keys)
+        assert area.program_text == after
+
+
+async def test_no_line_is_wrapped_and_the_rest_is_scrolled_to() -> None:
+    app = CodeApp()
+    async with app.run_test(size=(30, 12)) as pilot:
+        await alone(pilot, "colorLeft.reflected_light_intensity_pc\nprint(1)\n")
+        await until(pilot, lambda: [row.split()[0] for row in screen_text(app)[:2]] == ["1", "2"])
+        assert screen_text(app)[0].endswith("…")
+        await pilot.press("enter", "end")
+        await until(pilot, lambda: "intensity_pc" in screen_text(app)[0])
+        await pilot.press("escape")
+        await until(pilot, lambda: "1 colorLeft" in screen_text(app)[0])
+
+
+async def test_the_gutter_shows_marks_and_tells_of_clicks() -> None:
+    app = CodeApp()
+    async with app.run_test(size=(60, 12)) as pilot:
+        code, area = await alone(pilot)
+        code.set_marks({1: "●", 2: "◆"})
+        code.mark_error(3)
+        code.show(moment(line=1))
+        await pilot.pause()
+        text = "\n".join(strip.text.rstrip() for strip in app.screen._compositor.render_strips())
+        assert text.splitlines()[:3] == [
+            "●▶ 1 print('A: 1')",
+            "◆  2 for n in range(3):",
+            " ✗ 3     print('B: ' + str(n))",
+        ]
+        await pilot.click(area, offset=(2, 1))
+        await pilot.click(area, offset=(2, 9))
+        await pilot.click(area, offset=(9, 2))
+        assert app.wishes == [2]
+        assert code.cursor_line == 3
+
+
+async def test_a_line_is_lit_only_while_it_is_the_one_that_runs() -> None:
+    app = CodeApp()
+    async with app.run_test(size=(60, 12)) as pilot:
+        code, area = await alone(pilot)
+        code.set_running(TEXT)
+        code.show(moment(line=2))
+        await pilot.press("down", "enter", "x")
+        await pilot.pause()
+        assert "▶" not in "".join(area.render_line(y).text for y in range(4))
+        assert str(code.border_subtitle).startswith("running text differs")
+        await pilot.press("backspace")
+        await pilot.pause()
+        assert area.render_line(1).text.startswith(" ▶ 2")
+        assert "differs" not in str(code.border_subtitle)
+
+
+async def test_finding_goes_round_and_says_where_it_is() -> None:
+    app = CodeApp()
+    async with app.run_test(size=(60, 12)) as pilot:
+        code, area = await alone(pilot)
+        await pilot.press("ctrl+f", *"print")
+        await pilot.pause()
+        assert area.selected_text == "print"
+        assert code.cursor_line == 1
+        await pilot.press("enter")
+        await pilot.pause()
+        assert code.cursor_line == 3
+        assert "2 of 2" in app.screen._compositor.render_strips()[-1].text
+        await pilot.press("down")
+        await pilot.pause()
+        assert code.cursor_line == 1
+        await pilot.press("escape", "shift+f3")
+        await pilot.pause()
+        assert code.cursor_line == 3
+        await pilot.press("ctrl+g", "2", "enter")
+        await pilot.pause()
+        assert code.cursor_line == 2

@@ -1,0 +1,45 @@
+"""Breakpoints and light of a program that is edited while it runs."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.app.app_help import notices, ready, settings, until
+from tuisim.app.app import LabApp
+
+TURNS = """\
+import time
+n = 0
+while True:
+    n = n + 1
+    time.sleep(0.05)
+    m = n
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("home")
+async def test_breakpoints_and_light_stay_on_their_lines_when_a_held_program_is_edited() -> None:
+    async with LabApp(settings(TURNS, speed=0.0)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+
+        def at(line: int) -> bool:
+            return app.debugger.view is not None and app.debugger.view.paused.line == line
+
+        await pilot.press("n")
+        await until(pilot, lambda: at(1))
+        app.debugger.toggle_line(6)
+        await pilot.press("d", "ctrl+home", "#", "enter", "escape")
+        assert app.debugger.texts == ("7",)
+        assert app.panel_area.code is not None
+        area = app.panel_area.code._area
+        await until(pilot, lambda: area._lit == 2)
+        await pilot.press("space")
+        await until(pilot, lambda: at(6) and area._lit == 7)
+        # The cursor is on a line that the run does not have, then on one that it has elsewhere.
+        area.move_cursor((0, 0))
+        await pilot.press("L")
+        assert "This line is not in the running text" in notices(app)
+        area.move_cursor((4, 0))
+        await pilot.press("L")
+        await until(pilot, lambda: at(4) and area._lit == 5)

@@ -1,0 +1,75 @@
+"""Colours of a program, and what is wrong with it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tuisim.app.editor.syntax import Colouring, mistake_in, spans
+from tuisim.config.program_file import programs
+
+
+@pytest.mark.parametrize(
+    ("line", "before", "parts", "after"),
+    [
+        ("while x:  # go", "", [("while", "keyword"), ("# go", "comment")], ""),
+        ("def run(a):", "", [("def", "keyword"), ("run", "name")], ""),
+        ("print(x1, 0x1F, 2.5e-3)", "", [("print", "name"), ("0x1F", "number"), ("2.5e-3", "number")], ""),
+        ("x = rb'a\\'b' + \"#\"", "", [("rb'a\\'b'", "string"), ('"#"', "string")], ""),
+        ("x = '''a # b", "", [("'''a # b", "string")], "'''"),
+        ("c''' + 1", "'''", [("c'''", "string"), ("1", "number")], ""),
+        ('still """ in', "'''", [('still """ in', "string")], "'''"),
+        ('"""a""" """b', "", [('"""a"""', "string"), ('"""b', "string")], '"""'),
+        ("x = 'open", "", [("'open", "string")], ""),
+        ("", '"""', [], '"""'),
+    ],
+    ids=["keyword", "def", "numbers", "strings", "opens", "closes", "other quotes", "twice", "unclosed", "empty"],
+)
+def test_parts_of_a_line_and_the_state_after_it(
+    line: str, before: str, parts: list[tuple[str, str]], after: str
+) -> None:
+    found, state = spans(line, before)
+    assert [(line[start:end], kind) for start, end, kind in found] == parts
+    assert state == after
+
+
+def test_an_edit_changes_the_colours_of_the_lines_below() -> None:
+    lines = ["a = 1", "b = 2", "c = 3"]
+    colouring = Colouring()
+    assert colouring.of(lines, 2) == [(4, 5, "number")]
+    lines[0] = "'''"
+    colouring.forget(0)
+    assert colouring.of(lines, 2) == [(0, 5, "string")]
+
+
+@pytest.mark.parametrize("path", [pytest.param(each.path, id=each.name) for each in programs()])
+def test_every_example_is_coloured_in_order_and_without_overlap(path: Path) -> None:
+    lines = path.read_text(encoding="utf-8").split("\n")
+    colouring = Colouring()
+    for at, line in enumerate(lines):
+        ends = [0, *(edge for start, end, _ in colouring.of(lines, at) for edge in (start, end)), len(line)]
+        assert ends == sorted(ends)
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ("x = 1\n", None, ""),
+        ("%%sim_magic_preloaded -b Grey_bands\nprint(colorLeft)\n", None, ""),
+        ("x = 1\nif x\n    pass\n", 2, "line 2: expected ':'"),
+        ("return 3\n", 1, "line 1: 'return' outside function"),
+        ("# %%sim_magic -b\n", 0, "-b"),
+        ("assert (1, 'x is \\d')\n", None, ""),
+        ("x = " + "(" * 500 + ")" * 500, 1, "nested"),
+    ],
+    ids=["good", "magic", "syntax", "outside", "wrong magic", "warning", "deep"],
+)
+def test_what_is_wrong_with_a_program(text: str, line: int | None, words: str) -> None:
+    found = mistake_in(text, "p.py")
+    if line is None:
+        assert found is None
+    else:
+        assert found is not None
+        assert found.line == line
+        assert words in found.message

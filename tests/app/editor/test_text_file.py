@@ -1,0 +1,90 @@
+"""A file of a program: its form, links, drafts."""
+
+from __future__ import annotations
+
+import codecs
+import os
+import stat
+from pathlib import Path
+
+import pytest
+
+from tuisim.app.editor.text_file import (
+    FOLDER,
+    Form,
+    drop_draft,
+    find_draft,
+    is_protected,
+    keep_draft,
+    read_text,
+    write_text,
+)
+from tuisim.config.program_file import programs
+from tuisim.errors import ConfigError
+
+
+@pytest.mark.parametrize(
+    ("data", "form"),
+    [
+        (b"x = 1\ny = 2\n", Form()),
+        (b"x = 1\r\ny = 2\r\n", Form(newline="\r\n")),
+        (b"x = 1\ry = 2", Form(newline="\r")),
+        (codecs.BOM_UTF8 + "x = 'é'\n".encode(), Form(has_mark=True)),
+        ("# -*- coding: iso-8859-1 -*-\nx = 'é'\n".encode("latin-1"), Form(encoding="iso-8859-1")),
+        ("x = '\x0c\u2028'\n".encode(), Form()),
+        (b"", Form()),
+    ],
+    ids=["plain", "windows", "mac", "mark", "latin", "odd breaks", "empty"],
+)
+def test_a_file_is_written_back_as_it_was(data: bytes, form: Form, tmp_path: Path) -> None:
+    path = tmp_path / "p.py"
+    path.write_bytes(data)
+    path.chmod(0o640)
+    text, found = read_text(path)
+    assert found == form
+    write_text(path, text, found)
+    assert path.read_bytes() == data
+    assert stat.S_IMODE(path.stat().st_mode) == 0o640
+
+
+def test_what_the_encoding_lacks_leaves_the_file_alone(tmp_path: Path) -> None:
+    path = tmp_path / "p.py"
+    path.write_bytes(b"# coding: latin-1\n")
+    text, form = read_text(path)
+    with pytest.raises(ConfigError, match="cannot be written"):
+        write_text(path, text + "x = '→'\n", form)
+    assert path.read_bytes() == b"# coding: latin-1\n"
+    assert os.listdir(tmp_path) == ["p.py"]
+
+
+def test_a_link_stays_a_link(tmp_path: Path) -> None:
+    path, link = tmp_path / "p.py", tmp_path / "link.py"
+    path.write_text("1\n")
+    link.symlink_to(path)
+    write_text(link, "2\n", Form())
+    assert link.is_symlink()
+    assert path.read_text() == "2\n"
+
+
+def test_examples_are_protected_and_own_programs_are_not(tmp_path: Path) -> None:
+    assert is_protected(programs()[0].path)
+    assert not is_protected(tmp_path / "p.py")
+
+
+def test_a_draft_is_found_until_it_is_dropped(home: Path) -> None:
+    keep_draft("/a/p.py", "x = '\ud800é'\n")
+    keep_draft("/a/q.py", "y")
+    found = find_draft("/a/p.py")
+    assert found is not None
+    assert found.text == "x = '\ud800é'\n"
+    drop_draft("/a/p.py")
+    assert find_draft("/a/p.py") is None
+    assert find_draft("/a/q.py") is not None
+
+
+@pytest.mark.parametrize("content", [b"", b"{", b"[]", b'{"path": 3}', b"\xff"])
+def test_what_is_no_draft_is_none(content: bytes, home: Path) -> None:
+    keep_draft("/a/p.py", "x")
+    (file,) = (home / FOLDER).iterdir()
+    file.write_bytes(content)
+    assert find_draft("/a/p.py") is None

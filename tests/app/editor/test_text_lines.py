@@ -1,0 +1,95 @@
+"""Lines of a text: changes, places, and the same lines in an edited text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from tuisim.app.editor import text_lines
+from tuisim.app.editor.text_lines import MOST_COMPARED, LineMap, code_line
+
+
+@pytest.mark.parametrize(
+    ("line", "code"), [(1, 4), (2, 4), (3, 4), (4, 4), (5, 0)], ids=["magic", "comment", "blank", "code", "end"]
+)
+def test_a_breakpoint_is_on_the_next_line_of_code(line: int, code: int) -> None:
+    assert code_line(["%%sim_magic", "  # words", "", "x = 1  # more", "# the end"], line) == code
+
+
+@pytest.mark.parametrize(
+    ("run", "shown", "to_shown"),
+    [
+        ("abc", "abc", [1, 2, 3]),
+        ("abc", "xabc", [2, 3, 4]),
+        ("abc", "axc", [1, 0, 3]),
+        ("abcd", "xbyd", [0, 2, 0, 4]),
+        ("abcdef", "acxdef", [1, 0, 2, 4, 5, 6]),
+        ("aaa", "aaaa", [1, 2, 3]),
+        ("abc", "", [0, 0, 0]),
+        ("", "abc", []),
+    ],
+    ids=["same", "one before", "one changed", "two changed", "out and in", "alike", "all gone", "all new"],
+)
+def test_lines_in_common(run: str, shown: str, to_shown: list[int]) -> None:
+    lines = LineMap(run, shown)
+    assert [lines.to_shown(line) for line in range(1, len(run) + 1)] == to_shown
+    assert all(lines.to_run(there) == line for line, there in enumerate(to_shown, 1) if there)
+    assert lines.to_shown(0) == lines.to_run(0) == lines.to_shown(len(run) + 1) == 0
+
+
+def test_of_a_text_that_is_all_new_only_its_ends_are_compared() -> None:
+    many = [str(number) for number in range(MOST_COMPARED + 1)]
+    lines = LineMap(["first", *many, "last"], ["first", "new", *many[::-1], "last"])
+    assert (lines.to_shown(1), lines.to_shown(len(many) + 2)) == (1, len(many) + 3)
+    assert lines.to_shown(5) == 0
+
+
+@pytest.mark.parametrize(
+    ("line", "indent"),
+    [
+        ("while x:", "    "),
+        ("    if x:  # why", "        "),
+        ("x = '#:'", ""),
+        ("    return 3", ""),
+        ("        pass", "    "),
+        ("f(", "    "),
+        ("    x = 1", "    "),
+        ("", ""),
+    ],
+)
+def test_the_indentation_after_a_line(line: str, indent: str) -> None:
+    assert text_lines.indent_after(line) == indent
+
+
+@pytest.mark.parametrize(
+    ("change", "before", "after"),
+    [
+        (text_lines.indented, ["a", "", "  b"], ["    a", "", "      b"]),
+        (text_lines.outdented, ["    a", "  b", "      c", "\td", "e"], ["a", "b", "    c", "d", "e"]),
+        (text_lines.comment_toggled, ["  a", "", "    b"], ["  # a", "", "  #   b"]),
+        (text_lines.comment_toggled, ["  # a", "", "  #   b", "#c"], ["  a", "", "    b", "c"]),
+        (text_lines.comment_toggled, ["# a", "b"], ["# # a", "# b"]),
+        (text_lines.comment_toggled, ["", " "], ["", " "]),
+    ],
+    ids=["in", "out", "comment", "code", "mixed", "empty"],
+)
+def test_lines_are_changed(change: Callable[[list[str]], list[str]], before: list[str], after: list[str]) -> None:
+    assert change(before) == after
+
+
+@pytest.mark.parametrize(
+    ("wanted", "found"),
+    [("speed", [(0, 0), (1, 4)]), ("Speed", [(1, 4)]), ("(", [(1, 9)]), ("", []), ("nothing", [])],
+)
+def test_places_of_a_text(wanted: str, found: list[tuple[int, int]]) -> None:
+    assert text_lines.places(["speed = 3", "x = Speed(1)"], wanted) == found
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "count"),
+    [("a\nb\nc", "a\nb\nc", 0), ("a\nb\nc", "a\nx\nc", 1), ("a", "a\nb\nc", 2), ("", "a", 1)],
+    ids=["same", "changed", "added", "from nothing"],
+)
+def test_how_many_lines_differ(one: str, other: str, count: int) -> None:
+    assert text_lines.differing_lines(one, other) == count

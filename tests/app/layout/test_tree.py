@@ -1,0 +1,64 @@
+"""The tree of the screen: what its nodes need, and where they are placed."""
+
+from __future__ import annotations
+
+import pytest
+
+from tuisim.app.layout.tree import (
+    MIN_COLS,
+    Axis,
+    PanelBox,
+    PanelLayout,
+    Split,
+    fair_rows,
+    ideal_rows,
+    joined,
+    least_columns,
+    least_rows,
+    panels_of,
+    place,
+)
+from tuisim.app.panels import PANELS
+
+BESIDE = Split(Axis.COLUMNS, ("chart", "output"), (0.5, 0.5))
+ABOVE = Split(Axis.ROWS, ("world", BESIDE))
+
+
+def test_a_single_part_stays_as_it_is() -> None:
+    assert joined(Axis.ROWS, ["chart"]) == "chart"
+
+
+def test_parts_side_by_side_get_shares_by_their_weights() -> None:
+    node = joined(Axis.COLUMNS, ["world", "chart"])
+    assert isinstance(node, Split)
+    world, chart = PANELS["world"].weight, PANELS["chart"].weight
+    assert node.shares == pytest.approx((world / (world + chart), chart / (world + chart)))
+
+
+def test_what_a_node_needs_is_added_along_its_axis() -> None:
+    assert panels_of(ABOVE) == ("world", "chart", "output")
+    assert least_columns(ABOVE) == least_columns(BESIDE) == 2 * MIN_COLS
+    deepest = max(PANELS["chart"].min_rows, PANELS["output"].min_rows)
+    assert least_rows(ABOVE) == PANELS["world"].min_rows + deepest
+
+
+def test_the_world_is_shown_well_in_the_shape_of_the_mat() -> None:
+    assert fair_rows(ABOVE, 80) == ideal_rows(80) + max(PANELS["chart"].fair_rows, PANELS["output"].fair_rows)
+
+
+@pytest.mark.parametrize("size", [(60, 18), (80, 24), (200, 60)], ids=str)
+def test_boxes_fill_the_screen_without_overlap(size: tuple[int, int]) -> None:
+    layout = PanelLayout()
+    place(ABOVE, PanelBox(0, 0, *size), layout)
+    cells = [
+        (x, y)
+        for box in layout.boxes.values()
+        for x in range(box.x, box.x + box.width)
+        for y in range(box.y, box.y + box.height)
+    ]
+    assert len(cells) == len(set(cells)) == size[0] * size[1]
+
+
+def test_rows_go_to_the_world_first_and_then_to_what_is_wanted_most() -> None:
+    layout = PanelLayout(wanted=("chart",))
+    assert [layout.rank(node) for node in (ABOVE, "chart", "output")] == [-1, 0, 1]

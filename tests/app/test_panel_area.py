@@ -1,0 +1,82 @@
+"""Every size of terminal: nothing is cut, and the world is as large as its panel allows."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import pytest
+from rich.cells import cell_len
+from textual.widget import Widget
+from textual.widgets import Static
+
+from tests.app.app_help import LOGS, ready, screen_text, settings, until
+from tests.app.layout.test_arrangement_presets import KEYS, SIZES
+from tuisim.app.app import LabApp
+from tuisim.app.panels.world import WorldView
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.protocol import End
+
+USERS = frozenset({"code", "output"})
+"""Panels with the user's own text, whose lines may be longer than any panel."""
+CUT = re.compile(r"\S…")
+"""The end of a text that was cut; `go to …` is a text of its own."""
+in_each_size = pytest.mark.parametrize("size", [*SIZES, (40, 12)], ids=lambda size: f"{size[0]}x{size[1]}")
+
+
+def cut(app: LabApp) -> Iterator[str]:
+    """Yield each text on the screen that is not shown in full."""
+    for name, box in app.panel_area.arrangement.boxes.items():
+        panel = app.panel_area.panels[name]
+        if name not in USERS and CUT.search(text_of(app, panel)):
+            yield f"{name}: " + next(line for line in text_of(app, panel).split("\n") if CUT.search(line))
+        for title in (panel.border_title, panel.border_subtitle):
+            if name not in USERS and title and cell_len(str(title)) > box.width - 6:
+                yield f"{name}: {title}"
+        for text in panel.query(Static):
+            if text.region and not fits(text):
+                yield f"{name}: {text.render()}"
+
+
+def text_of(app: LabApp, panel: Widget) -> str:
+    x, y, width, height = panel.region
+    return "\n".join(line[x : x + width] for line in screen_text(app).split("\n")[y : y + height])
+
+
+def fits(text: Static) -> bool:
+    size = text.content_size
+    return text.get_content_height(size, size, size.width) <= size.height and (
+        size.height > 1 or text.get_content_width(size, size) <= size.width
+    )
+
+
+@in_each_size
+@pytest.mark.slow
+async def test_nothing_is_cut_in_any_layout(size: tuple[int, int]) -> None:
+    async with LabApp(settings(LOGS, autorun=True, speed=0.0)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.run_controller.snapshot().end == End.FINISHED)
+        for keys in ((), *((key,) for key in KEYS.values())):
+            await pilot.press(*keys)
+            await pilot.pause(0.2)
+            assert list(cut(app)) == [], keys
+
+
+@pytest.mark.quick_cases("80x24", "120x40", "40x12")
+@in_each_size
+async def test_the_world_is_as_large_as_its_panel(size: tuple[int, int]) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        view = app.query_one(WorldView)
+        await until(pilot, lambda: view._port is not None)
+        port = view._port
+        assert port is not None
+        cell = view.cell_for(view.graphics)
+        columns, rows = FIELD_WIDTH_MM / port.mm_per_px / cell.cols, FIELD_HEIGHT_MM / port.mm_per_row / cell.rows
+        # The whole mat, with one of its sides as long as the panel's, within a cell.
+        assert columns <= view.size.width + 1 and rows <= view.size.height + 1
+        assert columns >= view.size.width - 1 or rows >= view.size.height - 1
+        assert columns / rows == pytest.approx(2 * FIELD_WIDTH_MM / FIELD_HEIGHT_MM, rel=0.02)
+        # The panel has the shape of the mat, but for the row of the time bar; below 60 columns it is the screen.
+        if size[0] >= 60:
+            assert columns * rows >= 0.8 * view.size.width * (view.size.height - 1)

@@ -1,0 +1,41 @@
+"""What the panels tell the app."""
+
+from __future__ import annotations
+
+import pytest
+from textual.widgets import Input, Static
+
+from tests.app.app_help import LOGS, ready, settings, until
+from tuisim.app.app import LabApp
+from tuisim.core.geometry import Pose
+
+
+@pytest.mark.slow
+async def test_bad_position_is_refused_with_a_reason() -> None:
+    async with LabApp(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
+        for field, typed, message in (
+            ("x", "abc", "X: a number from -10000 to 10000, not 'abc'"),
+            ("x", "nan", "X: a number from -10000 to 10000, not 'nan'"),
+            ("x", "150", "Enter places the robot"),
+            ("y", "1e9", "Y: a number from -10000 to 10000, not '1e9'"),
+            ("y", "500", "Enter places the robot"),
+            ("angle", "", "Angle: a number from -36000 to 36000, not 'nothing'"),
+        ):
+            entry = app.query_one(f"#{field}", Input)
+            entry.focus()
+            entry.value = typed
+            await pilot.press("enter")
+            await pilot.pause()
+            assert str(app.query_one("Positioning #message", Static).render()) == message
+            assert app.run_controller.pose == Pose(150, 500, 0)
+
+
+async def test_good_position_is_applied() -> None:
+    async with LabApp(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
+        app.query_one("#x", Input).focus()
+        await pilot.press("4", "0", "0", "comma", "5", "enter")
+        await until(pilot, lambda: app.run_controller.pose == Pose(400.5, 500, 0))

@@ -1,0 +1,109 @@
+"""One task of a batch: what becomes of it, and what is kept."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tests.batch.test_pool import LOGS, task
+from tests.running import over
+from tuisim.batch.execute import _prepared, execute
+from tuisim.batch.task import Keep
+from tuisim.errors import LogError
+from tuisim.goals.judgement import GoalState
+from tuisim.goals.spec import FinishCondition, Goal, ReachCondition
+from tuisim.runs import temporary
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.store import RunStore
+
+ENDS = {
+    "finished": ("print('A: 1')", 0, ""),
+    "raised": ("x = 1\n1 / 0", 1, "ZeroDivisionError"),
+    "crashed": ("import os, signal\nos.kill(os.getpid(), signal.SIGKILL)", 1, ""),
+    "output_limit": ("while True: print('x' * 1000000)", 0, ""),
+    "stalled": ("import signal\nsum(range(10**12))", 1, ""),
+}
+
+
+def test_a_task_gives_what_a_single_run_gives(tmp_path: Path) -> None:
+    one = task(LOGS, 5, keep=Keep.ALL)
+    result = execute(one, tmp_path)
+    handle = start_run(one.program, one.spec, one.options)
+    over(handle)
+    kept = RunStore().load_run(result.run_id)
+    for view in ("telemetry.bin", "output.bin"):
+        assert (kept.folder / view).read_bytes() == (handle.folder / view).read_bytes()
+    assert kept.end == handle.ended
+    assert result.variables["Light"].count == 10
+
+
+def test_a_prepared_mat_that_was_deleted_is_prepared_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    _prepared.cache_clear()
+    for home in ("first", "second"):
+        monkeypatch.setenv("TUISIM_HOME", str(tmp_path / home))
+        assert execute(task("x = 1"), tmp_path).end == "finished"
+        shutil.rmtree(tmp_path / home)
+
+
+@pytest.mark.slow_cases("output_limit", "stalled")
+@pytest.mark.parametrize("end", ENDS)
+def test_each_end_is_a_result(end: str, tmp_path: Path) -> None:
+    text, code, error = ENDS[end]
+    options = RunOptions(stall_limit_s=0.2 if end == "stalled" else 60.0)
+    result = execute(task(text, prelude="none", options=options), tmp_path)
+    assert (result.end, result.exit_code) == (end, code)
+    assert error in result.error
+    assert result.run_id == ""
+
+
+@pytest.mark.parametrize(("text", "kept"), [("x = 1", False), ("1 / 0", True)], ids=["met", "missed"])
+def test_failed_runs_are_kept(text: str, kept: bool, tmp_path: Path) -> None:
+    goals = (Goal(name="end", condition=FinishCondition()),)
+    result = execute(task(text, goals=goals, keep=Keep.FAILED), tmp_path)
+    assert bool(result.run_id) is kept
+    assert (result.judgements[0].state is GoalState.MET) is not kept
+
+
+OWN_FILES = """
+import os, shutil
+links = ['/proc/self/fd/' + name for name in os.listdir('/proc/self/fd')]
+files = [os.readlink(link) for link in links if os.path.exists(link)]
+own = [file for file in files if 'tmp_path' in file and file.endswith('.bin')]
+"""
+
+
+HARM = {
+    "writes into its recording": ("open(own[0], 'r+b').write(bytes(range(1, 60)))", "falsified", 1),
+    "writes and crashes": ("open(own[0], 'r+b').write(bytes(range(1, 60)))\nos.kill(os.getpid(), 9)", "falsified", 1),
+    "deletes its recording": ("shutil.rmtree(os.path.dirname(own[0]))", "falsified", 0),
+}
+
+
+@pytest.mark.parametrize(("harm", "end", "judged"), HARM.values(), ids=HARM)
+def test_a_program_that_damages_its_recording_gets_a_result(tmp_path: Path, harm: str, end: str, judged: int) -> None:
+    text = OWN_FILES.replace("tmp_path", tmp_path.name) + harm
+    result = execute(task(text, goals=(Goal("far", ReachCondition(x_mm=1000, y_mm=100)),)), tmp_path)
+    assert (result.end, [one.state for one in result.judgements]) == (end, [GoalState.MISSED] * judged)
+
+
+def test_a_mat_that_does_not_exist_is_a_result(tmp_path: Path) -> None:
+    one = task("x = 1")
+    world = replace(one.spec.world, background="Nowhere")
+    result = execute(replace(one, spec=replace(one.spec, world=world)), tmp_path)
+    assert result.end == ""
+    assert "Nowhere" in result.error
+
+
+def test_a_run_without_a_folder_is_told(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match=r"missing: no folder for temporary runs can be created: No such file"):
+        execute(task("print(1)"), tmp_path / "missing")
+
+
+def test_a_run_whose_folder_is_gone_is_not_started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(temporary, "RUN_FILE", "missing/run.json")
+    result = execute(task("print(1)"), tmp_path)
+    assert (result.end, result.exit_code) == ("", 2)
+    assert "cannot be written: No such file" in result.summary

@@ -1,0 +1,66 @@
+"""Curves as rows of characters, and one variable against another."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tuisim.charts.canvas import Curve, canvas, seen_points, xy_lines
+
+RED, BLUE = (255, 0, 0), (0, 0, 255)
+
+
+def curve(values: list[float], rgb: tuple[int, int, int] = RED, marker: str = "o") -> Curve:
+    return Curve(np.arange(len(values), dtype=float), np.array(values), rgb, marker)
+
+
+def text(rows: list[list[tuple[str, tuple[int, int, int] | None]]]) -> list[str]:
+    return ["".join(part for part, _ in row) for row in rows]
+
+
+def test_rows_have_the_width_and_values_their_heights() -> None:
+    rows = text(canvas([curve([0.0, 5.0, 10.0])], 9, 3, (0.0, 2.0), (0.0, 10.0)))
+    assert rows == ["        o", "    o    ", "o        "]
+
+
+def test_the_topmost_curve_is_the_last() -> None:
+    level = [5.0] * 4
+    (row,) = canvas([curve(level), curve(level, BLUE)], 4, 1, (0.0, 3.0), (0.0, 10.0))
+    assert {rgb for part, rgb in row if part.strip()} == {BLUE}
+
+
+def test_without_points_the_canvas_is_empty() -> None:
+    assert text(canvas([curve([])], 5, 2, (0.0, 1.0), (0.0, 1.0))) == [" " * 5] * 2
+
+
+def test_braille_joins_its_dots() -> None:
+    rows = text(canvas([curve([0.0, 10.0], marker="braille")], 10, 4, (0.0, 1.0), (0.0, 10.0)))
+    assert all(any(char not in " ⠀" for char in row) for row in rows)
+
+
+def test_of_neighbours_at_one_dot_the_first_is_kept() -> None:
+    xs, ys = np.array([0.0, 0.001, 10.0, 10.0]), np.array([0.0, 0.001, 10.0, 10.0])
+    found = seen_points(xs, ys, ((0.0, 10.0), (0.0, 10.0)), 10, 5)
+    assert [one.tolist() for one in found] == [[0.0, 10.0], [0.0, 10.0]]
+
+
+def test_a_path_to_and_fro_gives_each_dot_once() -> None:
+    xs = np.tile([0.0, 10.0], 50)
+    found, _ = seen_points(xs, np.zeros(100), ((0.0, 10.0), (-1.0, 1.0)), 4, 4)
+    assert sorted(found.tolist()) == [0.0, 10.0]
+
+
+def test_one_variable_against_another_has_a_title_and_marks_the_point() -> None:
+    values = np.array([0.0, 1.0, 2.0, np.nan])
+    lines = xy_lines(values, values, 1, ("x", "y"), RED, "o", 20, 10)
+    assert lines[0][0][0] == "y against x"
+    here = [part for line in lines for part, style in line if style.bgcolor is not None and style.bold]
+    assert len(here) == 1
+    assert not any(style.bgcolor for line in xy_lines(values, values, None, ("x", "y"), RED, "o", 20, 10)
+                   for _, style in line)  # fmt: skip
+
+
+@pytest.mark.parametrize("ys", [np.full(3, np.nan), np.array([np.nan, 1.0, np.nan])], ids=["none", "not together"])
+def test_samples_that_have_not_both_are_told(ys: np.ndarray) -> None:
+    lines = xy_lines(np.array([1.0, np.nan, 2.0]), ys, None, ("x", "y"), RED, "o", 20, 10)
+    assert lines[1][0][0] == "no sample has both"

@@ -1,0 +1,41 @@
+"""Tables of a log on the command line."""
+
+from __future__ import annotations
+
+import json
+from io import StringIO
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from tests.conftest import Command
+
+
+@pytest.fixture
+def log(tmp_path: Path) -> Path:
+    """A log of two variables."""
+    path = tmp_path / "two.csv"
+    path.write_text("time,left,right\n" + "".join(f"{at / 2},{at},{10 - at}\n" for at in range(10)))
+    return path
+
+
+def test_summary(here: Command, log: Path) -> None:
+    left, right = json.loads(here("log", "summary", str(log), "--json").stdout)
+    assert (left["variable"], left["count"], left["mean"], left["max"]) == ("left", 10, 4.5, 9.0)
+    assert (right["min"], right["first_s"], right["last_s"]) == (1.0, 0.0, 4.5)
+
+
+def test_reckoning_without_noise_is_exact(here: Command) -> None:
+    here("run", "square")
+    assert pd.read_csv(StringIO(here("log", "reckon", "last").stdout)).error_mm.max() < 1.0
+    here("run", "square", "-M", "300")
+    assert pd.read_csv(StringIO(here("log", "reckon", "last").stdout)).error_mm.max() < 1000.0
+
+
+def test_json_has_every_digit(here: Command, tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("time,v\n0,0.30000000000000004\n300000,1.3\n300000,inf\n")
+    rows = [json.loads(line) for line in here("log", "derive", str(path), "--json").stdout.splitlines()]
+    assert [row["value"] for row in rows] == [0.1 + 0.2, 1.3, None]
+    assert rows[0]["derivative"] == (1.3 - (0.1 + 0.2)) / 3e5

@@ -1,0 +1,52 @@
+"""What `tuisim doctor` judges of what it has found."""
+
+from __future__ import annotations
+
+import pytest
+
+from tuisim.commands.system import diagnosis
+from tuisim.commands.system.diagnosis import Finding, State, prevents_use
+from tuisim.config.options import CellSet
+
+OK, ADVICE, PROBLEM = State
+
+
+JUDGED: dict[str, tuple[Finding, State, str]] = {
+    "terminal without a kind": (diagnosis.terminal_finding("", "dumb", is_remote=False), ADVICE, "export TERM="),
+    "terminal": (diagnosis.terminal_finding("kitty(0.40)", "xterm-kitty", is_remote=True), OK, ""),
+    "no terminal": (diagnosis.no_terminal_finding(), ADVICE, "tuisim run"),
+    "16 colours": (diagnosis.colors_finding("16", is_remote=False), ADVICE, "COLORTERM=truecolor"),
+    "256 colours over ssh": (diagnosis.colors_finding("256", is_remote=True), ADVICE, "SSH does not send"),
+    "8 colours by TERM": (diagnosis.colors_finding("8", is_remote=True, is_fixed=True), ADVICE, "--colors"),
+    "truecolor": (diagnosis.colors_finding("truecolor", is_remote=False), OK, ""),
+    "ascii": (diagnosis.cells_finding(CellSet.ASCII), ADVICE, "LANG=C.UTF-8"),
+    "ascii by LC_ALL": (diagnosis.cells_finding(CellSet.ASCII, "", "LC_ALL=C"), ADVICE, "export LC_ALL=C.UTF-8"),
+    "ascii by TERM": (diagnosis.cells_finding(CellSet.ASCII, "dumb", "LANG=C.UTF-8"), ADVICE, "TERM=dumb"),
+    "quadrants": (diagnosis.cells_finding(CellSet.QUADRANT), OK, "Press V"),
+    "octants": (diagnosis.cells_finding(CellSet.OCTANT), OK, ""),
+    "too small": (diagnosis.size_finding(59, 40), ADVICE, "60 × 18"),
+    "small": (diagnosis.size_finding(80, 23), ADVICE, "80 × 24"),
+    "size": (diagnosis.size_finding(80, 24), OK, ""),
+    "locale C": (diagnosis.locale_finding("LC_ALL=C", "UTF-8"), ADVICE, "export LC_ALL=C.UTF-8"),
+    "locale unset": (diagnosis.locale_finding("", "UTF-8"), OK, ""),
+    "no answer": (diagnosis.latency_finding(None), ADVICE, "--cells"),
+    "slow": (diagnosis.latency_finding(0.3), ADVICE, "--fps"),
+    "fast": (diagnosis.latency_finding(0.02), OK, ""),
+    "old Python": (diagnosis.python_finding((3, 10, 4), "python"), PROBLEM, "3.11"),
+    "Windows": (diagnosis.system_finding("Windows", "11"), PROBLEM, "WSL"),
+    "macOS": (diagnosis.system_finding("Darwin", "23"), ADVICE, "untested"),
+    "home": (diagnosis.home_finding("home", "cannot be written"), PROBLEM, "TUISIM_HOME"),
+    "large store": (diagnosis.store_finding(9, 3 * 10**9, 10**12), ADVICE, "runs rm"),
+    "full disk": (diagnosis.store_finding(0, 0, 10**6), ADVICE, "almost full"),
+    "no mats": (diagnosis.assets_finding("no folder"), PROBLEM, "TUISIM_ASSETS"),
+    "package missing": (diagnosis.dependency_findings([("numpy", "", "")])[1], PROBLEM, "Install tuisim again"),
+    "package of another version": (diagnosis.dependency_findings([("a", "1.0", "2.0")])[1], PROBLEM, "a==1.0"),
+}
+
+
+@pytest.mark.parametrize(("finding", "state", "advice"), JUDGED.values(), ids=JUDGED)
+def test_each_finding_says_what_to_do(finding: Finding, state: State, advice: str) -> None:
+    assert finding.state is state
+    assert advice in finding.advice
+    assert bool(finding.advice) or state is OK
+    assert prevents_use([finding]) is (state is PROBLEM)

@@ -1,0 +1,333 @@
+"""`tuisim mark`, the whole command: the class has its expected marks, and nothing of the machine is in the results."""
+
+from __future__ import annotations
+
+import errno
+import io
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+
+from tests.conftest import ROOT, Command
+from tests.marks.student import GOAL_POINTS, GOALS, Student
+from tests.marks.test_sheet import LONG_SHEET
+from tests.marks.the_class import CLASS, write_class
+from tests.running import PATIENCE_S
+from tuisim.batch import execute
+from tuisim.cli import run_command
+from tuisim.commands import mark
+from tuisim.errors import HostError
+from tuisim.marks.outcome import Outcome
+from tuisim.runs.handle import RunHandle
+
+SEEDS = "0,1"
+FEW = ("ada.py", "ben.py", "gustav.py", "raises.py", "empty.py", "zip.py", "viktor")
+PROCESSES_S = 600.0
+
+
+def _few(*names: str) -> tuple[Student, ...]:
+    return tuple(student for student in CLASS if student.name in names)
+
+
+def _command(*words: str) -> list[str]:
+    """Mark a class into files named the same wherever they are."""
+    return [
+        *(sys.executable, "-m", "tuisim", "mark", str(GOALS), "class", "--seeds", SEEDS, "--timeout", "30"),
+        *("--export", "marks.csv", "--export", "marks.parquet", "--export", "marks.html", "--feedback", "feedback"),
+        *words,
+    ]
+
+
+def _mark(folder: Path, home: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TUISIM_HOME": str(home)}
+    return subprocess.run(
+        _command(*words),
+        cwd=folder,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=PROCESSES_S,
+        check=False,
+    )
+
+
+def _results(folder: Path) -> dict[str, bytes]:
+    """Return everything that marking has written, by path."""
+    files = [path for path in folder.rglob("*") if path.is_file() and path.relative_to(folder).parts[0] != "class"]
+    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
+
+
+@pytest.fixture(scope="module")
+def marked(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the class, marked once by one command."""
+    folder = tmp_path_factory.mktemp("marked")
+    write_class(folder / "class")
+    done = _mark(folder, tmp_path_factory.mktemp("home"), "--jobs", "2")
+    assert done.returncode == 0, done.stderr
+    (folder / "stdout.txt").write_text(done.stdout)
+    return folder
+
+
+@pytest.mark.slow
+def test_every_student_of_the_class_has_the_expected_marks(marked: Path) -> None:
+    frame = pd.read_parquet(marked / "marks.parquet").set_index("student")
+    wrong = []
+    for student in CLASS:
+        row = frame.loc[student.row]
+        points = tuple(row[f"goal_{goal}"] for goal in GOAL_POINTS)
+        expected = tuple(0.0 if goal in student.missed else float(most) for goal, most in GOAL_POINTS.items())
+        line = row["line"] if student.line else 0
+        robust = 0.0 if student.missed else 1.0
+        if (points, row["points"], row["robustness"], line) != (expected, student.points, robust, student.line):
+            wrong.append((student.name, points, row["reason"], int(row["line"]), student.why))
+    assert not wrong
+    assert len(frame) == len(CLASS)
+
+
+@pytest.mark.slow
+def test_students_files_are_as_before(marked: Path, tmp_path: Path) -> None:
+    fresh = write_class(tmp_path / "class")
+    files = {path.relative_to(fresh): path.read_bytes() for path in fresh.rglob("*") if path.is_file()}
+    left = {path.relative_to(marked / "class") for path in (marked / "class").rglob("*") if path.is_file()}
+    assert left == set(files)
+    assert all((marked / "class" / path).read_bytes() == content for path, content in files.items())
+
+
+@pytest.mark.slow
+def test_each_failed_run_has_a_report_and_each_student_feedback(marked: Path) -> None:
+    page = (marked / "marks.html").read_text()
+    links = [part.partition('"')[0] for part in page.split('href="')[1:]]
+    assert links and all((marked / link.replace("%20", " ")).is_file() for link in links if "%" not in link)
+    assert "marks-runs/gustav-seed-0.html" in links and not any("ada" in link for link in links)
+    assert len(list((marked / "feedback").iterdir())) == len(CLASS)
+
+
+@pytest.mark.slow
+def test_marking_again_elsewhere_gives_the_same_bytes(marked: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+    folder = tmp_path_factory.mktemp("again")
+    write_class(folder / "class")
+    done = _mark(folder, tmp_path_factory.mktemp("home"), "--jobs", "1")
+    (folder / "stdout.txt").write_text(done.stdout)
+    first, second = _results(marked), _results(folder)
+    assert sorted(first) == sorted(second)
+    assert [name for name in first if first[name] != second[name]] == []
+
+
+@pytest.mark.slow
+def test_an_interrupted_marking_is_resumed(tmp_path: Path) -> None:
+    folder, home = tmp_path / "work", tmp_path / "home"
+    write_class(folder / "class", _few(*FEW, "endless.py"))
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TUISIM_HOME": str(home)}
+    command = subprocess.Popen(_command("--jobs", "1"), cwd=folder, env=environment, stderr=subprocess.PIPE, text=True)
+    give_up = time.monotonic() + PATIENCE_S
+    journals: list[Path] = []
+    while not journals or journals[0].read_bytes().count(b"\n") < 2:
+        assert time.monotonic() < give_up
+        time.sleep(0.01)
+        journals = list((home / "marks").glob("*.jsonl")) if home.exists() else []
+    command.send_signal(signal.SIGINT)
+    said = command.communicate(timeout=PATIENCE_S)[1]
+    done = journals[0].read_bytes().count(b"\n")
+    assert (command.returncode, "with --resume goes on" in said) == (130, True)
+    assert not (folder / "marks.csv").exists()
+    # A run that is known is not run again, so that its line in the journal is the only one.
+    again = _mark(folder, home, "--jobs", "1", "--resume")
+    assert again.returncode == 0, again.stderr
+    lines = [line for line in journals[0].read_bytes().split(b"\n") if line]
+    assert 2 <= done < len(lines) == len({line[:80] for line in lines})
+    resumed = _results(folder)
+    assert _mark(folder, home, "--jobs", "1").returncode == 0
+    assert _results(folder) == resumed
+
+
+def test_a_class_is_marked_as_a_table(tmp_path: Path, here: Command) -> None:
+    write_class(tmp_path / "class", _few("ada.py", "gustav.py", "raises.py", "zip.py"))
+    (tmp_path / "class" / "notes.doc").write_text("")
+    done = here("mark", GOALS, "class", "--seeds", "0", "--jobs", "1", "--keep", "none")
+    assert (done.returncode, done.stdout.splitlines()) == (
+        0,
+        [
+            "student  points  robustness  levels  place  heading  wall  done  reason",
+            "ada      10      100%        4       3      1        1     1",
+            "gustav   7       0%          4       0      1        1     1     "
+            "line 5: At the end the robot was 46 mm from (1750, 500).",
+            "raises   0       0%          0       0      0        0     0     "
+            "ZeroDivisionError: division by zero (line 5)",
+            "zip      0       0%          0       0      0        0     0     "
+            "SyntaxError: Non-UTF-8 code starting with '\\xff', but no encoding declared; save it as UTF-8 (line 1)",
+            "",
+            "4 students, 1 seed: mean 4.25 of 10 points; 1 with all points",
+        ],
+    )
+    assert done.stderr == "note: not marked, because they are no Python programs: notes.doc\n"
+
+
+def test_a_long_name_leaves_the_marks_on_the_screen(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    screen = Terminal()
+    monkeypatch.setattr(sys, "stdout", screen)
+    monkeypatch.setenv("COLUMNS", "80")
+    mark._print(LONG_SHEET, ())
+    heading, row, *_ = screen.getvalue().split("\n")
+    assert (len(heading) <= 80, row.split()[1:]) == (True, ["0", "0%", "0", "0", "0"])
+
+
+BAD = {
+    "no folder": ("goals.toml", "no folder of programs is named (tuisim mark GOALS FOLDER…)"),
+    "no such folder": ("goals.toml clas", "clas: there is no such file or folder"),
+    "folder without programs": ("goals.toml empty", "empty: has no programs"),
+    "goals without a goal": ("world.toml class", "world.toml, line 1: goal: there are no goals"),
+    "no such seeds": ("goals.toml class --seeds 3..x", "--seeds: "),
+    "one seed and many": ("goals.toml class --seed 3", "no such option: --seed (did you mean --seeds"),
+    "a speed": ("goals.toml class --speed 1", "no such option: --speed"),
+    "no workers": ("goals.toml class --jobs 0", "--jobs: must be a whole number from 1 to 1000, got '0'"),
+    "unknown format": ("goals.toml class --export marks.doc", "cannot write marks.doc: unknown format '.doc'"),
+    "page into no folder": ("goals.toml class --export no/marks.html", "there is no folder no"),
+    "a file twice": ("goals.toml class --export m.csv --export ./m.csv", "--export: a file is named twice"),
+    "feedback into a file": ("goals.toml class --feedback goals.toml", "--feedback: goals.toml is no folder"),
+    "unknown mat": ("goals.toml class -b Grey", "no such mat 'Grey'"),
+}
+
+
+@pytest.mark.parametrize(("words", "message"), BAD.values(), ids=BAD)
+def test_bad_input_is_refused_before_anything_is_run(tmp_path: Path, here: Command, words: str, message: str) -> None:
+    write_class(tmp_path / "class", _few("ada.py"))
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "goals.toml").write_bytes(GOALS.read_bytes())
+    (tmp_path / "world.toml").write_text('background = "Loop"\n')
+    before = sorted(tmp_path.rglob("*"))
+    done = here("mark", *words.split())
+    assert (done.returncode, done.stdout, message in done.stderr) == (2, "", True), done.stderr
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_wrong_file_of_a_student_is_named_without_the_path_of_the_class(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "class" / "ada").mkdir(parents=True)
+    (tmp_path / "class" / "ada" / "main.py").write_text("# %%sim_magic -r robot.toml\n")
+    (tmp_path / "class" / "ada" / "robot.toml").write_text("base = 1\n")
+    (tmp_path / "goals.toml").write_text("[[goal]]\nname = 'done'\nfinish = true\n")
+    done = here("mark", "goals.toml", tmp_path / "class", "--seeds", "0")
+    assert ("  robot.toml: base: " in done.stdout, str(tmp_path) in done.stdout) == (True, False), done.stdout
+
+
+UNREADABLE = {
+    "latin-1": "print('grün')\n".encode("latin-1"),
+    "utf-16": "print('grün')\n".encode("utf-16"),
+    "binary": b"\x7fELF\0\1\2\xff",
+    "encoding": b"# coding: klingon\nprint('green')\n",
+    "null": b"print('green')\n\0",
+    "tabs": b"if True:\n\tpass\n        pass\n",
+}
+STILL_GOALS = """
+background = "Empty_Map"
+[[goal]]
+name = "still"
+touch_nothing = true
+[[goal]]
+name = "said"
+print = "green"
+"""
+
+
+def test_a_program_that_cannot_be_read_gets_what_a_syntax_error_gets(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "class").mkdir()
+    for name, content in {**UNREADABLE, "syntax": b"print('green'\n"}.items():
+        (tmp_path / "class" / f"{name}.py").write_bytes(content)
+    (tmp_path / "goals.toml").write_text(STILL_GOALS)
+    done = here("mark", "goals.toml", "class", "--seeds", "0", "--jobs", "1", "--export", "marks.csv")
+    frame = pd.read_csv(tmp_path / "marks.csv").set_index("student")
+    assert (done.returncode, set(frame["points"])) == (0, {1.0}), done.stdout
+    assert all(reason.startswith(("SyntaxError: ", "TabError: ")) for reason in frame["reason"]), done.stdout
+
+
+def test_the_world_of_the_goals_replaces_that_of_a_magic_line(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "class").mkdir()
+    cheat = "# %%sim_magic_preloaded -b Empty_Map -x 1750 -y 500\n"
+    (tmp_path / "class" / "cheat.py").write_text(cheat)
+    done = here("mark", GOALS, "class", "--seeds", "0", "--jobs", "1", "--keep", "none")
+    assert done.stdout.splitlines()[1].split()[:2] == ["cheat", "0"]
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["int", "term"])
+def test_a_signal_ends_a_marking_in_good_order(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], number: int, code: int
+) -> None:
+    def interrupted(*_: object) -> Iterator[tuple[str, Outcome]]:
+        os.kill(os.getpid(), number)
+        yield "ada", Outcome(0, "finished")
+
+    write_class(tmp_path / "class", _few("ada.py"))
+    # Where the command does not handle it, the signal must not end the tests.
+    monkeypatch.setattr(mark, "outcomes_of", interrupted)
+    before = signal.signal(number, lambda *_: None)
+    try:
+        assert run_command(["mark", str(GOALS), str(tmp_path / "class")]) == code
+    finally:
+        signal.signal(number, before)
+    assert "--resume goes on" in capsys.readouterr().err
+
+
+def test_a_program_that_this_machine_cannot_read_is_missing_in_the_marks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_class(tmp_path / "class", _few("ada.py"))
+    (tmp_path / "class" / "eve.py").write_text("print(1)")
+    opened = Path.open
+
+    def fails(path: Path, *how: Any, **more: Any) -> Any:
+        if path.name == "eve.py":
+            raise OSError(errno.EIO, os.strerror(errno.EIO))
+        return opened(path, *how, **more)
+
+    monkeypatch.setattr(Path, "open", fails)
+    assert run_command(["mark", str(GOALS), str(tmp_path / "class"), "--seeds", "0", "--keep", "none"]) == 1
+    said = capsys.readouterr()
+    assert "ada      10      100%" in said.out
+    assert "the marks are without eve: eve.py: cannot be read: Input/output error" in said.err
+
+
+def test_a_run_that_could_not_be_started_is_missing_in_the_marks_until_it_is_resumed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_class(tmp_path / "class", _few("ada.py"))
+    words = ["mark", str(GOALS), str(tmp_path / "class"), "--seeds", "0,1", "--jobs", "1", "--keep", "none"]
+    seeds: list[int] = []
+
+    def started(*of_run: Any, **more: Any) -> RunHandle:
+        spec = of_run[1]
+        seeds.append(spec.seed)
+        if seeds == [0, 1]:
+            raise HostError("the program's process cannot be started: Too many open files")
+        return RunHandle(*of_run, **more)
+
+    monkeypatch.setattr(execute, "RunHandle", started)
+    assert run_command(words) == 1
+    said = capsys.readouterr()
+    assert "ada      10      100%" in said.out
+    assert "this machine could not make 1 run; the marks are without: ada with seed 1" in said.err
+    assert "Too many open files; the same command with --resume" in said.err
+
+    assert run_command([*words, "--resume"]) == 0
+    assert seeds == [0, 1, 1]
+
+
+def test_a_marking_without_a_place_for_copies_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, here: Command
+) -> None:
+    write_class(tmp_path / "class", _few("ada.py"))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "nowhere"))
+    done = here("mark", GOALS, "class", "--jobs", "1")
+    assert (done.returncode, "no folder for temporary runs can be created" in done.stderr) == (2, True), done.stderr

@@ -1,0 +1,164 @@
+"""Attacks on `tuisim mark`: none changes another's mark or reads what is not the attacker's own.
+
+Each class has honest students, too. Their rows must be as in a marking without the attackers.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+import socket
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import ROOT, Command
+from tests.isolated import needs_isolation
+from tests.marks.attackers import ALWAYS, DEEDS, LINKS, RUN_FOLDER, SECRET, TABLES, write_attackers
+from tests.marks.right import HOPS, MAGIC
+from tests.marks.student import GOALS
+
+MOST_S = 600.0
+HONEST = ("ada", "ben", "zoe")
+FINISH = 'title = "Done"\nbackground = "Grey_bands"\n[[goal]]\nname = "finish"\nfinish = true\n'
+Rows = Mapping[str, Mapping[str, str]]
+
+
+@pytest.fixture(params=[pytest.param("--isolate", marks=needs_isolation), "--no-isolate"])
+def isolation(request: pytest.FixtureRequest) -> str:
+    """Marking with and without isolation."""
+    return str(request.param)
+
+
+ATTACKS = [
+    *(pytest.param(table, "--isolate", marks=needs_isolation) for table in TABLES),
+    # Without isolation the other tables are not protected against: see the guide.
+    *((table, "--no-isolate") for table in ALWAYS),
+]
+
+
+def _field(folder: Path, goals: str = "") -> Path:
+    """Make the place of a marking: goals, a secret, and the class with its honest students."""
+    (folder / "class" / "ben").mkdir(parents=True)
+    (folder / "goals.toml").write_text(goals or GOALS.read_text())
+    (folder / "secret.txt").write_text(SECRET)
+    (folder / "class" / "ada.py").write_text(HOPS)
+    (folder / "class" / "ben" / "main.py").write_text(MAGIC + "tank_drive.on_for_rotations(50, 50, 9)\n")
+    (folder / "class" / "zoe.py").write_text("")
+    return folder
+
+
+@pytest.fixture
+def field(tmp_path: Path) -> Path:
+    """The place of a marking."""
+    return _field(tmp_path / "field")
+
+
+def _mark(field: Path, isolation: str, seeds: str = "0") -> tuple[Rows, str]:
+    """Mark the class; return its rows by student, and what was said."""
+    words = ("mark", "goals.toml", "class", "--seeds", seeds, "--timeout", "30", "--jobs", "2", isolation)
+    into = ("--export", "marks.csv", "--export", "marks.html", "--feedback", "told")
+    done = subprocess.run(
+        [sys.executable, "-m", "tuisim", *words, *into],
+        cwd=field,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "TUISIM_HOME": str(field / "home")},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        errors="surrogateescape",
+        timeout=MOST_S,
+    )
+    assert done.returncode == 0, done.stderr
+    with open(field / "marks.csv", newline="") as file:
+        return {row["student"]: row for row in csv.DictReader(file)}, done.stdout + done.stderr
+
+
+@pytest.fixture(scope="module")
+def honest(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Rows]:
+    """The rows of the honest students without attackers, by the way of marking."""
+
+    @cache
+    def marked(isolation: str) -> Rows:
+        return _mark(_field(tmp_path_factory.mktemp("honest") / "field"), isolation)[0]
+
+    return marked
+
+
+def _contents(folder: Path) -> dict[str, bytes]:
+    return {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file() and not path.is_symlink()}
+
+
+def _told(field: Path, said: str) -> bytes:
+    """Return all that a marking has written, and said."""
+    results = [field / "marks.csv", field / "marks.html"]
+    written = [content for name in ("home", "told", "marks-runs") for content in _contents(field / name).values()]
+    return b"\n".join((*written, *(path.read_bytes() for path in results), said.encode()))
+
+
+def _check_others(field: Path, isolation: str, honest: Callable[[str], Rows]) -> tuple[Rows, bytes]:
+    """Mark a class with attackers, and check all that is not their own; return their rows, and what was told."""
+    before = _contents(field / "class"), (field / "goals.toml").read_bytes()
+    rows, said = _mark(field, isolation)
+    assert {name: rows[name] for name in HONEST} == honest(isolation)
+    assert (_contents(field / "class"), (field / "goals.toml").read_bytes()) == before
+    told = _told(field, said)
+    assert SECRET.encode() not in told
+    return {name: row for name, row in rows.items() if name not in HONEST}, told
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("table", "how"), ATTACKS)
+def test_an_attack_changes_no_other_mark_and_reads_nothing_else(
+    field: Path, honest: Callable[[str], Rows], table: str, how: str
+) -> None:
+    write_attackers(field / "class", TABLES[table])
+    rows, told = _check_others(field, how, honest)
+    assert len(rows) == len(TABLES[table])
+    assert not any("GiB'" in row["reason"] or float(row["points"]) for row in rows.values())
+    if table == "memory":
+        assert "more than" in rows["memory in files without a name"]["reason"]
+    if table in ("proc", "files"):
+        assert all("Error" in row["reason"] for row in rows.values())
+    if table == "names":
+        page = (field / "marks.html").read_bytes()
+        assert (b"<img src=x" in page, b"\x1b" in page + told.partition(b"student  ")[2]) == (False, False)
+        assert not any(name.startswith(("=", "+", "-", "@")) for name in rows)
+
+
+def test_a_link_in_a_recording_does_not_end_the_marking(field: Path, here: Command) -> None:
+    attacks = {name: text for name, text in RUN_FOLDER.items() if name == "links in its recording"}
+    write_attackers(field / "class", attacks)
+    done = here("mark", str(field / "goals.toml"), str(field / "class"), "--seeds=0", "--jobs=1", "--no-isolate")
+    assert (done.returncode, SECRET in done.stdout) == (0, False)
+    rows = [line.split()[:2] for line in done.stdout.splitlines()]
+    assert ["ada", "10"] in rows and ["links", "in"] in rows
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("link", LINKS)
+def test_a_link_is_refused_with_and_without_isolation(
+    field: Path, honest: Callable[[str], Rows], isolation: str, link: str
+) -> None:
+    LINKS[link](field / "class")
+    rows, _ = _check_others(field, isolation, honest)
+    assert [(row["points"], "link" in row["reason"]) for row in rows.values()] == [("0.0", True)]
+
+
+@pytest.fixture
+def port() -> Iterator[int]:
+    """A port of this machine that accepts connections."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        yield int(server.getsockname()[1])
+
+
+@pytest.mark.slow
+def test_what_the_guide_says_that_only_isolation_prevents(tmp_path: Path, isolation: str, port: int) -> None:
+    field = _field(tmp_path / "field", FINISH)
+    write_attackers(field / "class", DEEDS, port)
+    rows, _ = _mark(field, isolation)
+    can = {name for name in DEEDS if float(rows[name]["points"])}
+    assert can == (set(DEEDS) if isolation == "--no-isolate" else set())

@@ -1,0 +1,91 @@
+"""Programs that strain what runs them have one end: in every host, and beside whatever else the machine does."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import ROOT
+from tests.hosts import GOALS, HOSTS, MAGIC, Stored, hosted
+from tests.marks.fair import FAIR
+
+QUICK = ("plain", "busy_daemon", "raises", "exits", "condition")
+MOST_S = 900.0
+
+
+def test_there_are_fifty() -> None:
+    assert len(FAIR) == 50
+
+
+@pytest.fixture(scope="module")
+def in_run(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Stored]:
+    """What `tuisim run` makes of them all."""
+    return dict(hosted("run", FAIR, tmp_path_factory.mktemp("run") / "place").runs)
+
+
+@pytest.mark.slow
+def test_each_has_an_end_of_its_own(in_run: dict[str, Stored]) -> None:
+    assert in_run.keys() == FAIR.keys()
+    ends = {"raises": "raised", "raises_a_group": "raised", "a_long_chain": "raised", "endless_recursion": "raised"}
+    assert {name: run.end for name, run in in_run.items()} == {name: ends.get(name, "finished") for name in FAIR}
+    assert {name: run.exit_code for name, run in in_run.items() if run.exit_code not in (0, 1)} == {"exits": 3}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("host", [host for host in HOSTS if host != "run"])
+def test_the_end_is_the_same_in_every_host(host: str, in_run: dict[str, Stored], tmp_path: Path) -> None:
+    found = hosted(host, FAIR, tmp_path / "place").runs
+    assert {name: found.get(name) for name in FAIR if found.get(name) != in_run[name]} == {}
+
+
+@pytest.mark.parametrize("host", ["batch", "mark"])
+def test_a_few_end_the_same(host: str, tmp_path: Path) -> None:
+    few = {name: FAIR[name] for name in QUICK}
+    assert hosted(host, few, tmp_path / "place").runs == hosted("run", few, tmp_path / "run").runs
+
+
+@pytest.fixture
+def busy() -> Iterator[None]:
+    """Four processes that compute all the time."""
+    with ExitStack() as stack:
+        for _ in range(4):
+            process = subprocess.Popen([sys.executable, "-c", "while True: pass"])
+            stack.callback(process.wait)
+            stack.callback(process.kill)
+        yield
+
+
+def _marks(folder: Path, isolation: str) -> bytes:
+    (folder / "class").mkdir(parents=True)
+    for name, text in FAIR.items():
+        (folder / "class" / f"{name}.py").write_text(f"# {MAGIC}\n{text}\n")
+    (folder / "goals.toml").write_text(GOALS)
+    words = ("mark", "goals.toml", "class", "--seeds", "0,1", "--export", "marks.csv", "--keep", "none", isolation)
+    done = subprocess.run(
+        [sys.executable, "-m", "tuisim", *words],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "TUISIM_HOME": str(folder / "home")},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=MOST_S,
+    )
+    assert done.returncode == 0, done.stderr
+    return (folder / "marks.csv").read_bytes()
+
+
+@pytest.fixture(scope="module")
+def idle(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """The marks that the fifty get while the tests run nothing else."""
+    return _marks(tmp_path_factory.mktemp("idle") / "place", "--no-isolate")
+
+
+@pytest.mark.slow
+def test_the_marks_are_the_same_beside_four_busy_processes(idle: bytes, busy: None, tmp_path: Path) -> None:
+    assert _marks(tmp_path / "place", "--no-isolate") == idle

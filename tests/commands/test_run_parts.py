@@ -1,0 +1,195 @@
+"""Robots with further parts, and what an infrared sensor meets, from files on the command line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import Command
+
+ASKS = "from ev3dev2.sensor.lego import {0}\nfrom ev3dev2.sensor import INPUT_1\nprint({0}(INPUT_1))\n"
+
+
+def test_bumper_meets_the_wall_from_robot_and_obstacle_files(here: Command, tmp_path: Path) -> None:
+    (tmp_path / "robot.toml").write_text("ultrasonic = false\n[touch_sensors.nose]\nport = 'in1'\ny_mm = 60\n")
+    (tmp_path / "boxes.toml").write_text("[[obstacle]]\nx_mm = 1000\ny_mm = 400\nwidth_mm = 50\nheight_mm = 400\n")
+    (tmp_path / "prog.py").write_text(
+        "# %%sim_magic_imports -r robot.toml -o boxes.toml -x 600 -y 600 --solid\n"
+        "from ev3dev2.sensor.lego import TouchSensor\n"
+        "tank, nose = MoveTank(OUTPUT_B, OUTPUT_C), TouchSensor(INPUT_1)\n"
+        "tank.on(SpeedPercent(30), SpeedPercent(30))\n"
+        "while not nose.is_pressed:\n    pass\n"
+        "tank.off()\nprint('Pressed:', nose.value())\n"
+        "tank.on_for_rotations(SpeedPercent(-30), SpeedPercent(-30), 0.5)\nprint('Pressed:', nose.value())\n"
+    )
+    done = here("run", "prog.py")
+    assert done.stdout.split() == ["Pressed:", "1", "Pressed:", "0"], done.stderr
+    assert "x 85" in done.stderr
+
+
+WORLD = """
+robot = "Explorer"
+[start]
+x_mm = 500
+y_mm = 500
+heading_deg = 0
+[beacon]
+x_mm = 500
+y_mm = 900
+channel = 2
+[[remote]]
+buttons = ["top_left", "top_right"]
+from_s = 0.5
+until_s = 1.5
+"""
+
+
+def test_beacon_and_remote_of_a_world_file(here: Command, tmp_path: Path) -> None:
+    (tmp_path / "lab.toml").write_text(WORLD)
+    (tmp_path / "prog.py").write_text(
+        "# %%sim_magic_imports\nfrom time import sleep\nfrom ev3dev2.sensor.lego import InfraredSensor\n"
+        "eye = InfraredSensor(INPUT_3)\nprint(eye.heading(2) < 0, eye.distance(1))\n"
+        "for _ in range(3):\n    print(eye.buttons_pressed(1))\n    sleep(0.8)\n"
+    )
+    done = here("run", "lab.toml", "prog.py")
+    assert done.stdout.splitlines() == ["True None", "[]", "['top_left', 'top_right']", "[]"], done.stderr
+
+
+@pytest.mark.parametrize(
+    ("sensor", "robot", "hint"),
+    [
+        ("TouchSensor", "Default_Robot", "in1 lego-ev3-us"),
+        ("UltrasonicSensor", "Explorer", "in1 lego-ev3-touch"),
+    ],
+)
+def test_missing_part_tells_which_ports_have_what(
+    here: Command, tmp_path: Path, sensor: str, robot: str, hint: str
+) -> None:
+    (tmp_path / "prog.py").write_text(ASKS.format(sensor))
+    done = here("run", "prog.py", "-r", robot)
+    assert done.returncode == 1
+    assert f"DeviceNotFound: {sensor}(ev3-ports:in1) is not connected" in done.stderr
+    assert hint in done.stderr
+    assert "line 3" in done.stderr
+
+
+WITHOUT_WHEELS = "left_port = 'outA'\nright_port = 'outD'\nultrasonic = false\n"
+TEAM = (
+    "from ev3dev2.motor import MoveTank, OUTPUT_A, OUTPUT_D\n"
+    "def go():\n    MoveTank(OUTPUT_A, OUTPUT_D).on_for_rotations(20, 20, 1)\n"
+)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from lib import go\ngo()\nprint('Gone')\n",
+        "# %%sim_magic_preloaded\nsay('Gone')\n",
+        "print(colorLeft and 'Gone')",
+    ],
+    ids=["own module", "magic", "another part"],
+)
+def test_prelude_misses_nothing_that_is_not_used(here: Command, tmp_path: Path, text: str) -> None:
+    (tmp_path / "robot.toml").write_text(WITHOUT_WHEELS)
+    (tmp_path / "lib.py").write_text(TEAM)
+    (tmp_path / "prog.py").write_text(text)
+    done = here("run", "prog.py", "-r", "robot.toml")
+    assert (done.returncode, done.stdout.splitlines()[:1]) == (0, ["Gone"]), done.stderr
+
+
+@pytest.mark.parametrize(
+    ("use", "missing"),
+    [
+        ("tank_drive.on(10, 10)", "LargeMotor(ev3-ports:outB)"),
+        ("tank_turn.off()", "LargeMotor(ev3-ports:outB)"),
+        ("x = ultrasonic.distance_centimeters", "UltrasonicSensor(ev3-ports:in1)"),
+        ("ultrasonic.mode = 'US-LISTEN'", "UltrasonicSensor(ev3-ports:in1)"),
+        ("print(ultrasonic)", "UltrasonicSensor(ev3-ports:in1)"),
+        ("hasattr(tank_drive, 'on')", "LargeMotor(ev3-ports:outB)"),
+    ],
+    ids=["call", "other call", "read", "write", "print", "hasattr"],
+)
+def test_missing_part_of_the_prelude_is_told_where_it_is_used(
+    here: Command, tmp_path: Path, use: str, missing: str
+) -> None:
+    (tmp_path / "robot.toml").write_text(WITHOUT_WHEELS)
+    (tmp_path / "prog.py").write_text(f"# %%sim_magic_preloaded -r robot.toml\nprint('First')\n{use}\n")
+    done = here("run", "prog.py")
+    assert (done.returncode, done.stdout) == (1, "First\n")
+    assert f"DeviceNotFound: {missing} is not connected" in done.stderr
+    assert "line 3" in done.stderr
+
+
+BAD = {
+    "no port": ("[touch_sensors.nose]\nx_mm = 1", "touch_sensors.nose.port: is missing"),
+    "a port twice": ("[touch_sensors.nose]\nport = 'in2'", "two sensors are on in2"),
+    "a wheel without a motor": ("[motors]\noutB = false", "motors.outB: drives a wheel"),
+    "no such motor of a wheel": ("[motors]\noutB = 'huge'", "motors.outB: no such value 'huge'"),
+    "an infrared port twice": ("[infrareds.back]\nport = 'in1'", "two sensors are on in1"),
+    "no such motor": ("[motors]\noutA = 'huge'", "motors.outA: no such value 'huge'"),
+    "no such motor port": ("[motors]\nin1 = 'large'", "motors.in1: no such key"),
+    "no such port": ("[infrared]\nport = 'in9'", "no such port 'in9'"),
+    "no such key": ("[touch_sensors.nose]\nport = 'in1'\ndepth = 3", "touch_sensors.nose.depth: no such key"),
+    "no name": ("[ultrasonics.'2nd one']\nport = 'in1'", "is not a valid sensor name"),
+}
+
+
+@pytest.mark.parametrize(("text", "expected"), BAD.values(), ids=BAD)
+def test_wrong_robot_file(tmp_path: Path, text: str, expected: str) -> None:
+    from tuisim.config.robots import load_robot
+    from tuisim.errors import RobotError
+
+    path = tmp_path / "robot.toml"
+    path.write_text(text)
+    with pytest.raises(RobotError) as caught:
+        load_robot(str(path))
+    assert expected in str(caught.value)
+    assert str(path) in str(caught.value)
+
+
+MEDIUM_WHEELS = "ultrasonic = false\n[motors]\noutB = 'medium'\noutC = 'medium'\n"
+DRIVES = """# %%sim_magic -r robot.toml -x 500 -y 500
+from ev3dev2.motor import *
+tank = MoveTank(OUTPUT_B, OUTPUT_C, motor_class=MediumMotor)
+tank.on_for_rotations(SpeedPercent(50), SpeedPercent(50), 2)
+motor = MediumMotor(OUTPUT_B)
+print(motor.driver_name, motor.max_speed, motor.count_per_rot, motor.position)
+tank.on_for_seconds(SpeedPercent(100), SpeedPercent(100), 2.2, brake=False, block=False)
+tank.wait(lambda _: motor.speed == 1560, 4000)
+print(motor.speed, tank.left_motor.max_speed)
+tank.off()
+print(MediumMotor().address)
+try:
+    LargeMotor(OUTPUT_B)
+except Exception as error:
+    print(error)
+"""
+
+
+@pytest.mark.parametrize(
+    ("profile", "position"), [("robolab", "720"), ("ev3", "720"), ("nbev3devsim", "809.6000000000001")]
+)
+def test_wheels_of_medium_motors(here: Command, tmp_path: Path, profile: str, position: str) -> None:
+    (tmp_path / "robot.toml").write_text(MEDIUM_WHEELS)
+    (tmp_path / "prog.py").write_text(DRIVES)
+    done = here("run", "prog.py", "--profile", profile)
+    *values, error = done.stdout.splitlines()
+    assert values == [f"lego-ev3-m-motor 1560 360 {position}", "1560 1560", "ev3-ports:outB"], done.stderr
+    there = "This robot has: outB lego-ev3-m-motor, outC lego-ev3-m-motor."
+    assert error.startswith(f"LargeMotor(ev3-ports:outB) is not connected. {there} ")
+
+
+def test_several_infrared_sensors(here: Command, tmp_path: Path) -> None:
+    (tmp_path / "robot.toml").write_text(
+        "ultrasonic = false\ngyro = false\n[infrared]\nport = 'in1'\n"
+        "[infrareds.back]\nport = 'in4'\nangle_deg = 180\ny_mm = -60\n"
+    )
+    (tmp_path / "prog.py").write_text(
+        "# %%sim_magic -r robot.toml -x 2200 -y 500\n"
+        "from ev3dev2.sensor import INPUT_1, INPUT_4\nfrom ev3dev2.sensor.lego import InfraredSensor\n"
+        "print(InfraredSensor(INPUT_1).proximity, InfraredSensor(INPUT_4).proximity)\n"
+    )
+    done = here("run", "prog.py", "--telemetry", "log.csv")
+    assert done.stdout == "20 100\n", done.stderr
+    assert (tmp_path / "log.csv").read_text().partition("\n")[0].endswith("infrared_proximity,back_proximity,line")

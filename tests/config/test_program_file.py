@@ -1,0 +1,104 @@
+"""What a file of a program holds: its magic line, its prelude, its text; and which file a word names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tuisim.config.program_file import find_magic, find_program, parse_program, prelude_for, programs, read_program
+from tuisim.errors import ConfigError
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "is_comment"),
+    [
+        ("# %%sim_magic_preloaded -x 5\n", 1, True),
+        ("\n# words\n%%sim_magic_preloaded -x 5\nx = 1\n", 3, False),
+        ("'''What it does.'''\n# %sim_magic_preloaded -x 5\n", 2, True),
+    ],
+    ids=["comment", "cell", "below a docstring"],
+)
+def test_a_magic_line_is_found_before_the_first_statement(text: str, line: int, is_comment: bool) -> None:
+    magic = find_magic(text, "p.py")
+    assert magic is not None
+    assert (magic.line, magic.comment, magic.prelude) == (line, is_comment, "preloaded")
+
+
+def test_a_magic_line_below_a_statement_is_a_comment() -> None:
+    assert find_magic("x = 1\n# %%sim_magic_preloaded -x 5\n", "p.py") is None
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("# %%sim_magic_preloded\n", "no such magic"),
+        ("# %%sim_magic -x 'five\n", "cannot be split"),
+        ("# %%sim_magic -x five\n", "-x"),
+    ],
+)
+def test_a_wrong_magic_line_is_told_with_its_place(text: str, said: str) -> None:
+    with pytest.raises(ConfigError) as caught:
+        find_magic("\n" + text, "p.py")
+    assert said in str(caught.value) and "p.py, line 2" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "prelude"),
+    [
+        ("from ev3dev2.motor import LargeMotor\n", "none"),
+        ("def go():\n    import ev3dev2.sensor\n", "none"),
+        ("print(1)\n", "none"),
+        ("tank_drive.off()\n", "preloaded"),
+        ("tank_drive = None\ntank_drive.off()\n", "none"),
+        ("eval(input())\n", "preloaded"),
+        ("tank_drive.on(\n", "preloaded"),
+        ("import ev3dev2\nx = (\n", "none"),
+    ],
+    ids=[
+        "imports",
+        "imports later",
+        "uses nothing",
+        "uses a name",
+        "defines it",
+        "may use any",
+        "broken",
+        "broken one",
+    ],
+)
+def test_a_program_without_a_magic_line_has_the_prelude_that_it_uses(text: str, prelude: str) -> None:
+    assert prelude_for(text) == prelude
+
+
+def test_the_magic_line_of_a_cell_becomes_a_comment() -> None:
+    source = parse_program("%%sim_magic_preloaded\nx = 1\n", "p.py")
+    assert source.program.text == "# %%sim_magic_preloaded\nx = 1\n"
+    assert source.has_magic
+
+
+def test_an_example_is_found_by_its_name_unless_a_file_has_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    example = programs()[0].path
+    assert find_program(example.stem) == find_program(example.name) == example
+    Path(example.name).write_text("")
+    assert find_program(example.name) == Path(example.name)
+    assert find_program("no_such") == Path("no_such")
+
+
+@pytest.mark.parametrize(
+    ("name", "data", "said"),
+    [
+        ("none.py", None, "there is no such program"),
+        ("notes.ipynb", b"{}", "is a notebook"),
+        ("null.py", b"x = 1\0\n", "null characters"),
+        ("bytes.py", b"x = '\xff'\n", "bytes.py"),
+    ],
+)
+def test_what_is_no_program_is_told(name: str, data: bytes | None, said: str, tmp_path: Path) -> None:
+    path = tmp_path / name
+    if data is not None:
+        path.write_bytes(data)
+    with pytest.raises(ConfigError, match=said):
+        read_program(path)
+    if name == "bytes.py":
+        assert read_program(path, as_python=True).program.text == "x = '\udcff'\n"

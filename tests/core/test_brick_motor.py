@@ -1,0 +1,72 @@
+"""Motors of a brick: ramps, ends of moves, and what holds them back."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.core.memory_sink import MemorySink
+from tuisim.core.brick_motor import BrickMotor, ramped
+from tuisim.core.motors import POSITION, STOPPED
+from tuisim.core.profile import PROFILES
+from tuisim.core.simulation import Simulation, simulation_of
+from tuisim.core.spec import MotorSpec, RobotSpec, RunSpec, WorldSpec
+
+
+@pytest.mark.parametrize(
+    ("speed", "target", "step", "after"),
+    [(0, 100, 8, 8), (96, 100, 8, 100), (50, -100, 8, 42), (-96, -100, 8, -100), (7, 7, 8, 7), (0, 100, 0, 100)],
+)
+def test_the_speed_changes_by_a_step_and_not_beyond_its_target(
+    speed: float, target: float, step: float, after: float
+) -> None:
+    assert ramped(speed, target, step) == after
+
+
+def arm(weight: float = 0.0) -> tuple[Simulation, BrickMotor]:
+    robot = RobotSpec(extra_motors=(MotorSpec("outA"),), weight=weight)
+    sim = simulation_of(RunSpec(robot, WorldSpec(), PROFILES["ev3"]), MemorySink())
+    motor = sim.others[0]
+    assert isinstance(motor, BrickMotor)
+    return sim, motor
+
+
+def test_a_move_backwards_ends_at_its_goal() -> None:
+    sim, motor = arm()
+    motor.run_to(-45.0, 200.0, backwards=True)
+    assert motor.aim_dps == -200.0
+    sim.advance(10)
+    assert (round(motor.position_deg, 9), motor.moving_dps, motor.mode) == (-20.0, -200.0, POSITION)
+    sim.advance(20)
+    assert (motor.position_deg, motor.mode) == (-45.0, STOPPED)
+    assert motor.resting
+
+
+def test_a_move_until_a_tick_ends_with_it() -> None:
+    sim, motor = arm()
+    motor.run_until(100.0, 7)
+    sim.advance(20)
+    assert (round(motor.position_deg, 9), motor.mode) == (7.0, STOPPED)
+
+
+def test_the_steeper_of_two_limits_of_a_ramp_does_not_count() -> None:
+    _, motor = arm(weight=0.5)
+    by_weight = motor.ramp_step
+    assert by_weight > 0
+    motor.run(100.0)
+    motor.slowest_ramp_dps2 = 100 * by_weight / 2
+    assert motor.ramp_step == pytest.approx(by_weight / 2)
+    motor.slowest_ramp_dps2 = 100 * by_weight * 2
+    assert motor.ramp_step == by_weight
+
+
+def test_a_wheel_that_is_held_back_has_not_reached_its_goal() -> None:
+    _, motor = arm()
+    motor.run_to(10.0, 100.0, backwards=False)
+    before = motor.state()
+    # As at the end of a tick that has reached it.
+    motor.stop()
+    motor.position_deg = 10.0
+    motor.hold_back(before, 10.0, 0.25)
+    assert (motor.mode, motor.position_deg, motor.target_dps, motor.blocked_ticks) == (POSITION, 2.5, 100.0, 0)
+    motor.hold_back(motor.state(), 10.0, 0.0)
+    assert motor.blocked_ticks == 1

@@ -1,0 +1,105 @@
+"""Columns of tables: as numbers and texts, compared, sorted, named."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from tuisim.core.comparison import Comparison, Operator
+from tuisim.errors import LogError
+from tuisim.logs.arrow import (
+    cell_text,
+    contains,
+    mask_of,
+    numbers_of,
+    sorted_places,
+    texts_array,
+    unique_names,
+    whole_numbers,
+    whole_numbers_of,
+)
+
+NAN = float("nan")
+
+
+def column(*parts: list[Any], kind: pa.DataType | None = None) -> pa.ChunkedArray:
+    return pa.chunked_array([pa.array(part, kind) for part in parts], kind)
+
+
+@pytest.mark.parametrize(
+    ("cells", "expected"),
+    [
+        (column([1.5, None], [2.5]), [1.5, NAN, 2.5]),
+        (column([3, None]), [3.0, NAN]),
+        (column([None, None], kind=pa.float64()), [NAN, NAN]),
+        (column([0.5, None], kind=pa.float32()), [0.5, NAN]),
+        (column([1.0, None, 3.0]).slice(1), [NAN, 3.0]),
+        (pa.chunked_array([], pa.float64()), []),
+    ],
+    ids=["parts", "whole", "nulls", "short", "slice", "empty"],
+)
+def test_a_column_as_numbers(cells: pa.ChunkedArray, expected: list[float]) -> None:
+    np.testing.assert_array_equal(numbers_of(cells), expected)
+
+
+def test_whole_numbers_are_not_copied() -> None:
+    numbers = np.arange(5, dtype=np.int64)
+    assert whole_numbers(numbers).to_pylist() == [0, 1, 2, 3, 4]
+    chunk = pa.array([1, 2, 3], pa.int32()).slice(1)
+    assert whole_numbers_of(chunk).tolist() == [2, 3]
+    assert whole_numbers_of(chunk.slice(2)).tolist() == []
+
+
+def test_texts_that_are_no_utf_8_are_replaced() -> None:
+    assert texts_array(["é", "", "\udcff"]).to_pylist() == ["é", "", "?"]
+
+
+@pytest.mark.parametrize(
+    ("cells", "operator", "value", "expected"),
+    [
+        (column([1, 2, None]), Operator.GREATER, "1.5", [False, True, False]),
+        (column([1_500, 500], kind=pa.duration("ms")), Operator.LESS, "1", [False, True]),
+        (column(["b", "a", None]), Operator.EQUAL, "a", [False, True, False]),
+        (column(["Left", "right"]), Operator.CONTAINS, "LE", [True, False]),
+        (column([12, 3]), Operator.CONTAINS, "2", [True, False]),
+    ],
+    ids=["numbers", "spans", "texts", "part of a text", "part of a number"],
+)
+def test_cells_that_meet_a_condition(
+    cells: pa.ChunkedArray, operator: Operator, value: str, expected: list[bool]
+) -> None:
+    assert mask_of(cells, Comparison("a", operator, value)).tolist() == expected
+
+
+def test_a_number_is_not_compared_with_a_text() -> None:
+    with pytest.raises(LogError, match="'x' is not a number"):
+        mask_of(column([1]), Comparison("a", Operator.LESS, "x"))
+
+
+def test_coded_texts_are_sorted_as_texts() -> None:
+    coded = column(["b", "a", "c"]).dictionary_encode()
+    assert sorted_places(coded, descending=False).tolist() == [1, 0, 2]
+    assert sorted_places(column([3, 1, 2]), descending=True).tolist() == [0, 2, 1]
+    assert contains(coded, "C").tolist() == [False, False, True]
+
+
+@pytest.mark.parametrize(
+    ("cell", "text"),
+    [
+        (pa.scalar(1_234_567, pa.duration("us")), "1.235"),
+        (pa.scalar(None, pa.duration("s")), ""),
+        (pa.scalar(None, pa.string()), ""),
+        (pa.scalar(1 / 3), "0.333333"),
+        (pa.scalar(1_000_000_000), "1000000000"),
+    ],
+    ids=["span", "no span", "nothing", "fraction", "whole"],
+)
+def test_a_cell_as_text(cell: pa.Scalar, text: str) -> None:
+    assert cell_text(cell) == text
+
+
+def test_columns_of_one_name_get_numbers() -> None:
+    assert unique_names(["a", "a", "", "a", "a (2)"]) == ["a", "a (2)", "column 3", "a (3)", "a (2) (2)"]

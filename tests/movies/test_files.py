@@ -1,0 +1,64 @@
+"""Files of movies and pictures: their kinds, what is too large, and what stays when they cannot be written."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tuisim.errors import ConfigError, ExportError
+from tuisim.movies import files
+from tuisim.movies.clip import ClipPanel, Recorded
+from tuisim.movies.files import MOVIE_FORMATS, Clip, check_target, save_movie, save_picture, small_movie
+
+
+@pytest.fixture
+def clip(recorded: Recorded) -> Clip:
+    return Clip(recorded, (ClipPanel.WORLD,), (0.0, 0.5), fps=4.0, size=(160, 160))
+
+
+@pytest.mark.parametrize(("suffix", "magic"), [(".gif", b"GIF8"), (".WEBP", b"RIFF")])
+def test_the_suffix_chooses_the_format(suffix: str, magic: bytes, clip: Clip, tmp_path: Path) -> None:
+    drawn: list[tuple[int, int]] = []
+    path = tmp_path / f"a{suffix}"
+    assert save_movie(clip, path, lambda done, total: drawn.append((done, total))) == path.stat().st_size
+    assert path.read_bytes().startswith(magic)
+    assert drawn[0] == (0, 3) and drawn[-1] == (2, 3)
+
+
+@pytest.mark.parametrize(("suffix", "magic"), [(".png", b"\x89PNG"), (".svg", b"<svg ")])
+def test_a_picture_is_of_pixels_or_of_shapes(suffix: str, magic: bytes, recorded: Recorded, tmp_path: Path) -> None:
+    path = tmp_path / f"a{suffix}"
+    save_picture(recorded, (ClipPanel.WORLD,), 0.2, path, (160, 160))
+    assert magic in path.read_bytes()[:200]
+
+
+def test_a_suffix_that_no_format_has_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ExportError, match=r"unknown format '\.mp4'") as caught:
+        check_target(tmp_path / "a.mp4", "movie", MOVIE_FORMATS)
+    assert ".gif, .webp" in str(caught.value)
+
+
+def test_too_many_frames_in_memory_name_the_format_that_keeps_none(
+    clip: Clip, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(files, "MOST_BYTES", 2 * 160 * 160)
+    path = tmp_path / "a.gif"
+    path.write_bytes(b"before")
+    with pytest.raises(ConfigError, match="3 frames of 160x160, at most 2") as caught:
+        save_movie(clip, path)
+    assert "--out FILE.webp" in str(caught.value)
+    assert path.read_bytes() == b"before"
+    save_movie(clip, tmp_path / "a.webp")
+    monkeypatch.setattr(files, "MOST_FRAMES", 2)
+    with pytest.raises(ConfigError) as again:
+        save_movie(replace(clip, speed=1.0), tmp_path / "a.webp")
+    assert "FILE.webp" not in str(again.value)
+
+
+def test_a_small_movie_is_none_where_it_would_be_large(recorded: Recorded, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = small_movie(recorded)
+    assert made is not None and made[1].startswith(b"RIFF")
+    monkeypatch.setattr(files, "SMALL_BYTES", 100)
+    assert small_movie(recorded) is None

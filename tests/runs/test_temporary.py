@@ -1,0 +1,73 @@
+"""Folders of runs that are not listed: deleted when they are over, and found when their process was killed."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from tuisim.core.profile import ROBOLAB
+from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.errors import LogError
+from tuisim.runs import temporary
+from tuisim.runs.run_folder import RUN_FILE
+from tuisim.runs.side_files import is_held
+from tuisim.runs.temporary import TemporaryRun, batch_folder, owned_folder, temporary_home
+from tuisim.source import Program
+
+SPEC = RunSpec(RobotSpec(), WorldSpec(), ROBOLAB)
+DAY_S = 24 * 3600
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder in which temporary ones are created."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(temporary, "_MEMORY", tmp_path / "no such file system")
+    return tmp_path
+
+
+def test_a_home_is_held_and_goes_with_its_block() -> None:
+    with temporary_home() as folder:
+        assert is_held(folder)
+        (folder / "file").write_text("x")
+    assert not folder.exists()
+
+
+def test_a_batch_deletes_what_a_killed_one_left_a_day_ago(place: Path) -> None:
+    old, new = (place / f"tuisim-batch-{name}" for name in ("old", "new"))
+    for folder in (old, new):
+        folder.mkdir()
+    held = owned_folder("tuisim-batch-")
+    for folder in (old, held):
+        os.utime(folder, (0, folder.stat().st_mtime - 2 * DAY_S))
+    mine = batch_folder()
+    assert (old.exists(), new.exists(), held.exists(), mine.exists()) == (False, True, True, True)
+
+
+def test_where_no_folder_can_be_created_it_is_told(place: Path) -> None:
+    (place / "file").write_text("")
+    with pytest.raises(LogError, match="no folder for temporary runs"):
+        TemporaryRun(place / "file")
+
+
+def test_a_run_is_read_as_it_was_begun_whatever_the_program_does_to_its_file(place: Path) -> None:
+    with TemporaryRun(place) as runs:
+        new = runs.new_run(Program("p.py", "x = 1\n"), SPEC)
+        (new.folder / RUN_FILE).write_text("rubbish")
+        assert runs.load_run(new.folder).program.text == "x = 1\n"
+        (new.folder / RUN_FILE).unlink()
+        new.folder.rename(place / "elsewhere")
+        with pytest.raises(LogError, match="deleted while it ran"):
+            runs.load_run(new.folder)
+
+
+def test_in_memory_only_where_there_is_room(place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    memory = place / "memory"
+    memory.mkdir()
+    monkeypatch.setattr(temporary, "_MEMORY", memory)
+    for free, parent in ((0, memory), (1 << 60, place)):
+        monkeypatch.setattr(temporary, "_FREE_BYTES", free)
+        assert batch_folder().parent == parent

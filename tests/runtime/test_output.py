@@ -1,0 +1,22 @@
+"""What a program prints, and how much of it is kept."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.running import Run
+
+
+@pytest.mark.slow
+def test_a_million_lines_are_all_kept(run: Run) -> None:
+    done = run("for i in range(1_000_000): print('A:', i)", time_limit_s=60.0)
+    assert done.ended.end == "finished"
+    assert len(done.lines) == 1_000_000
+    assert done.lines[-1] == "A: 999999"
+
+
+@pytest.mark.slow
+def test_too_much_output_ends_the_run(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    done = run("x = 'y' * 10_000_000\nwhile True: print(x)")
+    assert (done.ended.end, done.ended.error_line) == ("output_limit", 2)
+    assert "256 MiB" in done.ended.summary

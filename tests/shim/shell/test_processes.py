@@ -1,0 +1,37 @@
+"""Processes that a program starts on the brick."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.shim.conftest import RunOn
+from tests.shim.shell.test_commands import SETUP
+from tuisim.core.profile import PROFILES
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_a_command_that_is_not_there_has_return_code_127(run_on: RunOn, profile: str) -> None:
+    done = run_on(
+        f"{SETUP}print(os.waitstatus_to_exitcode(os.system('ls')), subprocess.run(['ls']).returncode, "
+        "subprocess.run('ls', shell=True).returncode, Popen(['ls']).wait())",
+        profile=profile,
+    )
+    assert done.lines == ["127 127 127 127"]
+
+
+STEPS = {
+    "it ends in its own time": ("p = Popen(['beep', '-l', '500'])\nprint(p.poll(), p.wait(), ms())", ["None 0 500"]),
+    "waiting too short": (
+        "p = Popen(['beep', '-l', '500'])\ntry: p.wait(0.2)\nexcept subprocess.TimeoutExpired: print(ms(), p.poll())",
+        ["200 None"],
+    ),
+    "killed": ("p = Popen(['beep', '-l', '500'])\np.kill()\nprint(p.wait(), ms())", ["-9 0"]),
+    "in a block": ("with Popen(['beep', '-l', '500']) as p: pass\nprint(p.returncode, ms())", ["0 500"]),
+    "output as text": ("print(Popen(['cat'], stdin=PIPE, stdout=PIPE, text=True).communicate('a\\nb')[0])", ["a", "b"]),
+}
+
+
+@pytest.mark.parametrize(("text", "lines"), STEPS.values(), ids=STEPS)
+def test_a_process_takes_simulated_time(run_on: RunOn, text: str, lines: list[str]) -> None:
+    done = run_on(f"{SETUP}start = time.time()\n{text}")
+    assert (done.lines, done.errors) == (lines, [])
