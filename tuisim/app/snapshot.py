@@ -11,7 +11,7 @@ from typing import assert_never
 from tuisim.app.setup.next_run import NextRun
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
-from tuisim.core.sensors import color, gyro, sources, ultrasonic, with_kinds
+from tuisim.core.sensors import color, gyro, ultrasonic, with_kinds
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
@@ -217,15 +217,6 @@ def further_readings(instant: Instant, spec: RunSpec, field: Field) -> dict[str,
     values: dict[str, float] = {}
     for kind, sensor in with_kinds(spec.robot.further_sensors):
         values |= zip(kind.names(sensor), kind.measure(sensor, instant, spec, field), strict=True)
-    return values
-
-
-def telemetry_traces(instant: Instant, spec: RunSpec, field: Field) -> dict[str, float]:
-    """Return the chart's telemetry of a moment, which needs no prints, by the name of its column."""
-    values: dict[str, float] = {}
-    for source in sources(spec.robot):
-        if names := {column.name for column in source.columns if column.is_traced}:
-            values |= source.values(names, source.measure(instant, spec, field), spec.robot)
     return values
 
 

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from tuisim.core.comparison import COMPARE, Operator, spelled
+from tuisim.core.conditions import COMPARE, Operator, spelled
 from tuisim.errors import LogError, listed
 from tuisim.runs.arrays import FloatArray
 

@@ -14,7 +14,6 @@ from functools import partial
 from typing import Any
 
 from tuisim.core.columns import MOTION, Column, measured_names, motion_of
-from tuisim.core.comparison import finite_number
 from tuisim.core.field import Field
 from tuisim.core.sensors import color, gyro, infrared, touch, ultrasonic
 from tuisim.core.spec import (
@@ -91,16 +90,6 @@ def sources(robot: RobotSpec) -> list[ColumnSource]:
 def columns_of(robot: RobotSpec) -> tuple[Column, ...]:
     """Return the columns that every run of a robot has."""
     return tuple(column for source in sources(robot) for column in source.columns)
-
-
-def number_in(text: str, column: str) -> float:
-    """Return the number that a text means as the value of a column; colours have names.
-
-    Raises:
-        ValueError: it is no number.
-    """
-    is_name = column.endswith(("_color", ".color")) and text in color.COLOR_NAMES
-    return float(color.COLOR_NAMES.index(text)) if is_name else finite_number(text)
 
 
 def reader_of(name: str, robot: RobotSpec) -> Callable[[Instant, RunSpec, Field], float] | None:

@@ -10,7 +10,7 @@ from tuisim.analysis.model import Model
 from tuisim.analysis.table import TableTask, TableView, conditions_of
 from tuisim.app.analyser.screen import LogScreen
 from tuisim.app.analyser.world import NO_POSES, has_poses
-from tuisim.core.comparison import spelled
+from tuisim.core.conditions import spelled
 from tuisim.errors import LogError
 from tuisim.logs.log import Log
 
