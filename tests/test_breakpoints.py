@@ -16,7 +16,7 @@ from tuisim.breakpoints import (
     parse_break,
     parse_breakpoints,
 )
-from tuisim.core.conditions import Source, ValueCondition
+from tuisim.core.conditions import ValueCondition, ValueSource
 from tuisim.core.sensors import columns_of
 from tuisim.core.spec import RobotSpec
 from tuisim.errors import ConfigError
@@ -44,10 +44,10 @@ RULES: dict[str, tuple[BreakRule, str]] = {
     "x_mm > 0.1234567890123456": (ValueCondition("x_mm", ">", "0.1234567890123456"), "x_mm > 0.1234567890123456"),
     "time 3.5": (TimeBreak(3.5), "time 3.5"),
     "time 3.5 s": (TimeBreak(3.5), "time 3.5"),
-    "sample Colour": (ValueCondition("Colour", "is seen", "", Source.SAMPLE), "sample Colour"),
-    "sample Colour changes": (ValueCondition("Colour", "changes", "", Source.SAMPLE), "sample Colour changes"),
-    "sample Colour >= -1.5": (ValueCondition("Colour", ">=", "-1.5", Source.SAMPLE), "sample Colour >= -1.5"),
-    "print matches a|b c": (ValueCondition("", "matches", "a|b c", Source.PRINT), "print matches a|b c"),
+    "sample Colour": (ValueCondition("Colour", "is seen", "", ValueSource.SAMPLE), "sample Colour"),
+    "sample Colour changes": (ValueCondition("Colour", "changes", "", ValueSource.SAMPLE), "sample Colour changes"),
+    "sample Colour >= -1.5": (ValueCondition("Colour", ">=", "-1.5", ValueSource.SAMPLE), "sample Colour >= -1.5"),
+    "print matches a|b c": (ValueCondition("", "matches", "a|b c", ValueSource.PRINT), "print matches a|b c"),
     "stall": (StallBreak(), "stall"),
 }
 

@@ -1,18 +1,7 @@
 """Breakpoints: when a run pauses, in a small language shared by app, command line and child.
 
-| text | pauses when |
-| --- | --- |
-| `12` | line 12 is about to run (or the next line of code, if 12 is blank or a comment) |
-| `12 if x > 3` | … and the expression is true there |
-| `left_red_pc < 10`, `ultrasonic_mm <= 200`, `x_mm > 1000` | this becomes true, checked after each tick |
-| `left_color changes`, `left_color == Blue` | the value changes, or becomes the given colour |
-| `sample Colour < 50`, `sample Colour changes`, `sample Colour` | a printed sample matches |
-| `print matches REGEX` | a printed line matches |
-| `time 3.5` | 3.5 simulated seconds have passed |
-| `stall` | an obstacle stalls a running motor |
-
-A leading `#` disables a breakpoint. A comparison triggers when it
-becomes true, not while it stays true.
+`FORMS` lists what a breakpoint can be. A leading `#` disables it. A comparison
+triggers when it becomes true, not while it stays true.
 """
 
 from __future__ import annotations
@@ -22,11 +11,25 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from tuisim.core.columns import column_name
-from tuisim.core.conditions import Source, ValueCondition, comparison_form, finite_number, run_condition_in
-from tuisim.core.sensors import columns_of
+from tuisim.core.conditions import ValueCondition, ValueSource, comparison_form, finite_number, run_condition_in
+from tuisim.core.sensors import named_column
 from tuisim.core.spec import RobotSpec
-from tuisim.errors import ConfigError, nearest, see_page
+from tuisim.errors import ConfigError, see_page
+
+FORMS = (
+    ("12", "line 12 is about to run, or the next line of code if 12 is blank or a comment"),
+    ("12 if x > 3", "line 12 is about to run, and the expression is true"),
+    (
+        "left_red_pc < 10",
+        "a column becomes so after a tick; also ultrasonic_mm <= 200, gyro_deg > 90, x_mm > 1000",
+    ),
+    ("left_color changes", "the sensor sees another colour; left_color == Blue: it sees this one"),
+    ("sample Colour < 50", "such a sample is printed; also sample Colour changes, sample Colour"),
+    ("print matches black", "a line is printed in which the regular expression is found"),
+    ("time 3.5", "3.5 simulated seconds have passed"),
+    ("stall", "an obstacle stalls a running motor"),
+)
+"""The forms of a breakpoint, and when it pauses."""
 
 ALLOWED = (
     f"{comparison_form()}, such as left_red_pc < 10 · x_mm > 1000 · sample Colour < 50; or 12 · 12 if x > 3 · "
@@ -175,16 +178,16 @@ def parse_watch(text: str) -> str:
 
 def _condition(text: str, word: str, robot: RobotSpec | None) -> ValueCondition:
     found = run_condition_in(text)
-    if found is None or (found.source is Source.SAMPLE and not found.name):
+    if found is None or (found.source is ValueSource.SAMPLE and not found.name):
         raise _refuse(text, *_NO_CONDITION.get(word, ("is not a breakpoint",)))
     name = found.name
     match found.source:
-        case Source.PRINT:
+        case ValueSource.PRINT:
             try:
                 re.compile(found.value)
             except (re.error, OverflowError, RecursionError) as error:
                 raise _refuse(text, f"not a regular expression: {error}", _PRINT_FORM) from error
-        case Source.COLUMN:
+        case ValueSource.COLUMN:
             name = _column(text, found.name, robot)
     try:
         return found.of_column(name)
@@ -198,11 +201,10 @@ def _column(text: str, written: str, robot: RobotSpec | None) -> str:
         if not _NAME.fullmatch(written):
             raise _refuse(text, f"there is no {written!r}")
         return written
-    columns = columns_of(robot)
-    name = column_name(written, columns)
-    if name is None:
-        raise _refuse(text, f"this robot has no {written!r}", nearest(written, (one.name for one in columns)))
-    return name
+    try:
+        return named_column(written, robot)
+    except ConfigError as error:
+        raise _refuse(text, error.message, error.hint) from None
 
 
 def _seconds(text: str, written: str) -> float:

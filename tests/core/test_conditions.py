@@ -14,7 +14,7 @@ from tuisim.analysis.events import FORM, threshold_of, thresholds_of
 from tuisim.analysis.table import Rows, conditions_of
 from tuisim.app.timeline import find
 from tuisim.breakpoints import parse_break
-from tuisim.core.conditions import Edge, Source, ValueCondition, condition_in, run_condition_in
+from tuisim.core.conditions import Edge, ValueCondition, ValueSource, condition_in, run_condition_in
 from tuisim.core.profile import PROFILES
 from tuisim.errors import ConfigError, LogError
 from tuisim.logs.columns import Layout
@@ -98,9 +98,9 @@ def test_an_edge_is_found_in_a_recording_where_it_was_met_during_the_run(conditi
 
 RUN_CONDITIONS = {
     "left_color changes": ValueCondition("left_color", "changes"),
-    "sample Colour < 5": ValueCondition("Colour", "<", "5", Source.SAMPLE),
-    "sample": ValueCondition("", "is seen", "", Source.SAMPLE),
-    "print matches a = b": ValueCondition("", "matches", "a = b", Source.PRINT),
+    "sample Colour < 5": ValueCondition("Colour", "<", "5", ValueSource.SAMPLE),
+    "sample": ValueCondition("", "is seen", "", ValueSource.SAMPLE),
+    "print matches a = b": ValueCondition("", "matches", "a = b", ValueSource.PRINT),
     "sample 1x < 3": None, "print a": None, "x ~ 3": None, "x": None, "changes": None,
 }  # fmt: skip
 

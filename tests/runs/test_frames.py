@@ -17,7 +17,7 @@ from tuisim.config.mat_cache import FieldFiles, open_field, prepare
 from tuisim.config.mats import background
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
-from tuisim.core.sensors import mounted
+from tuisim.core.sensors import readings
 from tuisim.core.sensors.color import reading
 from tuisim.core.spec import ColorSensorSpec, NoiseSpec, Obstacle, RunSpec, WorldSpec
 from tuisim.core.state import Instant
@@ -101,11 +101,7 @@ def sensors_one_by_one(run: StoredRun, field: Field) -> pd.DataFrame:
     for tick in range(run.telemetry.count):
         record = run.telemetry.record(tick)
         instant = instant_of(record, run.spec, run.noise_at(record))
-        rows.append({
-            name: value
-            for kind, sensor in mounted(run.spec.robot)
-            for name, value in zip(kind.names(sensor), kind.measure(sensor, instant, run.spec, field), strict=True)
-        })  # fmt: skip
+        rows.append(readings(run.spec.robot.sensors, instant, run.spec, field))
     return pd.DataFrame(rows)
 
 

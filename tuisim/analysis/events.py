@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tuisim.core.conditions import NUMBER, Operator, ValueCondition, comparison_form, condition_in
-from tuisim.errors import LogError, listed
+from tuisim.errors import LogError, among
 from tuisim.logs.log import Log, Series
 from tuisim.logs.signals import known_in_order
 from tuisim.runs.arrays import FloatArray
@@ -156,7 +156,7 @@ def thresholds_of(text: str, log: Log) -> tuple[Threshold, ...]:
             raise LogError(f"no threshold: {part.strip()!r}", FORM)
         names = dict.fromkeys(name.partition(" #")[0] for name in log.names)
         if threshold.name not in log.names and threshold.name not in names:
-            raise LogError(f"no variable {threshold.name!r}", f"there are {listed(names)}", file=log.title)
+            raise LogError(f"no variable {threshold.name!r}", among(threshold.name, names), file=log.title)
         found.append(threshold)
     return tuple(found)
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tuisim.core.conditions import COMPARE, Operator, ValueCondition, comparison_form, condition_in
-from tuisim.errors import LogError, listed
+from tuisim.errors import LogError, among
 from tuisim.logs.arrow import cell_text, contains, mask_of, sorted_places
 from tuisim.logs.log import Log, LogTable
 from tuisim.runs.arrays import IntArray
@@ -49,7 +49,7 @@ def conditions_of(text: str, columns: list[str]) -> list[ValueCondition]:
         if condition is None:
             raise LogError(f"no condition: {part!r}", FORM)
         if condition.name not in columns:
-            raise LogError(f"no column {condition.name!r}", f"there are {listed(columns)}")
+            raise LogError(f"no column {condition.name!r}", among(condition.name, columns))
         found.append(replace(condition, value=condition.value.strip("'\"")))
     return found
 

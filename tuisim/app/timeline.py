@@ -8,11 +8,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from tuisim.core.columns import column_name
-from tuisim.core.conditions import Operator, Source, ValueCondition, comparison_form, run_condition_in, spelled
+from tuisim.core.conditions import Operator, ValueCondition, ValueSource, comparison_form, run_condition_in, spelled
 from tuisim.core.field import Field
-from tuisim.core.sensors import columns_of
-from tuisim.errors import ConfigError, nearest
+from tuisim.core.sensors import named_column
+from tuisim.errors import ConfigError
 from tuisim.runs.brick_state import BrickState, face_after
 from tuisim.runs.frames import begins, column_values, held
 from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow
@@ -242,9 +241,9 @@ def find(text: str, timeline: Timeline, mat: Field | None = None) -> int:
 
 def _condition(word: str, rest: str, text: str) -> ValueCondition | None:
     """Return the condition in the words of an instant; `word` is the first one, `rest` is without the direction."""
-    if word == Source.PRINT and rest:
-        return run_condition_in(f"{word} {rest}") or ValueCondition("", Operator.MATCHES, rest, Source.PRINT)
-    is_sample = word == Source.SAMPLE
+    if word == ValueSource.PRINT and rest:
+        return run_condition_in(f"{word} {rest}") or ValueCondition("", Operator.MATCHES, rest, ValueSource.PRINT)
+    is_sample = word == ValueSource.SAMPLE
     return run_condition_in(f"{word} {rest}" if is_sample else re.sub(r"\s+(?:back|first)$", "", text.strip()))
 
 
@@ -278,11 +277,11 @@ def _when(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
         ValueError: what it compares with is no number.
     """
     match condition.source:
-        case Source.PRINT:
+        case ValueSource.PRINT:
             return _printed(search, condition)
-        case Source.SAMPLE:
+        case ValueSource.SAMPLE:
             return _sample(search, condition)
-        case Source.COLUMN:
+        case ValueSource.COLUMN:
             return _becomes(search, condition, mat)
 
 
@@ -298,11 +297,7 @@ def _sample(search: _Search, condition: ValueCondition) -> int:
 def _becomes(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
     """Return the tick at which a column begins to meet a condition."""
     recording = search.recording
-    columns = columns_of(recording.spec.robot)
-    name = column_name(condition.name, columns)
-    if name is None:
-        hint = nearest(condition.name, (column.name for column in columns))
-        raise ConfigError(f"this robot has no {condition.name!r}", hint)
+    name = named_column(condition.name, recording.spec.robot)
     if mat is None:
         raise ConfigError("the mat is still being opened", "a moment later")
     condition = condition.of_column(name)

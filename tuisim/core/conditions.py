@@ -57,7 +57,7 @@ NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 """Regular expression of a number."""
 
 
-class Source(StrEnum):
+class ValueSource(StrEnum):
     """Where a condition takes its values from."""
 
     COLUMN = ""
@@ -77,7 +77,7 @@ class ValueCondition:
     sign: str
     """The operator as typed."""
     value: str = ""
-    source: Source = Source.COLUMN
+    source: ValueSource = ValueSource.COLUMN
 
     @property
     def operator(self) -> Operator:
@@ -169,14 +169,14 @@ def run_condition_in(text: str) -> ValueCondition | None:
     """
     word, _, rest = text.strip().partition(" ")
     rest = rest.strip()
-    if word == Source.PRINT:
+    if word == ValueSource.PRINT:
         verb, _, pattern = rest.partition(" ")
         is_whole = verb == Operator.MATCHES and pattern.strip()
-        return ValueCondition("", Operator.MATCHES, pattern.strip(), Source.PRINT) if is_whole else None
-    if word == Source.SAMPLE:
+        return ValueCondition("", Operator.MATCHES, pattern.strip(), ValueSource.PRINT) if is_whole else None
+    if word == ValueSource.SAMPLE:
         found = condition_in(rest, name=r"\w*") or ValueCondition(rest, Operator.SEEN)
         is_one = not found.name or found.name.isidentifier()
-        return replace(found, source=Source.SAMPLE) if is_one else None
+        return replace(found, source=ValueSource.SAMPLE) if is_one else None
     named = condition_in(text)
     return None if named is None or named.operator is Operator.CONTAINS else named
 

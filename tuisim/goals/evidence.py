@@ -9,7 +9,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from tuisim.config.mat_cache import open_field
-from tuisim.core.conditions import Source, ValueCondition
+from tuisim.core.conditions import ValueCondition, ValueSource
 from tuisim.core.field import Field
 from tuisim.core.profile import NS_PER_S
 from tuisim.protocol import End, Ended, Unended
@@ -131,7 +131,7 @@ class Evidence:
         """
         import numpy as np
 
-        if condition.source is Source.COLUMN:
+        if condition.source is ValueSource.COLUMN:
             return held(condition, self.column(condition.name))
         printed = (row for row in self.rows if row.stream == Stream.STDOUT)
         return np.isin(np.arange(len(self.records)), [row.tick for row in rows_when(condition, printed)])

@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from tuisim.core.columns import column_name
-from tuisim.core.conditions import Source, ValueCondition
-from tuisim.core.sensors import columns_of
+from tuisim.core.conditions import ValueCondition, ValueSource
+from tuisim.core.sensors import named_column
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
-from tuisim.errors import counted, nearest
+from tuisim.errors import ConfigError, counted
 from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.goals.found import Occurrence, share_words
 from tuisim.goals.places import line_of_motion
@@ -123,18 +122,16 @@ def find_when(condition: WhenCondition, evidence: Evidence, span: EvidenceSpan) 
     """Find the first tick at which all conditions are true."""
     import numpy as np
 
-    columns = columns_of(evidence.spec.robot)
     ticks = span.ticks
     met = np.ones(len(evidence.records[ticks]), np.bool_)
     never: list[str] = []
     for text, wanted in zip(condition.comparisons, condition.conditions, strict=True):
-        name = column_name(wanted.name, columns) if wanted.source is Source.COLUMN else wanted.name
-        if name is None:
-            names = (column.name for column in columns)
-            return Occurrence(None, f"The robot has no column {wanted.name} ({nearest(wanted.name, names)}).")
-        named = replace(wanted, name=name)
         try:
+            is_column = wanted.source is ValueSource.COLUMN
+            named = replace(wanted, name=named_column(wanted.name, evidence.spec.robot)) if is_column else wanted
             here = evidence.held(named)[ticks]
+        except ConfigError as error:
+            return Occurrence(None, f"The robot has no column {wanted.name} ({error.hint}).")
         except ValueError as error:
             return Occurrence(None, f"{text}: {error}.")
         if len(here) and not here.any():
@@ -150,7 +147,7 @@ def _nearest_words(wanted: ValueCondition, evidence: Evidence, span: EvidenceSpa
     """Return how near a column came to what it is compared with, as the end of a sentence; empty for what is not."""
     import numpy as np
 
-    if wanted.source is not Source.COLUMN or wanted.is_momentary:
+    if wanted.source is not ValueSource.COLUMN or wanted.is_momentary:
         return ""
     values = evidence.column(wanted.name)[span.ticks]
     at = int(np.argmin(np.abs(values - wanted.number)))

@@ -14,7 +14,7 @@ from typing import Annotated, ClassVar, TypeAlias
 
 from msgspec import Meta
 
-from tuisim.core.conditions import Source, ValueCondition, comparison_form, run_condition_in
+from tuisim.core.conditions import ValueCondition, ValueSource, comparison_form, run_condition_in
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import ConfigError, require_regex
 
@@ -329,7 +329,7 @@ class WhenCondition:
             key, found = f"comparisons[{number}]", run_condition_in(text)
             if found is None:
                 raise ConfigError(f"no comparison: {text!r}", f"{comparison_form()}, such as left_red_pc < 10", key=key)
-            if found.source is Source.PRINT:
+            if found.source is ValueSource.PRINT:
                 require_regex(found.value, key)
 
     @property

@@ -91,7 +91,7 @@ def _samples_of_run(run: StoredRun, ordinal: int) -> dict[str, Any]:
     return columns
 
 
-def telemetry_frame(run: StoredRun, field: Field | None = None, also: Iterable[str] = ()) -> pd.DataFrame:
+def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
     """Return one row per tick, including tick 0 (the start); damaged records are omitted, see `damage_note`.
 
     Columns: `time` in s, simulated; MOTION_COLUMNS; those of every mounted sensor, such as
@@ -100,7 +100,6 @@ def telemetry_frame(run: StoredRun, field: Field | None = None, also: Iterable[s
 
     Args:
         field: The mat; by default that of the run.
-        also: Names of further columns of `columns_of`, which come last.
 
     Raises:
         LogError: a recording is damaged, or the mat no longer exists.
@@ -110,12 +109,8 @@ def telemetry_frame(run: StoredRun, field: Field | None = None, also: Iterable[s
     records = _sound(run.telemetry.array())
     mat = open_mat(run) if field is None else field
     exported = measured_names(columns_of(run.spec.robot))
-    values = column_values((*exported, *also), records, run.spec, run.actions, mat)
-    columns: dict[str, Any] = {"time": tick_times_s(records, run.spec)}
-    columns.update((name, values[name]) for name in exported)
-    columns["line"] = records["line"].astype("i8")
-    columns.update((name, values[name]) for name in also)
-    return pd.DataFrame(columns)
+    values = column_values(exported, records, run.spec, run.actions, mat)
+    return pd.DataFrame({"time": tick_times_s(records, run.spec), **values, "line": records["line"].astype("i8")})
 
 
 def column_values(
@@ -141,20 +136,20 @@ def column_values(
     measured = {name: records[name].astype("f8") for name in MOTION_COLUMNS}
     measured |= _measured(records, sensors, _noises(records, spec, actions), spec, field, field_at)
     return {
-        column.name: measured[column.name] if column.of is None else _computed(column.of, columns, measured, spec.robot)
+        column.name: measured[column.name] if column.of is None else computed(column.of, columns, measured, spec.robot)
         for columns in (MOTION, *(kind.columns(sensor) for kind, sensor in sensors))
         for column in columns
         if column.name in names
     }
 
 
-def _computed(
+def computed(
     of: Callable[[Sequence[float], RobotSpec], float],
     columns: Iterable[Column],
     measured: Mapping[str, Array],
     robot: RobotSpec,
 ) -> Array:
-    """Return what is computed from the measured columns of an owner, at every tick."""
+    """Return what is computed from the measured columns of an owner, at every tick, shape (n,)."""
     import numpy as np
 
     rows = zip(*(measured[name].tolist() for name in measured_names(columns)), strict=True)

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from tuisim.core.conditions import NUMBER, Source, ValueCondition
+from tuisim.core.conditions import NUMBER, ValueCondition, ValueSource
 from tuisim.runs.records import OutputRow, Stream
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ class Sample:
     """Simulated time of the print."""
     tick: int
     line: int
-    """Source line that printed it; 0 for none."""
+    """ValueSource line that printed it; 0 for none."""
 
 
 def parse_sample(text: str) -> tuple[str, float, float | None] | None:
@@ -93,7 +93,7 @@ def value_reader(condition: ValueCondition) -> Callable[[str], float | None]:
 
     That is the number of a sample with its name, or 1 for a line that it matches; None where there is nothing to test.
     """
-    if condition.source is Source.PRINT:
+    if condition.source is ValueSource.PRINT:
         pattern = re.compile(condition.value)
         return lambda text: 1.0 if pattern.search(text) else None
 

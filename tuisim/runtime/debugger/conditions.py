@@ -9,7 +9,7 @@ from typing import Any
 
 from tuisim.breakpoints import Breakpoint, LineBreak, StallBreak, TimeBreak
 from tuisim.core.columns import column_name
-from tuisim.core.conditions import Edge, Operator, Source, ValueCondition, value_text
+from tuisim.core.conditions import Edge, Operator, ValueCondition, ValueSource, value_text
 from tuisim.core.profile import NS_PER_S
 from tuisim.core.sensors import columns_of, reader_of
 from tuisim.runs.records import Stream
@@ -109,7 +109,7 @@ class Watcher:
             match one.rule:
                 case LineBreak():
                     pass
-                case ValueCondition(source=Source.SAMPLE | Source.PRINT) as condition:
+                case ValueCondition(source=ValueSource.SAMPLE | ValueSource.PRINT) as condition:
                     self._on_row[one.text] = rows.get(one.text) or _row_check(condition)
                 case rule:
                     check = ticks.get(one.text) or self._tick_check(rule)
