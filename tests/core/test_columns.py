@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import site
@@ -110,6 +111,7 @@ def test_the_name_of_a_trace_is_a_variable_of_every_log_command(
     assert float(out[-1].rpartition(",")[2]) == value_of(run, name) + 1
     assert run_command(["log", "export", "1", "--variable", name, "--out", str(tmp_path / "a.csv")]) == 0
     assert set((tmp_path / "a.csv").read_text().splitlines()[0].split(",")) == {"time", "line", name}
+    assert name in json.loads((tmp_path / "a.csv.json").read_text())["units"]
     assert run_command(["log", "plot", "1", "--telemetry", "--variable", "x_mm", "--against", name]) == 0
     assert f"x_mm against {name}" in capsys.readouterr().out
 
