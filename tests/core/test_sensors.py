@@ -13,11 +13,11 @@ import pytest
 from tests.runtime.debugging import Driver
 from tuisim.app.setup.fields import find
 from tuisim.app.setup.next_run import plan_of_spec
-from tuisim.app.snapshot import RunPhase, further_readings, snapshot_of
+from tuisim.app.snapshot import RunPhase, snapshot_of
 from tuisim.config.robots import load_robot, save_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
-from tuisim.core.sensors import SENSORS, SensorKind, with_kinds
+from tuisim.core.sensors import SENSORS, SensorKind, readings, with_kinds
 from tuisim.core.spec import MOUNTS, Mount, RobotSpec, RunSpec, SensorSpec, WorldSpec
 from tuisim.core.tree import from_plain, to_plain
 from tuisim.protocol import Resume
@@ -157,7 +157,7 @@ def test_the_panels_show_it(kind: SensorKind) -> None:
         shown: dict[str, object] = {"color": now.colors, "ultrasonic": now.ultrasonic_mm, "gyro": now.spec.robot.gyro}
         assert shown[next(name for name, one in SENSORS.items() if one is kind)]
     else:
-        assert set(further_readings(instant, run.spec, field)) == set(kind.names(sensor))
+        assert set(readings(run.spec.robot.further_sensors, instant, run.spec, field)) == set(kind.names(sensor))
 
 
 def test_kinds_are_told_apart_by_their_specs() -> None:

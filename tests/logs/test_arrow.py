@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from tuisim.core.comparison import Comparison, Operator
+from tuisim.core.conditions import Operator, ValueCondition
 from tuisim.errors import LogError
 from tuisim.logs.arrow import (
     cell_text,
@@ -71,12 +71,12 @@ def test_texts_that_are_no_utf_8_are_replaced() -> None:
 def test_cells_that_meet_a_condition(
     cells: pa.ChunkedArray, operator: Operator, value: str, expected: list[bool]
 ) -> None:
-    assert mask_of(cells, Comparison("a", operator, value)).tolist() == expected
+    assert mask_of(cells, ValueCondition("a", operator, value)).tolist() == expected
 
 
 def test_a_number_is_not_compared_with_a_text() -> None:
     with pytest.raises(LogError, match="'x' is not a number"):
-        mask_of(column([1]), Comparison("a", Operator.LESS, "x"))
+        mask_of(column([1]), ValueCondition("a", Operator.LESS, "x"))
 
 
 def test_coded_texts_are_sorted_as_texts() -> None:

@@ -11,7 +11,7 @@ from typing import assert_never
 from tuisim.app.setup.next_run import NextRun
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
-from tuisim.core.sensors import color, gyro, sources, ultrasonic, with_kinds
+from tuisim.core.sensors import color, gyro, readings, ultrasonic
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
@@ -205,28 +205,11 @@ def snapshot_of(
         rays=rays,
         gyro_deg=gyro.angle_deg(instant) if has_gyro else 0,
         gyro_rate_dps=gyro.rate_dps(instant) if has_gyro else 0,
-        further=further_readings(instant, spec, field) if field else {},
+        further=readings(spec.robot.further_sensors, instant, spec, field) if field else {},
         pen_down=pen_down,
         stalled=stalled,
         next_spec=next_spec,
     )
-
-
-def further_readings(instant: Instant, spec: RunSpec, field: Field) -> dict[str, float]:
-    """Return the measurements of sensors that not every robot has, by telemetry column."""
-    values: dict[str, float] = {}
-    for kind, sensor in with_kinds(spec.robot.further_sensors):
-        values |= zip(kind.names(sensor), kind.measure(sensor, instant, spec, field), strict=True)
-    return values
-
-
-def telemetry_traces(instant: Instant, spec: RunSpec, field: Field) -> dict[str, float]:
-    """Return the chart's telemetry of a moment, which needs no prints, by the name of its column."""
-    values: dict[str, float] = {}
-    for source in sources(spec.robot):
-        if names := {column.name for column in source.columns if column.is_traced}:
-            values |= source.values(names, source.measure(instant, spec, field), spec.robot)
-    return values
 
 
 def speed_label(speed: float) -> str:

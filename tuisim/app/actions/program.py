@@ -115,4 +115,6 @@ def list_watches(workspace: Workspace) -> None:
     """Show the dialog of the watches."""
     from tuisim.app.dialogs.entries import WatchesDialog
 
-    workspace.app.push_screen(WatchesDialog(workspace.debugger.watches, workspace.debugger.set_watches))
+    workspace.app.push_screen(
+        WatchesDialog(workspace.debugger.watches, workspace.run_controller.spec.robot, workspace.debugger.set_watches)
+    )

@@ -10,6 +10,7 @@ from tuisim.app.branch import Branch, action_words
 from tuisim.app.setup.mat import mat_key
 from tuisim.app.snapshot import RunPhase
 from tuisim.app.timeline import find, forms
+from tuisim.core.sensors import column_names
 from tuisim.errors import TuisimError
 
 if TYPE_CHECKING:
@@ -130,9 +131,9 @@ def ask_where(workspace: Workspace) -> None:
         mat = workspace.run_controller.mat
         to_tick(workspace, find(text, timeline, mat.field if mat is not None else None))
 
-    workspace.app.push_screen(
-        LinePrompt("Go to", go, forms=forms(timeline), placeholder=f"now at {timeline.time_s:.2f} s")
-    )
+    words = column_names(workspace.run_controller.spec.robot)
+    now = f"now at {timeline.time_s:.2f} s"
+    workspace.app.push_screen(LinePrompt("Go to", go, forms=forms(timeline), words=words, placeholder=now))
 
 
 def to_sample(workspace: Workspace, words: str) -> None:
