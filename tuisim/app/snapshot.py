@@ -6,9 +6,8 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
-from tuisim.app.setup.next_run import NextRun
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.sensors import color, gyro, sources, ultrasonic, with_kinds
@@ -18,6 +17,9 @@ from tuisim.core.state import Instant
 from tuisim.protocol import End, Ended, Inspected, Paused, RunState, Unended
 from tuisim.runs.brick_state import BrickState
 from tuisim.source import Program
+
+if TYPE_CHECKING:
+    from tuisim.app.setup.next_run import NextRun
 
 
 class RunPhase(StrEnum):

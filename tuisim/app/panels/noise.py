@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from textual import on
 from textual.app import ComposeResult
@@ -11,10 +12,12 @@ from textual.message import Message
 from textual.widgets import Input, Label, Static
 
 from tuisim.app.form import EntryPanel, NumberInput, Slider
-from tuisim.app.snapshot import Snapshot
 from tuisim.config.options import MAX_SEED, whole
 from tuisim.core.spec import MAX_LIGHT_NOISE, MAX_MOTOR_NOISE, NoiseSpec
 from tuisim.errors import ConfigError
+
+if TYPE_CHECKING:
+    from tuisim.app.snapshot import Snapshot
 
 _KINDS = {"light": ("Light", MAX_LIGHT_NOISE), "motor": ("Motor", MAX_MOTOR_NOISE)}
 """By field of `NoiseSpec`: name and largest value."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from textual import on
 from textual.app import ComposeResult
@@ -13,9 +14,11 @@ from textual.widgets import Input, Label, Static
 
 from tuisim.app.action import action_link
 from tuisim.app.form import NumberInput
-from tuisim.app.snapshot import Snapshot
 from tuisim.config.options import MAX_ANGLE_DEG, MAX_POSITION_MM
 from tuisim.core.geometry import Pose, shown_heading_deg
+
+if TYPE_CHECKING:
+    from tuisim.app.snapshot import Snapshot
 
 _FIELDS = {"x": ("X", "mm", MAX_POSITION_MM), "y": ("Y", "mm", MAX_POSITION_MM), "angle": ("Angle", "°", MAX_ANGLE_DEG)}
 """By id: name, unit, and the largest absolute value."""
