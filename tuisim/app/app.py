@@ -16,9 +16,9 @@ from textual.widget import Widget
 from textual.widgets import Input
 
 from tuisim.app.action import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings
-from tuisim.app.actions import time_travel
+from tuisim.app.actions import ActionContext, time_travel
 from tuisim.app.actions.app import welcome
-from tuisim.app.actions.keys import ACTIONS, PAGES, TEXT_KEYS, footer_actions, working
+from tuisim.app.actions.keys import ACTIONS, PAGES, RUN_KEYS, TEXT_KEYS, footer_actions, working
 from tuisim.app.actions.lesson import reads_on, takes_pages
 from tuisim.app.background import is_leaving, leave
 from tuisim.app.branch import branch_message
@@ -37,9 +37,9 @@ from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
 from tuisim.app.setup import next_run as plans
 from tuisim.app.snapshot import AT_REST, GOOD_ENDS, AppState, RunPhase, Situation, end_words
 from tuisim.app.speech import Voice
+from tuisim.app.terminal.input_order import takes_letters
 from tuisim.app.terminal.pacer import Pacer
 from tuisim.app.terminal.picture_mode import PictureMode, choose_colors, picture_mode_for
-from tuisim.app.workspace import Workspace
 from tuisim.config.options import AUTO, DEFAULT_FPS, Settings
 from tuisim.config.program_settings import Decided
 from tuisim.config.user_config import FILE, UserConfig, load_config
@@ -149,6 +149,8 @@ class LabApp(PanelMessages):
         self.past_view = PastView(self.panel_area, self.run_controller.timeline)
         self.feed: Feed | None = None
         self._drawn: tuple[Any, ...] = ((None,),)
+        self._footed: tuple[Any, ...] = ()
+        """What of the state the footer tells."""
         self.goals = GoalsController(self, self.run_controller, self.panel_area, settings.goals)
         self.loader = Loader(
             self,
@@ -171,10 +173,10 @@ class LabApp(PanelMessages):
             settings.lesson,
             settings.lessons_folder,
         )
-        self.workspace = Workspace(
+        self.context = ActionContext(
             self, self.run_controller, self.panel_area, self.document, self.loader, self.debugger, self.lesson
         )
-        self.run_controller.propose = partial(time_travel.propose_branch, self.workspace)
+        self.run_controller.propose = partial(time_travel.propose_branch, self.context)
         self.brick_hint = BrickHint(self._hint_at_brick)
         self._run_when_ready = settings.autorun and settings.replay is None
         self._frame_timer: Timer | None = None
@@ -232,7 +234,7 @@ class LabApp(PanelMessages):
         self.lesson.begin()
         self._tell_config()
         if self.settings.welcomes:
-            welcome(self.workspace)
+            welcome(self.context)
         self._set_frame_gap(1 / self.settings.fps)
         self.set_interval(_REST_GAP_S, self._seldom)
         self.set_interval(PERIOD_S, self.check_files)
@@ -243,11 +245,17 @@ class LabApp(PanelMessages):
         self.loader.check_files(self.document.conflicts_with)
 
     def _to_now(self) -> None:
-        time_travel.to_now(self.workspace)
+        time_travel.to_now(self.context)
+
+    def _waits(self, event: events.Event) -> bool:
+        """Let the keys of a run wait also for the mat, without which none can start."""
+        is_of_run = isinstance(event, events.Key) and event.key in RUN_KEYS and len(self.screen_stack) == 1
+        waits = is_of_run and self.loader.is_preparing
+        return super()._waits(event) or (waits and not (self.focused and takes_letters(self.focused)))
 
     def suspending(self) -> None:
         """Pause the run and playback before the app is suspended, so that nothing resumes by itself."""
-        time_travel.stop_time(self.workspace)
+        time_travel.stop_time(self.context)
 
     def on_unmount(self) -> None:
         self.document.save_draft()
@@ -320,10 +328,13 @@ class LabApp(PanelMessages):
         try:
             news = self.run_controller.poll()
             self._process(news)
-            time_travel.advance_playback(self.workspace)
+            if self.run_controller.timeline.playing:
+                time_travel.advance_playback(self.context)
             self.debugger.poll()
-            self.goals.update()
-            self.lesson.update()
+            if self.goals.file is not None:
+                self.goals.update()
+            if self.lesson.lesson is not None:
+                self.lesson.update()
             # A frame that has to wait counts as drawn.
             drew = self._awaits_first_tick() or not self.pacer.ready() or self.draw()
             if drew or news or self.debugger.busy:
@@ -430,39 +441,39 @@ class LabApp(PanelMessages):
     def draw(self, force: bool = False) -> bool:
         """Show the current moment in every panel. Return whether it differs from what they show already."""
         state = self.state()
-        snapshot = state.view
+        run, mat = state.run, self._charted_mat()
         now = (
-            (snapshot.state, snapshot.instant, snapshot.line, snapshot.speed, snapshot.pen_down, snapshot.stalled),
-            (snapshot.spec, snapshot.next_spec, snapshot.past, snapshot.now_tick),
-            (snapshot.face, snapshot.pressed),
+            (run.state, run.instant, run.line, run.speed, run.pen_down, run.stalled),
+            (run.spec, run.next_spec, run.past, run.now_tick),
+            (run.face, run.pressed),
         )
-        is_behind = self.feed is not None and self.feed.is_behind and self._charted_field() is not None
+        is_behind = mat is not None and self.feed is not None and self.feed.is_behind
         if now == self._drawn and not force and not is_behind:
             return False
         self._drawn = now
-        self._feed_panels()
-        self.past_view.show()
-        self.panel_area.show(snapshot)
-        self._show_footer(state)
+        if self.feed is not None:
+            self._feed_panels(self.feed, mat)
+        if run.past or self.past_view.is_shown:
+            self.past_view.show()
+        self.panel_area.show(run)
+        if force or self._footed != _footed(state):
+            self._show_footer(state)
         self.pacer.drawn()
         return True
 
-    def _feed_panels(self) -> None:
-        if self.feed is None:
-            return
+    def _feed_panels(self, feed: Feed, mat: Field | None) -> None:
         if world := self.panel_area.world:
-            xs, ys = self.feed.trace_points()
+            xs, ys = feed.trace_points()
             if xs:
-                world.extend_trace(xs, ys, self.feed.recording.spec.robot.pen)
-        if field := self._charted_field():
-            self._append(self.feed.chart_series(field), logged=False)
+                world.extend_trace(xs, ys, feed.recording.spec.robot.pen)
+        if mat is not None:
+            self._append(feed.chart_series(mat), logged=False)
 
-    def _charted_field(self) -> Field | None:
+    def _charted_mat(self) -> Field | None:
         """Return the mat that the chart's readings are taken from; None if no chart or no mat."""
-        mat = self.run_controller.mat
-        if self.feed is None or mat is None or not self.panel_area.shown("chart"):
+        if self.feed is None or not self.panel_area.shown("chart"):
             return None
-        return mat.field if mat.serves(self.feed.recording.spec) else None
+        return self.run_controller.mat_for(self.feed.recording.spec)
 
     def painted(self, size: int) -> None:
         """Ask the terminal to report when it has shown what it was sent; the answer is a `CursorPosition` event."""
@@ -476,32 +487,29 @@ class LabApp(PanelMessages):
         """Update the footer; together with the world once it stands still, or it would be said to before it does."""
         self._wake()
         state = self.state()
-        has_stopped = state.view.state in AT_REST and self._drawn[0][0] not in (None, state.view.state)
+        has_stopped = state.run.state in AT_REST and self._drawn[0][0] not in (None, state.run.state)
         if not has_stopped or not self.draw():
             self._show_footer(state)
 
     def situation(self) -> Situation:
-        """Return the state that decides which keys are available."""
-        runs, code = self.run_controller, self.panel_area.code
-        facts = runs.program is not None, bool(runs.run_id), runs.in_past, self.debugger.is_away
-        return Situation(runs.state, *facts, code is not None and code.is_read, self.has_pixels)
+        return self._situation(self.run_controller.state)
 
-    def action_target(self) -> Workspace:
-        return self.workspace
+    def _situation(self, phase: RunPhase) -> Situation:
+        runs, timeline, code = self.run_controller, self.run_controller.timeline, self.panel_area.code
+        facts = runs.program is not None, timeline.recording is not None, timeline.at is not None
+        return Situation(phase, *facts, self.debugger.is_away, code is not None and code.is_read, self.has_pixels)
+
+    def action_target(self) -> ActionContext:
+        return self.context
 
     def state(self) -> AppState:
         """Return everything that panels and footer show, at the instant in view."""
-        runs = self.run_controller
-        return AppState(
-            program=runs.program,
-            next_run=runs.next_run,
-            view=runs.snapshot(),
-            debug=self.debugger.state,
-            situation=self.situation(),
-            playing=runs.timeline.playing,
-        )
+        run = self.run_controller.snapshot()
+        playing = self.run_controller.timeline.playing
+        return AppState(run, self._situation(run.state), self.debugger.looks_back, playing)
 
     def _show_footer(self, state: AppState) -> None:
+        self._footed = _footed(state)
         names = working(state.situation)
         if self.panel_area.is_single:
             names = ("panel-next", *names)
@@ -530,6 +538,7 @@ class LabApp(PanelMessages):
     def on_panel_area_added(self, message: PanelArea.Added) -> None:
         if message.panel == "world" and (world := self.panel_area.world):
             world.show_rays = self.settings.rays
+            world.time_bar.marks = self.run_controller.timeline.marks
             if self.run_controller.mat:
                 world.set_mat(self.run_controller.mat.pixels)
             if self.focused is None:
@@ -567,7 +576,7 @@ class LabApp(PanelMessages):
     def action_leave_field(self) -> None:
         """Leave an input field; from the world, return from the past."""
         if self.debugger.is_away and self.focused in (None, self.panel_area.world):
-            time_travel.to_now(self.workspace)
+            time_travel.to_now(self.context)
         self.panel_area.focus_world()
 
     def on_output_answered(self, message: Output.Answered) -> None:
@@ -578,6 +587,12 @@ class LabApp(PanelMessages):
         in_a_dialog = self.screen is not self.panel_area.screen
         if isinstance(event.widget, Widget) and not event.widget.can_focus and not in_a_dialog:
             self.action_leave_field()
+
+
+def _footed(state: AppState) -> tuple[Any, ...]:
+    """Return what of a state the footer tells."""
+    run = state.run
+    return state.situation, state.playing, state.looks_back and run.time_s, state.looks_back, run.speed, run.end
 
 
 def run_app(settings: AppSettings) -> int:

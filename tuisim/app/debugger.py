@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from tuisim import protocol
 from tuisim.app.editor.text_file import file_of_program, write_json
 from tuisim.app.editor.text_lines import code_line, same_lines
-from tuisim.app.snapshot import DebugState, PauseView
+from tuisim.app.snapshot import PauseView
 from tuisim.breakpoints import Breakpoint, LineBreak, break_line_of, break_lines, moved, parse_break
 from tuisim.config.files import MAX_FILE_BYTES
 from tuisim.errors import ConfigError, TuisimError
@@ -21,9 +21,9 @@ from tuisim.source import source_lines
 
 if TYPE_CHECKING:
     from tuisim.app.editor.text_lines import LineMap
+    from tuisim.app.host import LabHost
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.run_controller import RunController
-    from tuisim.app.services import AppServices
     from tuisim.source import Program
 
 FOLDER = "breaks"
@@ -101,7 +101,7 @@ class DebugController:
 
     def __init__(
         self,
-        app: AppServices,
+        app: LabHost,
         run_controller: RunController,
         panel_area: PanelArea,
         lines: Callable[[], LineMap],
@@ -286,7 +286,7 @@ class DebugController:
     @property
     def looks_back(self) -> bool:
         """Whether a past instant is viewed, even one within the newest tick."""
-        return self._position is not None or self._run_controller.in_past
+        return self._position is not None or self._run_controller.timeline.at is not None
 
     @property
     def busy(self) -> bool:
@@ -297,11 +297,6 @@ class DebugController:
     def is_away(self) -> bool:
         """Whether a past instant is viewed, or will be once it is computed."""
         return self.looks_back or self.busy
-
-    @property
-    def state(self) -> DebugState:
-        """What is known now, as a value."""
-        return DebugState(self.view, self.looks_back, self.busy)
 
     @property
     def inspect_request(self) -> protocol.Inspect:
@@ -330,7 +325,8 @@ class DebugController:
 
     def poll(self) -> None:
         """Follow the instant in view and process what has been computed."""
-        self._replay_debugger.poll()
+        if self._replay_debugger.run is not None:
+            self._replay_debugger.poll()
         timeline = self._run_controller.timeline
         if self._position is not None and timeline.at not in (None, self._position.tick):
             self._position = None
@@ -406,7 +402,7 @@ class DebugController:
     def show(self) -> None:
         """Update the debug panel."""
         if panel := self._panel_area.debug:
-            panel.show_pause(self.state)
+            panel.show_pause(self.view, self.busy)
 
     # Steps
 

@@ -91,6 +91,8 @@ class Feed:
         self._traced += len(records)
         jumps = _jumps(records, self._last_xy_mm)
         self._last_xy_mm = float(records["x_mm"][-1]), float(records["y_mm"][-1])
+        if self._lifted and not (records["flags"] & FLAG_PEN_DOWN).any():
+            return [], []
         kept_at = _thinned(0, len(records), TRACE_POINTS_A_FEED)
         records, jumps = records[kept_at], jumps[kept_at]
         xs, ys, lifted = _pen_points(records, self.recording.spec.robot)
@@ -160,6 +162,8 @@ class PastView:
     def __init__(self, panel_area: PanelArea, timeline: Timeline) -> None:
         self._panel_area = panel_area
         self._timeline = timeline
+        self.is_shown = False
+        """Whether the panels show a past instant."""
         self._traced: object = None
         self._printed: object = None
 
@@ -167,8 +171,8 @@ class PastView:
         """Update the panels if they show another instant."""
         panel_area, timeline = self._panel_area, self._timeline
         recording, tick = timeline.recording, timeline.at
+        self.is_shown = tick is not None
         if world := panel_area.world:
-            world.time_bar.marks = timeline.marks
             key = None if tick is None or recording is None else (recording, tick, world)
             if key != self._traced:
                 self._traced = key

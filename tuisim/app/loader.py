@@ -26,10 +26,10 @@ from tuisim.source import Program
 
 if TYPE_CHECKING:
     from tuisim.app.goals import GoalsController
+    from tuisim.app.host import LabHost
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.render.mat import Pixels
     from tuisim.app.run_controller import RunController
-    from tuisim.app.services import AppServices
     from tuisim.config.program_file import ProgramSource
     from tuisim.core.spec import RunSpec
     from tuisim.goals.files import GoalsFile
@@ -53,7 +53,7 @@ class Loader:
 
     def __init__(
         self,
-        app: AppServices,
+        app: LabHost,
         run_controller: RunController,
         panel_area: PanelArea,
         goals: GoalsController,

@@ -46,9 +46,11 @@ class Recording:
         self.spec: RunSpec = source.spec
         self.folder: Path = source.folder
         self.telemetry: TelemetryView = source.telemetry
+        self._output = source.output
         self.rows = RowIndex(source.output)
         self.program = program_again(source)
         self._actions: tuple[UserAction, ...] = source.actions if isinstance(source, StoredRun) else ()
+        self._stall_ticks = stall_ticks(self.spec.profile.tick_hz)
         self._marks: _TimedMarks | None = None
         self.answers = tuple(source.options.get("answers", ())) if isinstance(source, StoredRun) else answers
         """Scripted answers to `input()`."""
@@ -57,6 +59,12 @@ class Recording:
     def name(self) -> str:
         """Display name: the number, or the id if it has none."""
         return f"run {self.number}" if self.number else self.run_id
+
+    def hold(self) -> None:
+        """Stay as written up to now, until the next `RunHandle.pump` of a running run."""
+        for view in (self.telemetry, self._output):
+            view.read_on()
+            view.holds = True
 
     @property
     def newest(self) -> int:
@@ -75,7 +83,8 @@ class Recording:
 
     def noise_at(self, record: TickRecord) -> NoiseSpec:
         """Return the noise at the tick of a record."""
-        return noise_at(self.spec, self.actions(), record)
+        actions = self.actions()
+        return noise_at(self.spec, actions, record) if actions else self.spec.world.noise
 
     def pressed_at(self, tick: int) -> frozenset[str]:
         """Return the brick's buttons that were pressed when a tick was complete."""
@@ -94,7 +103,7 @@ class Recording:
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
         """Return whether the left and the right motor were running but did not turn."""
-        ticks = stall_ticks(self.spec.profile.tick_hz)
+        ticks = self._stall_ticks
         if record.tick < ticks:
             return False, False
         before = self.telemetry.record(record.tick - ticks)

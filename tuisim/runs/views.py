@@ -127,6 +127,8 @@ class _View(ABC):
         self._path = folder / self._name
         self._is_checked = is_checked
         self._damage = ""
+        self.holds = False
+        """Whether it stays as it is until the next `read_on`, so that all who look at it see the same."""
         self._copy: bytearray | mmap = bytearray()
         """Starts like the file, with spare capacity; without the first `_dropped` records."""
         self._dropped = 0
@@ -142,8 +144,7 @@ class _View(ABC):
     @property
     def damage(self) -> str:
         """Why the file, or the rest of it, is not a recording; empty as long as it is one."""
-        self._extent()
-        return self._damage
+        return self._damage if self.holds else self.read_on()
 
     @property
     def is_missing(self) -> bool:
@@ -185,10 +186,16 @@ class _View(ABC):
         return memoryview(self._copy).toreadonly(), there
 
     def _extent(self) -> int:
-        """Return the length that exists, after a look at what has been published since."""
+        """Return the length that exists, unless it holds after a look at what has been published since."""
+        if not self.holds:
+            self.read_on()
+        return self._there
+
+    def read_on(self) -> str:
+        """Look at what has been published since. Return why it is not a recording; empty as long as it is one."""
         if self._packed is None and not self._unpacked and not self._damage:
             self._read_on()
-        return self._there
+        return self._damage
 
     def _known(self, count: int) -> memoryview | None:
         """Return the recording if `count` records that can no longer change have been read, else None."""

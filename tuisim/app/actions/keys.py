@@ -12,19 +12,18 @@ from functools import lru_cache, partial
 from typing import TypeAlias
 
 from tuisim.app.action import Action
-from tuisim.app.actions import app, files, lesson, program, robot, time_travel
+from tuisim.app.actions import ActionContext, app, files, lesson, program, robot, time_travel
 from tuisim.app.actions.files import analyse
 from tuisim.app.layout.arrangement import Preset
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import IN_RUN, RunPhase, Situation
-from tuisim.app.workspace import Workspace
 from tuisim.protocol import LineStep
 
 PROGRAM, DEBUG, TIME, ROBOT, PANEL = "Program", "Debugging", "Time", "Robot", "Panels"
 FILES, LESSON, APP = "Files", "Lesson", "App"
 
 
-LabAction: TypeAlias = Action[Workspace, Situation]
+LabAction: TypeAlias = Action[ActionContext, Situation]
 """One line of `ACTIONS`."""
 
 

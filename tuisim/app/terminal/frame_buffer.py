@@ -20,9 +20,8 @@ from textual.strip import SGR_STYLES, Strip
 
 from tuisim.app.graphics.picture import PictureCell, TilePicture
 from tuisim.app.render.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR, sgr_index
-from tuisim.app.terminal.cell_view import CellStrip, PictureStrip
+from tuisim.app.terminal.cell_view import CellStrip, JoinedStrip, PictureStrip
 from tuisim.app.terminal.plain import as_ascii
-from tuisim.app.terminal.strips import JoinedStrip
 from tuisim.charts.glyphs import GLYPHS
 
 _SEEN_ON_BLANKS = frozenset({"4", "7", "9", "21", "51", "52", "53"})

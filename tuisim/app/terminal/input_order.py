@@ -111,7 +111,7 @@ def _turn() -> Turn | None:
     return turn if turn is not None and turn.is_here else None
 
 
-_post, _dispatch, _process = MessagePump.post_message, MessagePump._dispatch_message, MessagePump._process_messages
+_post, _dispatch, _end = MessagePump.post_message, MessagePump._dispatch_message, Widget._message_loop_exit
 _call_next, _call_after_refresh = MessagePump.call_next, MessagePump.call_after_refresh
 
 
@@ -128,30 +128,34 @@ def post_message(pump: MessagePump, message: Message) -> bool:
     return posted
 
 
-async def dispatch_message(pump: MessagePump, message: Message) -> None:
+def dispatch_message(pump: MessagePump, message: Message) -> Awaitable[None]:
     """Handle a message, within the turn that it belongs to."""
     turn: Turn | None = getattr(message, _TURN, None)
+    # Nobody posts the events of a new widget: they belong to the turn in which it was made.
+    if turn is None and (_current.get() is None or isinstance(message, (events.Compose, events.Mount))):
+        return _dispatch(pump, message)
+    return _dispatch_in(turn, pump, message)
+
+
+async def _dispatch_in(turn: Turn | None, pump: MessagePump, message: Message) -> None:
     if turn is not None:
         with turn.step(pump):
             await _dispatch(pump, message)
-    elif isinstance(message, (events.Compose, events.Mount)):
-        # Nobody posts these: they belong to the turn in which the widget was made.
-        await _dispatch(pump, message)
-    else:
-        token = _current.set(None)
-        try:
-            await _dispatch(pump, message)
-        finally:
-            _current.reset(token)
-
-
-async def process_messages(pump: MessagePump) -> None:
-    """Handle messages until the end; those that are left then belong to no turn any more."""
+        return
+    token = _current.set(None)
     try:
-        await _process(pump)
+        await _dispatch(pump, message)
+    finally:
+        _current.reset(token)
+
+
+async def end_messages(widget: Widget) -> None:
+    """Clean up after the last message; those that are left then belong to no turn any more."""
+    try:
+        await _end(widget)
     finally:
         for turn in [*_live]:
-            turn.drop(pump)
+            turn.drop(widget)
 
 
 def call_next(pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> None:

@@ -134,9 +134,6 @@ def _message_codes(size: Size) -> str:
     return "\x1b[0m\x1b[2J" + "".join(rows)
 
 
-_HARMLESS = Sanitize()
-
-
 class TerminalApp(App[None]):
     """An app that restores the terminal, even when it is stopped or terminated from outside."""
 
@@ -147,6 +144,9 @@ class TerminalApp(App[None]):
 
     def __init__(self, picture_mode: PictureMode | None = None) -> None:
         super().__init__(driver_class=_driver_class())
+        self._filters.append(Sanitize())
+        # They take the code for italics for that of reverse video.
+        self._has_italics = not is_multiplexer(os.environ.get("TERM", ""))
         self.frame_buffer = FrameBuffer()
         self.picture_mode = picture_mode or PictureMode()
         """How pictures are drawn."""
@@ -172,7 +172,10 @@ class TerminalApp(App[None]):
 
     def _take_theme(self) -> None:
         is_own = self.theme == OWN_THEME
-        self.picture_mode.theme = None if is_own else ThemeColors(self.current_theme, TRACE_COLORS)
+        self.picture_mode.theme = theme = None if is_own else ThemeColors(self.current_theme, TRACE_COLORS)
+        filters = [one for one in self._filters if not isinstance(one, ThemeColors)]
+        # Before the filter for terminals without colours, which leaves no colour to be replaced.
+        self._filters = [theme, *filters] if theme else filters
 
     def _theme_changed(self, theme: Theme) -> None:
         """Draw everything in the colours of another theme, and keep the choice."""
@@ -298,7 +301,7 @@ class TerminalApp(App[None]):
     def text_mode(self) -> TextMode:
         """What the terminal supports."""
         is_ascii = self.picture_mode.cells is CellSet.ASCII
-        return TextMode(color_depth(self), is_ascii, has_italics=not is_multiplexer(os.environ.get("TERM", "")))
+        return TextMode(color_depth(self), is_ascii, has_italics=self._has_italics)
 
     @property
     def _writes(self) -> bool:
@@ -318,12 +321,6 @@ class TerminalApp(App[None]):
             # Zoom changes the size of the terminal and of its cells.
             AnswerParser.is_asked = True
             self._driver.write(CELL_SIZE_QUERY + ATTRIBUTES_QUERY)
-
-    def get_line_filters(self) -> Sequence[LineFilter]:
-        """Return the filters for everything that is drawn."""
-        # Before the filter for terminals without colours, which leaves no colour to be replaced.
-        theme = [self.picture_mode.theme] if self.picture_mode.theme else []
-        return [*theme, *super().get_line_filters(), _HARMLESS]
 
     def on_ready(self) -> None:
         if self.is_headless:
@@ -454,7 +451,7 @@ Widget.text_selection = property(text_selection)  # type: ignore[assignment]
 # Otherwise letters overtake the other keys.
 MessagePump.post_message = input_order.post_message  # type: ignore[method-assign, assignment]
 MessagePump._dispatch_message = input_order.dispatch_message  # type: ignore[method-assign, assignment]
-MessagePump._process_messages = input_order.process_messages  # type: ignore[method-assign, assignment]
+Widget._message_loop_exit = input_order.end_messages  # type: ignore[method-assign, assignment]
 MessagePump.call_next = input_order.call_next  # type: ignore[method-assign, assignment]
 MessagePump.call_after_refresh = input_order.call_after_refresh  # type: ignore[method-assign, assignment]
 # Otherwise the cache of this method keeps what it is a method of: the drawn rows of a thousand widgets that are gone.
