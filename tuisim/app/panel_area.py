@@ -13,16 +13,19 @@ from textual.widget import Widget
 from textual.widgets._toast import ToastRack
 
 from tuisim.app.layout.arrangement import (
+    KeptLayout,
     Preset,
     arrange,
     core_panels,
+    drop_former,
     is_single,
+    load_layout,
+    save_layout,
     size_class,
     stacked,
     wanted_panels,
     with_room,
 )
-from tuisim.app.layout.kept import KeptLayout, drop_former, load_layout, save_layout
 from tuisim.app.layout.tree import PanelLayout
 from tuisim.app.panels import PANELS, NextRunPanel, Panel, TerminalSize
 

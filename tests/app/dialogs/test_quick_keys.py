@@ -24,8 +24,7 @@ from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.dialogs.question import Question
-from tuisim.app.guide.screen import GuideScreen
-from tuisim.app.guide.topics import KeyPage, Topic
+from tuisim.app.guide.screen import GuideScreen, KeyPage, Topic
 
 IN_THE_LAB = {
     "mat": "b enter enter",

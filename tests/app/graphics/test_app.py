@@ -23,11 +23,10 @@ from tuisim.app.app import LabApp
 from tuisim.app.panels.arrays import Arrays
 from tuisim.app.panels.chart import Chart
 from tuisim.app.panels.world import WorldView
-from tuisim.app.terminal.answers import TerminalAnswered
 from tuisim.app.terminal.cell_view import PixelView
 from tuisim.app.terminal.picture_mode import Sharpness
 from tuisim.app.terminal.plot_view import PlotView
-from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, KITTY_QUESTIONS, facts_in
+from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, KITTY_QUESTIONS, TerminalAnswered, facts_in
 from tuisim.app.terminal.screenshot import screen_cells
 from tuisim.charts.traces import TRACE_COLORS
 from tuisim.config.options import AUTO, CellSet, Protocol

@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING
 
 from tuisim.app.action import key_groups, theme_list
-from tuisim.app.actions import files, lesson
 from tuisim.app.layout.arrangement import Preset
-from tuisim.config.folders import programs_folder
 from tuisim.config.options import AUTO
-from tuisim.config.preferences import keep, preference
 from tuisim.config.user_config import CELL_SET
 
 if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext
-
-
-_WELCOMED = "welcomed"
-"""Name of the preference."""
 
 
 def toggle(context: ActionContext, panel: str) -> None:
@@ -58,33 +50,6 @@ def next_panel(context: ActionContext, by: int) -> None:
         context.app.call_after_refresh(context.panels.attend, panel)
 
 
-EXAMPLE = "log_greys.py"
-"""The program that the welcome offers."""
-
-
-def welcome(context: ActionContext) -> None:
-    """Show the welcome unless it has been answered before, on this or an earlier start."""
-    from tuisim.app.dialogs.welcome import Begin, Welcome
-
-    if preference(_WELCOMED):
-        return
-
-    def chosen(what: Begin | None) -> None:
-        # Without a home folder it appears again, which is no reason to fail.
-        with suppress(OSError):
-            keep(_WELCOMED, True)
-        match what:
-            case Begin.EXAMPLE:
-                files.open_path(context, str(programs_folder() / EXAMPLE))
-                context.app.start_run()
-            case Begin.LEARN:
-                lesson.menu(context)
-            case Begin.OPEN:
-                files.open_program(context)
-
-    context.app.push_screen(Welcome(), chosen)
-
-
 _START = (
     "Press {open} to open an example, then {run} to run it; {stop} stops it, {pause} pauses it. {mats} selects another "
     "mat. Drag the robot with the mouse or move it with the arrow keys: the readings follow. Each line that a program "
@@ -103,8 +68,7 @@ def show_help(context: ActionContext) -> None:
     """Open the guide: the page of the focused panel, or every key of the app and of the editor."""
     from tuisim.app.editor.area import EDITOR_KEYS
     from tuisim.app.guide.key_tables import EVERYWHERE
-    from tuisim.app.guide.screen import GuideScreen
-    from tuisim.app.guide.topics import TOPICS, KeyPage, Topic
+    from tuisim.app.guide.screen import TOPICS, GuideScreen, KeyPage, Topic
 
     groups = key_groups(action for action in context.app.ACTIONS.values() if not action.id.startswith("nudge-"))
     groups["Robot"] += _NUDGES

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+import shlex
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.app import background
+from tuisim.app.actions import lesson
 from tuisim.app.actions.time_travel import to_tick
-from tuisim.app.editor.own_editor import own_editor
 from tuisim.app.setup import next_run as plans
+from tuisim.config.folders import programs_folder
 from tuisim.config.obstacles import save_obstacles as write
+from tuisim.config.preferences import keep, preference
 from tuisim.errors import TuisimError
 from tuisim.runs.store import RunStore
 
@@ -46,6 +51,35 @@ def open_path(context: ActionContext, path: str) -> None:
         context.document.open_at_mistake()
 
     context.document.when_safe(opened)
+
+
+_WELCOMED = "welcomed"
+"""Name of the preference."""
+EXAMPLE = "log_greys.py"
+"""The program that the welcome offers."""
+
+
+def welcome(context: ActionContext) -> None:
+    """Show the welcome unless it has been answered before, on this or an earlier start."""
+    from tuisim.app.dialogs.welcome import Begin, Welcome
+
+    if preference(_WELCOMED):
+        return
+
+    def chosen(what: Begin | None) -> None:
+        # Without a home folder it appears again, which is no reason to fail.
+        with suppress(OSError):
+            keep(_WELCOMED, True)
+        match what:
+            case Begin.EXAMPLE:
+                open_path(context, str(programs_folder() / EXAMPLE))
+                context.app.start_run()
+            case Begin.LEARN:
+                lesson.menu(context)
+            case Begin.OPEN:
+                open_program(context)
+
+    context.app.push_screen(Welcome(), chosen)
 
 
 def save_robot(context: ActionContext) -> None:
@@ -179,9 +213,9 @@ def analyse(context: ActionContext) -> None:
     from tuisim.analysis.source import LogRequest
     from tuisim.app.analyser.app import Analyser
 
-    lesson = context.lesson
+    controller = context.lesson
     request = LogRequest(runs=(context.runs.run_id,))
-    context.app.push_screen(Analyser(request, lesson.beside_log()), lambda _: lesson.log_closed())
+    context.app.push_screen(Analyser(request, controller.beside_log()), lambda _: controller.log_closed())
 
 
 def choose_run(context: ActionContext) -> None:
@@ -196,3 +230,23 @@ def choose_run(context: ActionContext) -> None:
         context.app.push_screen(RunChooser(), chosen)
 
     context.document.when_safe(ask)
+
+
+VARIABLES = ("VISUAL", "EDITOR")
+"""What names the editor; the first that is set counts."""
+
+
+def own_editor(environment: Mapping[str, str] = os.environ) -> list[str]:
+    """Return the command of the editor, without the file.
+
+    Raises:
+        TuisimError: none is named, or its command cannot be read.
+    """
+    for variable in VARIABLES:
+        named = environment.get(variable, "")
+        try:
+            if command := shlex.split(named):
+                return command
+        except ValueError as error:
+            raise TuisimError(f"{variable}={named}: {error}") from None
+    raise TuisimError("No editor is chosen: VISUAL and EDITOR are not set", "export EDITOR=nano before tuisim starts")

@@ -15,7 +15,7 @@ from textual.widget import Widget
 
 from tuisim.app.graphics.picture import Graphics
 from tuisim.app.render.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR
-from tuisim.app.terminal.browser import in_browser
+from tuisim.app.terminal.environment import in_browser
 from tuisim.app.terminal.probe import best_cells, colors_without_asking
 from tuisim.app.terminal.themes import ThemeColors
 from tuisim.config.options import AUTO, CellSet

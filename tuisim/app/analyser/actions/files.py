@@ -14,7 +14,7 @@ from tuisim.analysis.source import OpenedLog
 from tuisim.app import background
 from tuisim.app.analyser.panes import PANES, pane_frame
 from tuisim.app.dialogs.save import SaveDialog
-from tuisim.app.terminal.browser import offer
+from tuisim.app.terminal.environment import offer
 from tuisim.errors import counted
 
 if TYPE_CHECKING:

@@ -36,8 +36,7 @@ _START = (
 
 
 def _help(screen: LogScreen) -> None:
-    from tuisim.app.guide.screen import GuideScreen
-    from tuisim.app.guide.topics import KeyPage, Topic
+    from tuisim.app.guide.screen import GuideScreen, KeyPage, Topic
 
     keys = KeyPage("All keys of the analyser", _START, key_groups(screen.ACTIONS.values()))
     screen.app.push_screen(GuideScreen(keys, Topic()))
