@@ -5,8 +5,9 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from tuisim.app.action import key_groups, theme_list
+from tuisim.app.action import key_groups
 from tuisim.app.layout.arrangement import Preset
+from tuisim.app.terminal.terminal_app import theme_list
 from tuisim.config.options import AUTO
 from tuisim.config.user_config import CELL_SET
 

@@ -22,7 +22,7 @@ from textual._compositor import CompositorUpdate
 from textual._styles_cache import StylesCache
 from textual.app import App, ScreenStackError
 from textual.color import Color
-from textual.command import Provider
+from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
 from textual.css.query import NoMatches
 from textual.driver import Driver
 from textual.filter import LineFilter
@@ -30,13 +30,13 @@ from textual.geometry import Size
 from textual.message_pump import MessagePump
 from textual.screen import Screen
 from textual.selection import Selection
-from textual.theme import Theme
+from textual.theme import Theme, ThemeProvider
 from textual.widget import Widget, WidgetError
 from textual.widgets import OptionList
-from textual.worker import WorkerFailed
+from textual.worker import Worker, WorkerFailed
 
 from tuisim.app import background
-from tuisim.app.action import ActionProvider, Palette, with_keys_of
+from tuisim.app.action import ActionHost, with_keys_of
 from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.graphics.choice import graphics_of
@@ -122,6 +122,56 @@ def _message_codes(size: Size) -> str:
     top = (size.height - len(lines)) // 2
     rows = (Control.move_to(0, top + at).segment.text + line for at, line in enumerate(lines))
     return "\x1b[0m\x1b[2J" + "".join(rows)
+
+
+class Palette(CommandPalette, ClosesOnce[None]):
+    """Textual's command palette, as one of the app's screens that close once."""
+
+    def is_ready_for(self, event: events.Event) -> bool:
+        """Return whether what a key is meant for is there: the commands that were found, unless it is typed."""
+        types = isinstance(event, events.Key) and (event.is_printable or event.key in ("escape", "backspace"))
+        return super().is_ready_for(event) and (types or not any(map(self._is_search, self.workers)))
+
+    def _is_search(self, worker: Worker[Any]) -> bool:
+        return worker.node is self and worker.group == self._GATHER_COMMANDS_GROUP and not worker.is_finished
+
+    def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
+        """Let waiting keys go on once the commands are found."""
+        if event.worker.is_finished:
+            self.app.post_message(self.Changed())
+
+    def _on_click(self, event: events.Click) -> None:  # type: ignore[override]
+        # Where the terminal was until it became smaller there is nothing any more to be found.
+        if not self.region.contains(event.screen_x, event.screen_y):
+            event.prevent_default()
+
+
+def theme_list() -> Palette:
+    """Return Textual's list of themes."""
+    return Palette(providers=[ThemeProvider], placeholder="Search for themes…")
+
+
+class ActionProvider(Provider):
+    """Provides the actions of the screen that the palette opens above, else those of the app."""
+
+    def _offers(self) -> Iterator[tuple[str, Callable[[], None], str]]:
+        """Yield the title of each action, a call that runs it, and the text below the title."""
+        host = self.screen if isinstance(self.screen, ActionHost) else self.app
+        if isinstance(host, ActionHost):
+            for action in host.ACTIONS.values():
+                yield action.title, partial(host.action_act, action.id), f"{action.group} · key {action.key_label}"
+
+    async def discover(self) -> Hits:
+        """Yield every action, before anything is typed."""
+        for title, do, text in self._offers():
+            yield DiscoveryHit(title, do, help=text)
+
+    async def search(self, query: str) -> Hits:
+        """Yield the actions with a matching title."""
+        matcher = self.matcher(query)
+        for title, do, text in self._offers():
+            if (score := matcher.match(title)) > 0:
+                yield Hit(score, matcher.highlight(title), do, help=text)
 
 
 class TerminalApp(App[None]):
