@@ -22,17 +22,16 @@ from tuisim.app.actions.keys import ACTIONS, PAGES, RUN_KEYS, TEXT_KEYS, footer_
 from tuisim.app.actions.lesson import reads_on, takes_pages
 from tuisim.app.background import is_leaving, leave
 from tuisim.app.branch import branch_message
-from tuisim.app.brick_hint import BrickHint
 from tuisim.app.debugger import DebugController
 from tuisim.app.editor.document import Document
-from tuisim.app.feed import Feed, PastView, Series, sample_series
+from tuisim.app.feed import PanelFeed
 from tuisim.app.form import NumberInput
 from tuisim.app.goals import GoalsController
 from tuisim.app.keymap import check_theme, with_keys
 from tuisim.app.lesson import LessonController
 from tuisim.app.loader import PERIOD_S, Loader
 from tuisim.app.panel_area import PanelArea
-from tuisim.app.panel_messages import PanelMessages
+from tuisim.app.panel_messages import PanelMessages, looks_at_buttons
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
 from tuisim.app.setup import next_run as plans
 from tuisim.app.snapshot import AT_REST, GOOD_ENDS, AppState, RunPhase, Situation, end_words
@@ -47,13 +46,13 @@ from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.protocol import Ended
 from tuisim.runs.child.process import warm_up
+from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.source import Program
 
 if TYPE_CHECKING:
     from tuisim.app.panels.output import Output
     from tuisim.app.render.mat import Pixels
-    from tuisim.core.field import Field
     from tuisim.goals.files import GoalsFile
     from tuisim.lessons.spec import Lesson
 
@@ -146,8 +145,7 @@ class LabApp(PanelMessages):
         self.pacer = Pacer(settings.fps)
         self.picture_mode.is_slow, self.picture_mode.is_idle = lambda: self.pacer.is_slow, lambda: self.pacer.is_idle
         self.voice = Voice(settings.quiet)
-        self.past_view = PastView(self.panel_area, self.run_controller.timeline)
-        self.feed: Feed | None = None
+        self.feed = PanelFeed(self.panel_area, self.run_controller)
         self._drawn: tuple[Any, ...] = ((None,),)
         self._footed: tuple[Any, ...] = ()
         """What of the state the footer tells."""
@@ -177,7 +175,6 @@ class LabApp(PanelMessages):
             self, self.run_controller, self.panel_area, self.document, self.loader, self.debugger, self.lesson
         )
         self.run_controller.propose = partial(time_travel.propose_branch, self.context)
-        self.brick_hint = BrickHint(self._hint_at_brick)
         self._run_when_ready = settings.autorun and settings.replay is None
         self._frame_timer: Timer | None = None
         self._awake_until_s = 0.0
@@ -308,15 +305,14 @@ class LabApp(PanelMessages):
         self._set_frame_gap(_START_GAP_S)
         self.set_timer(_WARM_UP_AFTER_S, self.run_controller.prepare_next)
         self.run_changed()
-        self.brick_hint.started(self.run_controller.program.text if self.run_controller.program else "")
+        if self.run_controller.program and looks_at_buttons(self.run_controller.program.text):
+            self.hint_at_brick("reads the brick's buttons")
         return True
 
     def run_changed(self, last_words: str = "", error_line: int = 0) -> None:
         """Prepare the panels for another run, which may have ended already with some last words."""
-        recording = self.run_controller.timeline.recording
-        self.feed = Feed(recording) if recording else None
         self._last_words = last_words
-        self.panel_area.clear_log()
+        self.feed.run_changed()
         self.panel_area.release_buttons()
         self.document.run_changed()
         self.document.run_ended_at(error_line)
@@ -330,7 +326,8 @@ class LabApp(PanelMessages):
             self._process(news)
             if self.run_controller.timeline.playing:
                 time_travel.advance_playback(self.context)
-            self.debugger.poll()
+            if self.debugger.view is not None or self.debugger.replay.run is not None or self._looks_back:
+                self.debugger.poll()
             if self.goals.file is not None:
                 self.goals.update()
             if self.lesson.lesson is not None:
@@ -393,7 +390,9 @@ class LabApp(PanelMessages):
         for event in news.pauses:
             self.debugger.handle(event)
         if news.rows:
-            self._process_rows(news)
+            self.feed.add_rows(news.rows)
+        if not self.has_hinted and any(row.stream in (Stream.DISPLAY, Stream.CONSOLE) for row in news.rows):
+            self.hint_at_brick("uses the brick's display")
         if output := self.panel_area.output:
             if news.prompt is not None and not output.asking:
                 self._ask_user(news.prompt)
@@ -407,17 +406,6 @@ class LabApp(PanelMessages):
         if self._last_words and len(news.rows) < ROWS_A_POLL and self.panel_area.output:
             self.panel_area.output.note(self._last_words)
             self._last_words = ""
-
-    def _process_rows(self, news: RunUpdate) -> None:
-        self.brick_hint.shown(news.rows)
-        if self.panel_area.output:
-            self.panel_area.output.add(news.rows)
-        self._append(sample_series(news.rows), logged=True)
-
-    def _append(self, series: Series, logged: bool) -> None:
-        if chart := self.panel_area.chart:
-            for name, (times, values) in series.items():
-                chart.append(name, times, values, logged)
 
     def _ask_user(self, prompt: str) -> None:
         self.panel_area.bring("output")
@@ -441,39 +429,21 @@ class LabApp(PanelMessages):
     def draw(self, force: bool = False) -> bool:
         """Show the current moment in every panel. Return whether it differs from what they show already."""
         state = self.state()
-        run, mat = state.run, self._charted_mat()
+        run = state.run
         now = (
             (run.state, run.instant, run.line, run.speed, run.pen_down, run.stalled),
             (run.spec, run.next_spec, run.past, run.now_tick),
             (run.face, run.pressed),
         )
-        is_behind = mat is not None and self.feed is not None and self.feed.is_behind
-        if now == self._drawn and not force and not is_behind:
+        if now == self._drawn and not force and not self.feed.is_behind:
             return False
         self._drawn = now
-        if self.feed is not None:
-            self._feed_panels(self.feed, mat)
-        if run.past or self.past_view.is_shown:
-            self.past_view.show()
+        self.feed.show()
         self.panel_area.show(run)
         if force or self._footed != _footed(state):
             self._show_footer(state)
         self.pacer.drawn()
         return True
-
-    def _feed_panels(self, feed: Feed, mat: Field | None) -> None:
-        if world := self.panel_area.world:
-            xs, ys = feed.trace_points()
-            if xs:
-                world.extend_trace(xs, ys, feed.recording.spec.robot.pen)
-        if mat is not None:
-            self._append(feed.chart_series(mat), logged=False)
-
-    def _charted_mat(self) -> Field | None:
-        """Return the mat that the chart's readings are taken from; None if no chart or no mat."""
-        if self.feed is None or not self.panel_area.shown("chart"):
-            return None
-        return self.run_controller.mat_for(self.feed.recording.spec)
 
     def painted(self, size: int) -> None:
         """Ask the terminal to report when it has shown what it was sent; the answer is a `CursorPosition` event."""
@@ -497,7 +467,13 @@ class LabApp(PanelMessages):
     def _situation(self, phase: RunPhase) -> Situation:
         runs, timeline, code = self.run_controller, self.run_controller.timeline, self.panel_area.code
         facts = runs.program is not None, timeline.recording is not None, timeline.at is not None
-        return Situation(phase, *facts, self.debugger.is_away, code is not None and code.is_read, self.has_pixels)
+        is_away = self._looks_back or self.debugger.replay.busy
+        return Situation(phase, *facts, is_away, code is not None and code.is_read, self.has_pixels)
+
+    @property
+    def _looks_back(self) -> bool:
+        """Whether a past instant is viewed, even one within the newest tick."""
+        return self.run_controller.timeline.at is not None or self.debugger.position is not None
 
     def action_target(self) -> ActionContext:
         return self.context
@@ -506,7 +482,7 @@ class LabApp(PanelMessages):
         """Return everything that panels and footer show, at the instant in view."""
         run = self.run_controller.snapshot()
         playing = self.run_controller.timeline.playing
-        return AppState(run, self._situation(run.state), self.debugger.looks_back, playing)
+        return AppState(run, self._situation(run.state), self._looks_back, playing)
 
     def _show_footer(self, state: AppState) -> None:
         self._footed = _footed(state)
@@ -528,10 +504,6 @@ class LabApp(PanelMessages):
         code = self.panel_area.code
         typing = code is not None and code.typing and focused is not None and code in focused.ancestors
         return TYPING_KEYS if typing else ()
-
-    def _hint_at_brick(self, what: str) -> None:
-        if not self.panel_area.shown("brick"):
-            self.say(f"The program {what}: {{panel-brick}} opens its panel")
 
     # Panels
 

@@ -117,10 +117,10 @@ class DebugController:
         self._text = ""
         self._paused: Paused | None = None
         """Where the live run is paused."""
-        self._position: Position | None = None
+        self.position: Position | None = None
         """The past instant that is viewed, exact to the line."""
         self._frame, self._thread = 0, ""
-        self._replay_debugger = ReplayDebugger(self._arrived, self._not_there, self._reached_now)
+        self.replay = ReplayDebugger(self._arrived, self._not_there, self._reached_now)
         self._wanted: Position | None = None
         """The instant that the replay debugger was last sent to."""
         self._first: Message | None = None
@@ -226,11 +226,11 @@ class DebugController:
 
     def run_changed(self) -> None:
         """Reset the state for another run, or none."""
-        self._paused = self._position = self.view = self._run_controller.paused_line = None
+        self._paused = self.position = self.view = self._run_controller.paused_line = None
         self._frame, self._thread, self._wanted = 0, "", None
         self._panels_opened, self._breakpoints_unsent = False, bool(self.breaks)
         self._first, self._more_back = None, 0
-        self._replay_debugger.close()
+        self.replay.close()
         self.show()
 
     def ended(self) -> None:
@@ -251,13 +251,13 @@ class DebugController:
             case protocol.Resumed():
                 self._paused = None
                 if not self._run_controller.in_past:
-                    self._position = self.view = None
+                    self.position = self.view = None
                     self.show()
             case Inspected() if self._paused is not None and not self.looks_back:
                 self._set_paused(PauseView(self._paused, event, False))
 
     def _handle_pause(self, paused: Paused) -> None:
-        self._paused, self._position = paused, None
+        self._paused, self.position = paused, None
         self._frame, self._thread = 0, ""
         if self._first is not None and paused.reason is not PauseReason.BREAK:
             first, self._first = self._first, None
@@ -286,12 +286,12 @@ class DebugController:
     @property
     def looks_back(self) -> bool:
         """Whether a past instant is viewed, even one within the newest tick."""
-        return self._position is not None or self._run_controller.timeline.at is not None
+        return self.position is not None or self._run_controller.timeline.at is not None
 
     @property
     def busy(self) -> bool:
         """Whether a past instant is still being computed."""
-        return self._replay_debugger.busy
+        return self.replay.busy
 
     @property
     def is_away(self) -> bool:
@@ -319,30 +319,29 @@ class DebugController:
 
     def _inspect_again(self) -> None:
         if self.looks_back:
-            self._replay_debugger.look(self.inspect_request)
+            self.replay.look(self.inspect_request)
         elif self._paused is not None:
             self._run_controller.debug(self.inspect_request)
 
     def poll(self) -> None:
         """Follow the instant in view and process what has been computed."""
-        if self._replay_debugger.run is not None:
-            self._replay_debugger.poll()
+        self.replay.poll()
         timeline = self._run_controller.timeline
-        if self._position is not None and timeline.at not in (None, self._position.tick):
-            self._position = None
+        if self.position is not None and timeline.at not in (None, self.position.tick):
+            self.position = None
         if not self.looks_back:
             if self.view and self.view.past and not self.busy:
                 self._back_to_now()
             return
-        if timeline.at is not None and self._position is None and self._panel_area.shown("debug"):
+        if timeline.at is not None and self.position is None and self._panel_area.shown("debug"):
             self._follow(Position(timeline.at))
 
     def to_now(self) -> None:
         """Return to the newest instant, also from earlier lines of its own tick."""
-        self._position, self._more_back = None, 0
-        if self._replay_debugger.busy:
+        self.position, self._more_back = None, 0
+        if self.replay.busy:
             # The result still being computed is no longer wanted.
-            self._replay_debugger.close()
+            self.replay.close()
             self._wanted = None
             self.show()
 
@@ -353,10 +352,10 @@ class DebugController:
 
     def _follow(self, position: Position) -> None:
         timeline = self._run_controller.timeline
-        if timeline.recording is None or timeline.playing or self._replay_debugger.busy or position == self._wanted:
+        if timeline.recording is None or timeline.playing or self.replay.busy or position == self._wanted:
             return
         self._wanted = position
-        self._replay_debugger.go(timeline.recording, position, self.inspect_request)
+        self.replay.go(timeline.recording, position, self.inspect_request)
         self.show()
 
     def _arrived(self, paused: Paused, inspected: Inspected) -> None:
@@ -365,7 +364,7 @@ class DebugController:
             if not self._is_past(here):
                 self._reached_now()
                 return
-            self._position = here
+            self.position = here
             timeline.go(paused.tick)
         elif timeline.at != self._wanted.tick:
             # The user has gone to another instant since.
@@ -409,8 +408,8 @@ class DebugController:
     def _here(self) -> Position | None:
         """Return the instant in view, exact to the line as far as that is known."""
         timeline = self._run_controller.timeline
-        if self._position is not None:
-            return self._position
+        if self.position is not None:
+            return self.position
         if timeline.at is not None:
             return Position(timeline.at)
         if self._paused is not None and self._paused.ordinal != UNKNOWN_ORDINAL:
@@ -445,13 +444,13 @@ class DebugController:
 
     def _in_past(self, command: Message) -> None:
         timeline = self._run_controller.timeline
-        if timeline.recording is None or self._replay_debugger.busy:
+        if timeline.recording is None or self.replay.busy:
             return
         self._open_panels()
         here = self._here()
         assert here is not None
-        self._position, self._wanted = None, None
-        self._replay_debugger.go_on(timeline.recording, here, command, self.inspect_request)
+        self.position, self._wanted = None, None
+        self.replay.go_on(timeline.recording, here, command, self.inspect_request)
         self.show()
 
     def lines_back(self, count: int) -> None:
@@ -459,19 +458,19 @@ class DebugController:
         here, recording = self._here(), self._run_controller.timeline.recording
         if here is None or recording is None:
             self._app.say("No run yet: {run} runs the program")
-        elif self._replay_debugger.busy:
+        elif self.replay.busy:
             self._more_back += count
         else:
             self._run_controller.pause()
             self._open_panels()
-            self._position, self._wanted = None, None
+            self.position, self._wanted = None, None
             count, self._more_back = count + self._more_back, 0
-            self._replay_debugger.lines_back(recording, here, count, self.inspect_request)
+            self.replay.lines_back(recording, here, count, self.inspect_request)
             self.show()
 
     def close(self) -> None:
         """Stop the debugger's processes."""
-        self._replay_debugger.close()
+        self.replay.close()
 
 
 def _mark(one: Breakpoint) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, assert_never
 
 from textual import on
@@ -29,10 +30,26 @@ _LESSON_COLUMNS = 74
 """Columns that are enough while the text of a lesson is beside the code."""
 
 
+_BUTTONS = re.compile(r"^[^#\n]*\bev3dev2(\.|\s+import\s.*\b)button\b", re.MULTILINE)
+
+
+def looks_at_buttons(program: str) -> bool:
+    """Return whether the text of a program uses the brick's buttons."""
+    return bool(_BUTTONS.search(program))
+
+
 class PanelMessages(LabHost):
     """Message handlers of the app for the panels; Textual finds the methods by name."""
 
     context: ActionContext
+    has_hinted = False
+    """Whether the panel of the brick was named."""
+
+    def hint_at_brick(self, does: str) -> None:
+        """Name the panel of the brick, if it is hidden, to whoever runs a program that needs it; once."""
+        if not self.has_hinted and not self.context.panels.shown("brick"):
+            self.say(f"The program {does}: {{panel-brick}} opens its panel")
+        self.has_hinted = True
 
     def on_code_typing_changed(self, message: Code.TypingChanged) -> None:
         self.situation_changed()

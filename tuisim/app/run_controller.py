@@ -172,9 +172,10 @@ class RunController:
         """Return the snapshot of the instant in view."""
         timeline, recording, spec = self.timeline, self.timeline.recording, self.spec
         newest = recording.telemetry.last() if recording else None
-        record = self._record()
+        past = timeline.at is not None
+        record = timeline.record() if past else None if self._moved else newest
         instant, line, pen_down = self._moment(record)
-        state, past, face = self.state, timeline.at is not None, timeline.face()
+        state, face = self.state, timeline.face()
         # After the robot was placed following the run, all its motors are reset.
         has_turned = record is not None and face.turns
         turns = face.turns_at(instant.tick / spec.profile.tick_hz, spec.profile.tick_hz) if has_turned else ()

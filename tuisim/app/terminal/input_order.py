@@ -54,6 +54,7 @@ class Turn:
         self.steps = 0
         """How much of it has been done."""
         _live.add(self)
+        _follow_turns()
 
     @contextmanager
     def step(self, pump: MessagePump) -> Iterator[None]:
@@ -83,6 +84,8 @@ class Turn:
         if not self.is_over:
             self.is_over = True
             self._left.clear()
+            _live.discard(self)
+            _follow_turns()
             self._ended()
 
     def later(self, pump: MessagePump, callback: Callable[[], Any]) -> Callable[[], Awaitable[Any]]:
@@ -175,6 +178,16 @@ def call_after_refresh(pump: MessagePump, callback: Callable[..., Any], *args: A
     if not is_posted:
         turn.drop(pump, 1)
     return is_posted
+
+
+def _follow_turns() -> None:
+    """Let Textual call these functions while there is a turn, and else its own: most messages are about drawing."""
+    own = _post, _dispatch, _call_next, _call_after_refresh
+    post, dispatch, call, later = (post_message, dispatch_message, call_next, call_after_refresh) if _live else own
+    MessagePump.post_message = post  # type: ignore[method-assign, assignment]
+    MessagePump._dispatch_message = dispatch  # type: ignore[method-assign, assignment]
+    MessagePump.call_next = call  # type: ignore[method-assign, assignment]
+    MessagePump.call_after_refresh = later  # type: ignore[method-assign, assignment]
 
 
 def takes_letters(widget: Widget) -> bool:

@@ -27,7 +27,6 @@ from textual.css.query import NoMatches
 from textual.driver import Driver
 from textual.filter import LineFilter
 from textual.geometry import Size
-from textual.message_pump import MessagePump
 from textual.screen import Screen
 from textual.selection import Selection
 from textual.theme import Theme, ThemeProvider
@@ -486,12 +485,7 @@ textual_screen.Compositor = ThoroughCompositor  # type: ignore[attr-defined]
 OptionList._on_click = textual_mends.click  # type: ignore[method-assign, assignment]
 OptionList._move_page = textual_mends.move_page  # type: ignore[method-assign, assignment]
 Widget.text_selection = property(text_selection)  # type: ignore[assignment]
-# Otherwise letters overtake the other keys.
-MessagePump.post_message = input_order.post_message  # type: ignore[method-assign, assignment]
-MessagePump._dispatch_message = input_order.dispatch_message  # type: ignore[method-assign, assignment]
 Widget._message_loop_exit = input_order.end_messages  # type: ignore[method-assign, assignment]
-MessagePump.call_next = input_order.call_next  # type: ignore[method-assign, assignment]
-MessagePump.call_after_refresh = input_order.call_after_refresh  # type: ignore[method-assign, assignment]
 # Otherwise the cache of this method keeps what it is a method of: the drawn rows of a thousand widgets that are gone.
 StylesCache.get_inner_outer = classmethod(StylesCache.get_inner_outer)  # type: ignore[method-assign, arg-type, assignment]
 
