@@ -172,10 +172,10 @@ class RunController:
         """Return the snapshot of the instant in view."""
         timeline, recording, spec = self.timeline, self.timeline.recording, self.spec
         newest = recording.telemetry.last() if recording else None
-        past = timeline.at is not None
+        past, now_tick = timeline.at is not None, newest.tick if newest else 0
         record = timeline.record() if past else None if self._moved else newest
         instant, line, pen_down = self._moment(record)
-        state, face = self.state, timeline.face()
+        state, face = self.state, timeline.face(now_tick if timeline.at is None else timeline.at)
         # After the robot was placed following the run, all its motors are reset.
         has_turned = record is not None and face.turns
         turns = face.turns_at(instant.tick / spec.profile.tick_hz, spec.profile.tick_hz) if has_turned else ()
@@ -194,7 +194,7 @@ class RunController:
             turns=turns or ((0.0, 0.0),) * len(spec.robot.extra_motors),
             pressed=self._pressed_at(record),
             past=past,
-            now_tick=newest.tick if newest else 0,
+            now_tick=now_tick,
             now_pose=newest.pose if newest and past else None,
         )
 

@@ -49,7 +49,8 @@ class Recording:
         self._output = source.output
         self.rows = RowIndex(source.output)
         self.program = program_again(source)
-        self._actions: tuple[UserAction, ...] = source.actions if isinstance(source, StoredRun) else ()
+        self.known_actions: tuple[UserAction, ...] = source.actions if isinstance(source, StoredRun) else ()
+        """The user's actions, as far as `actions` has last found them."""
         self._stall_ticks = stall_ticks(self.spec.profile.tick_hz)
         self._marks: _TimedMarks | None = None
         self.answers = tuple(source.options.get("answers", ())) if isinstance(source, StoredRun) else answers
@@ -75,11 +76,11 @@ class Recording:
         """Return the user's actions, as far as their file is not damaged."""
         last = self.telemetry.last()
         # The record counts the actions modulo 65536, and may be slightly ahead of their file.
-        if last is not None and 0 < (last.actions - len(self._actions)) & 0xFFFF < 0x8000:
+        if last is not None and 0 < (last.actions - len(self.known_actions)) & 0xFFFF < 0x8000:
             # What is damaged makes the end of the run, or is a note of a stored one.
             with suppress(LogError):
-                self._actions = read_actions(self.folder)[0]
-        return self._actions
+                self.known_actions = read_actions(self.folder)[0]
+        return self.known_actions
 
     def noise_at(self, record: TickRecord) -> NoiseSpec:
         """Return the noise at the tick of a record."""

@@ -21,11 +21,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from weakref import finalize
 
 from tuisim.core.drive import turn_rate_dps
-from tuisim.core.end_stops import end_flags
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import Instant
-from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
+from tuisim.core.tick_record import END_FLAGS, TICK_FIELDS, TICK_RECORD
 from tuisim.errors import LogError, counted
 from tuisim.regular_file import of_the_machine, open_regular
 from tuisim.runs.brick_state import DRAWN_STREAMS, is_sound
@@ -94,7 +93,7 @@ def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
         right_speed_dps=record.right_speed_dps,
         turn_rate_dps=turn_rate_dps(record.left_speed_dps, record.right_speed_dps, spec.robot),
         gyro_zero_deg=record.gyro_zero_deg,
-        end_flags=end_flags(record.flags),
+        end_flags=record.flags & END_FLAGS,
         noise=noise,
         seed=spec.seed,
     )

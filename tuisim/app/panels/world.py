@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from rich.style import Style
@@ -179,6 +179,8 @@ class WorldView(PixelView):
         """Shown instead of `trace` while a past instant is in view."""
         self._trace_drawn = 0
         self._painter: ScenePainter | None = None
+        self._has_signs = False
+        """Whether the robots are drawn as signs above the picture."""
         self._port: Viewport | None = None
         self._snapshot: Snapshot | None = None
         self._scene: SceneState | None = None
@@ -235,6 +237,8 @@ class WorldView(PixelView):
             few = {CellSet.ASCII} if mono else {CellSet.ASCII, CellSet.BRAILLE}
             coarse = graphics is None and self.cell_set in few
             whole = graphics is None and self.cell_set not in BLOCKS
+            self._has_signs = mono and self.cell_set is CellSet.ASCII
+            self.set_signs({})
             self._painter = ScenePainter(self._mat, outside_rgb, self.trace, mode.grey, mono, coarse, whole)
         trace = self.trace if self.past_trace is None else self.past_trace
         # What stands still is drawn finely at once, and not a moment later by itself.
@@ -245,8 +249,8 @@ class WorldView(PixelView):
         self._scene, self._port, self._trace_drawn = scene, port, trace.count
         self._painter.trace = trace
         self.set_fine_picture(self._painter.paint(port, scene), graphics, stands=stands)
-        has_signs = self.cell_set is CellSet.ASCII and self.color_mode.depth == MONO
-        self.set_signs(_pointers(port, scene) if has_signs else {})
+        if self._has_signs:
+            self.set_signs(_pointers(port, scene))
 
     def redraw(self) -> None:
         """Draw the image again: the app's glyphs or colours have changed."""
@@ -429,7 +433,7 @@ class BarTimes:
     def end_s(self) -> float:
         """Time at the right end: the end of a finished run, else a round time."""
         now_s = self.newest / self.tick_hz
-        return max(now_s, 1 / self.tick_hz) if self.over else time_limits(now_s)[1]
+        return max(now_s, 1 / self.tick_hz) if self.over else _round_end_s(math.ceil(now_s))
 
     def column(self, tick: int, columns: int) -> int:
         """Return the column of a tick in a bar of that length."""
@@ -439,6 +443,12 @@ class BarTimes:
         """Return the tick at a column, at most the newest one."""
         share = min(max(column, 0), columns - 1) / max(columns - 1, 1)
         return min(self.newest, round(share * self.end_s * self.tick_hz))
+
+
+@lru_cache(maxsize=1)
+def _round_end_s(now_s: int) -> float:
+    """Return where the bar of a run at work ends, which changes at whole seconds only."""
+    return time_limits(now_s)[1]
 
 
 def words(times: BarTimes, width: int) -> str:
