@@ -44,7 +44,7 @@ from tuisim.config.program_settings import Decided
 from tuisim.config.user_config import FILE, UserConfig, load_config
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError, TuisimError
-from tuisim.protocol import Ended
+from tuisim.protocol import Answer, Ended
 from tuisim.runs.child.process import warm_up
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
@@ -552,7 +552,7 @@ class LabApp(PanelMessages):
         self.panel_area.focus_world()
 
     def on_output_answered(self, message: Output.Answered) -> None:
-        self.run_controller.answer(message.text)
+        self.run_controller.send(Answer(message.text))
         self.action_leave_field()
 
     def on_click(self, event: events.Click) -> None:

@@ -171,7 +171,7 @@ class DebugController:
             runs = lines.to_run(shown)
             if runs or not shown:
                 texts.append(moved(one, runs).written())
-        self._run_controller.debug(protocol.SetBreaks(tuple(texts)))
+        self._run_controller.send(protocol.SetBreaks(tuple(texts)))
 
     def set_watches(self, watches: tuple[str, ...]) -> None:
         """Set the watched expressions and store them."""
@@ -261,7 +261,7 @@ class DebugController:
         self._frame, self._thread = 0, ""
         if self._first is not None and paused.reason is not PauseReason.BREAK:
             first, self._first = self._first, None
-            self._run_controller.debug(first)
+            self._run_controller.send(first)
             return
         if paused.reason in SHOWS_PANELS:
             self._open_panels()
@@ -321,7 +321,7 @@ class DebugController:
         if self.looks_back:
             self.replay.look(self.inspect_request)
         elif self._paused is not None:
-            self._run_controller.debug(self.inspect_request)
+            self._run_controller.send(self.inspect_request)
 
     def poll(self) -> None:
         """Follow the instant in view and process what has been computed."""
@@ -434,7 +434,7 @@ class DebugController:
         if self.is_away:
             self._in_past(command)
         elif self._run_controller.in_run:
-            self._run_controller.debug(command)
+            self._run_controller.send(command)
         else:
             # A program started for this pauses at its first line anyway.
             first = None if isinstance(command, protocol.StepLine) else command

@@ -306,14 +306,14 @@ class RunController:
         branch, self._branch = self._branch, None
         if branch is not None and paused is not None:
             early = paused.tick < branch.tick
-            self._send(protocol.SetSpeed(self.speed))
+            self.send(protocol.SetSpeed(self.speed))
             if branch.of.pressed_at(branch.tick + 1) and not early:
                 # Buttons that were held then have been released since.
-                self._send(protocol.SetButtons(()))
+                self.send(protocol.SetButtons(()))
             if branch.then is not None and not early:
-                self._send(branch.then)
+                self.send(branch.then)
             if early or (branch.goes_on and not self.in_past):
-                self._send(protocol.Resume())
+                self.send(protocol.Resume())
         return branch
 
     def replay(self, run: StoredRun) -> None:
@@ -343,28 +343,12 @@ class RunController:
     def pause(self) -> None:
         """Pause the run, unless there is none or it is paused already."""
         if self.in_run and self.state is not RunPhase.PAUSED:
-            self._send(protocol.Pause())
-
-    def resume(self) -> None:
-        """Resume the run."""
-        self._send(protocol.Resume())
-
-    def step(self) -> None:
-        """Run one tick."""
-        self._send(protocol.StepTicks(1))
-
-    def debug(self, command: protocol.Message) -> None:
-        """Send a debug command."""
-        self._send(command)
+            self.send(protocol.Pause())
 
     def set_speed(self, speed: float) -> None:
         """Change the speed: 1.0 is real time, 0 as fast as possible."""
         self.speed = speed
-        self._send(protocol.SetSpeed(speed))
-
-    def answer(self, text: str | None) -> None:
-        """Answer `input()`; None is end of file."""
-        self._send(protocol.Answer(text))
+        self.send(protocol.SetSpeed(speed))
 
     def set_pen(self, down: bool) -> None:
         """Put the pen down or up, for this run and the next."""
@@ -379,7 +363,7 @@ class RunController:
         if buttons == self.pressed:
             return
         self.pressed = buttons
-        self._send(protocol.SetButtons(tuple(name for name in protocol.BUTTONS if name in buttons)))
+        self.send(protocol.SetButtons(tuple(name for name in protocol.BUTTONS if name in buttons)))
 
     def set_noise(self, noise: NoiseSpec) -> None:
         """Change the noise, at once and for the next run."""
@@ -447,13 +431,14 @@ class RunController:
         record = self._record()
         if record is not None and self._branch is None and self._is_paused:
             self._pending.note(record, action)
-        self._send(action)
+        self.send(action)
 
     @property
     def _is_paused(self) -> bool:
         return self.run is not None and self.run.paused
 
-    def _send(self, command: protocol.Message) -> None:
+    def send(self, command: protocol.Message) -> None:
+        """Send a command to the run, if there is one."""
         # On the way to its instant, a branch must repeat the run exactly.
         if self.run is not None and (self._branch is None or isinstance(command, protocol.Answer)):
             self.run.send(command)

@@ -20,7 +20,7 @@ from tuisim.app.setup.next_run import with_obstacles
 from tuisim.app.snapshot import RunPhase
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, Obstacle
-from tuisim.protocol import SetNoise
+from tuisim.protocol import Answer, Resume, SetNoise
 from tuisim.runs.rerun import rerun, same
 from tuisim.runs.store import RunStore
 
@@ -155,7 +155,7 @@ async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:
         await pilot.pause()
         assert (light(app), app.run_controller.next_run.spec.world.noise.light) == (30, 30)
         newest = app.run_controller.timeline.newest
-        app.run_controller.resume()
+        app.run_controller.send(Resume())
         await until(pilot, lambda: app.run_controller.timeline.newest > newest + 5)
         assert noises(app) == [30]
 
@@ -170,7 +170,7 @@ async def test_a_run_paused_while_it_asks_goes_on() -> None:
         await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
         await pilot.press("space")
         await until(pilot, lambda: app.run_controller.state == RunPhase.WAITING)
-        app.run_controller.answer("Ann")
+        app.run_controller.send(Answer("Ann"))
         await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
 
 

@@ -105,26 +105,6 @@ def choose_theme(context: ActionContext) -> None:
     context.app.push_screen(theme_list())
 
 
-def switch_pixels(context: ActionContext) -> None:
-    """Draw pictures with characters in place of pixels, or again with pixels."""
-    context.app.action_switch_pixels()
-
-
-def redraw(context: ActionContext) -> None:
-    """Redraw the whole screen."""
-    context.app.action_redraw()
-
-
-def screenshot(context: ActionContext) -> None:
-    """Save the whole screen as SVG and PNG."""
-    context.app.action_save_screen()
-
-
-def suspend(context: ActionContext) -> None:
-    """Suspend the app as a shell job; a live run is paused first."""
-    context.app.action_suspend_process()
-
-
 def leave(context: ActionContext) -> None:
     """Quit; with unsaved changes or a running program, ask first."""
     context.document.when_safe(lambda: _leave(context))

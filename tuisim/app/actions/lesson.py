@@ -36,11 +36,6 @@ def answer(context: ActionContext) -> None:
     )
 
 
-def hint(context: ActionContext) -> None:
-    """Show the next hint of the step."""
-    context.lesson.hint()
-
-
 def scroll(context: ActionContext, by: int) -> None:
     """Scroll the text of the lesson by rows; if all of it is in view, the code if it has the focus."""
     area = context.panels

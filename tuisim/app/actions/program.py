@@ -24,11 +24,6 @@ def run(context: ActionContext) -> None:
         context.app.start_run()
 
 
-def stop(context: ActionContext) -> None:
-    """Stop the program."""
-    context.runs.stop()
-
-
 def pause(context: ActionContext) -> None:
     """Pause or continue: playback in the past, the program at the newest instant."""
     timeline = context.runs.timeline
@@ -39,7 +34,7 @@ def pause(context: ActionContext) -> None:
         timeline.play(time.monotonic())
         refresh(context)
     elif context.runs.state == RunPhase.PAUSED:
-        context.runs.resume()
+        context.runs.send(protocol.Resume())
     else:
         context.runs.pause()
 
@@ -54,16 +49,6 @@ def change_speed(context: ActionContext, by: int) -> None:
         return
     context.runs.set_speed(SPEEDS[to])
     context.app.situation_changed()
-
-
-def step(context: ActionContext, how: protocol.LineStep) -> None:
-    """Step to the next line: over calls, into calls, or out of the current function."""
-    context.debugger.step(how)
-
-
-def line_back(context: ActionContext) -> None:
-    """Step back to the line before."""
-    context.debugger.lines_back(1)
 
 
 def to_cursor(context: ActionContext) -> None:

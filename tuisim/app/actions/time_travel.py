@@ -53,7 +53,8 @@ def to_time(context: ActionContext, time_s: float | None) -> None:
     to_tick(context, None if time_s is None else round(time_s * context.runs.timeline.tick_hz))
 
 
-def _by(context: ActionContext, ticks: int) -> None:
+def by_ticks(context: ActionContext, ticks: int) -> None:
+    """Go forward by a number of ticks of the recording; negative goes back."""
     timeline = context.runs.timeline
     at = timeline.tick
     if ticks < 0 and at <= 0:
@@ -62,19 +63,14 @@ def _by(context: ActionContext, ticks: int) -> None:
     to_tick(context, at + ticks if at + ticks < timeline.newest else None)
 
 
-def tick_back(context: ActionContext) -> None:
-    """Go back one tick."""
-    _by(context, -1)
-
-
 def tick_on(context: ActionContext) -> None:
     """Go forward one tick: as recorded in the past, else live; from an earlier line of the newest tick, go to now."""
     if context.runs.in_past:
-        _by(context, 1)
+        by_ticks(context, 1)
     elif context.debugger.is_away:
         to_now(context)
     else:
-        context.runs.step()
+        context.runs.send(protocol.StepTicks(1))
 
 
 def ten_ticks(context: ActionContext) -> None:
@@ -86,17 +82,12 @@ def ten_ticks(context: ActionContext) -> None:
     elif context.debugger.is_away:
         to_now(context)
     else:
-        context.runs.debug(protocol.StepTicks(MANY_TICKS))
+        context.runs.send(protocol.StepTicks(MANY_TICKS))
 
 
-def seconds(context: ActionContext, by: int) -> None:
+def by_seconds(context: ActionContext, by: int) -> None:
     """Go forward by a number of seconds of the recording; negative goes back."""
-    _by(context, by * context.runs.timeline.tick_hz)
-
-
-def to_start(context: ActionContext) -> None:
-    """Go to the first instant of the run."""
-    to_tick(context, 0)
+    by_ticks(context, by * context.runs.timeline.tick_hz)
 
 
 def to_now(context: ActionContext) -> None:
@@ -114,7 +105,7 @@ def advance_playback(context: ActionContext) -> None:
     """Continue playback; a paused run that has been played to its newest instant resumes automatically."""
     if context.runs.timeline.advance_playback(time.monotonic(), context.runs.speed):
         if context.runs.state == RunPhase.PAUSED:
-            context.runs.resume()
+            context.runs.send(protocol.Resume())
         elif context.runs.state == RunPhase.ENDED:
             context.app.say("Playback has reached the end of the recording")
         refresh(context)
@@ -143,12 +134,12 @@ def to_sample(context: ActionContext, words: str) -> None:
         context.app.say(error.message)
 
 
-def propose_branch(context: ActionContext, then: protocol.Message | None, restart: bool = False) -> None:
+def propose_branch(context: ActionContext, then: protocol.Message | None = None, restart: bool = False) -> None:
     """Ask whether to branch from the instant in view.
 
     Args:
         context: The parts of the app.
-        then: The user's action there.
+        then: The user's action there; None to change nothing but perhaps the program.
         restart: Whether the dialog also offers to run the program from its start.
     """
     from tuisim.app.dialogs.question import BRANCH, RESTART, BranchQuestion
@@ -187,8 +178,3 @@ def _branch(context: ActionContext, branch: Branch) -> None:
         return
     context.app.run_changed()
     context.app.draw(force=True)
-
-
-def branch_here(context: ActionContext) -> None:
-    """Branch from the instant in view, changing nothing but perhaps the program."""
-    propose_branch(context, None)
