@@ -8,17 +8,15 @@ from tuisim.breakpoints import (
     Breakpoint,
     BreakRule,
     LineBreak,
-    PrintBreak,
-    SampleBreak,
     StallBreak,
     TimeBreak,
-    ValueBreak,
     break_line_of,
     break_lines,
     moved,
     parse_break,
     parse_breakpoints,
 )
+from tuisim.core.conditions import ValueCondition, ValueSource
 from tuisim.core.sensors import columns_of
 from tuisim.core.spec import RobotSpec
 from tuisim.errors import ConfigError
@@ -30,25 +28,26 @@ RULES: dict[str, tuple[BreakRule, str]] = {
     "line 12": (LineBreak(12), "12"),
     "12 if x > 3": (LineBreak(12, "x > 3"), "12 if x > 3"),
     "  7   if  a[0] ": (LineBreak(7, "a[0]"), "7 if a[0]"),
-    "left_red_pc < 10": (ValueBreak("left_red_pc", "<", 10.0), "left_red_pc < 10"),
-    "left.red% < 10": (ValueBreak("left_red_pc", "<", 10.0), "left_red_pc < 10"),
-    "left red % < 10": (ValueBreak("left_red_pc", "<", 10.0), "left_red_pc < 10"),
-    "left sensor red % < 10": (ValueBreak("left_red_pc", "<", 10.0), "left_red_pc < 10"),
-    "left.red < 10": (ValueBreak("left_red", "<", 10.0), "left_red < 10"),
-    "right.color changes": (ValueBreak("right_color", "changes"), "right_color changes"),
-    "left.color = Blue": (ValueBreak("left_color", "==", 2.0), "left_color == Blue"),
-    "left.color == Blue": (ValueBreak("left_color", "==", 2.0), "left_color == Blue"),
-    "ultrasonic<200": (ValueBreak("ultrasonic_mm", "<", 200.0), "ultrasonic_mm < 200"),
-    "ultrasonic sensor <= 2.5e2": (ValueBreak("ultrasonic_mm", "<=", 250.0), "ultrasonic_mm <= 250"),
-    "gyro > 90": (ValueBreak("gyro_deg", ">", 90.0), "gyro_deg > 90"),
-    "gyro.rate != 0": (ValueBreak("gyro_rate_dps", "!=", 0.0), "gyro_rate_dps != 0"),
-    "x_mm > 1000": (ValueBreak("x_mm", ">", 1000.0), "x_mm > 1000"),
+    "left_red_pc < 10": (ValueCondition("left_red_pc", "<", "10"), "left_red_pc < 10"),
+    "left.red% < 10": (ValueCondition("left_red_pc", "<", "10"), "left_red_pc < 10"),
+    "left red % < 10": (ValueCondition("left_red_pc", "<", "10"), "left_red_pc < 10"),
+    "left sensor red % < 10": (ValueCondition("left_red_pc", "<", "10"), "left_red_pc < 10"),
+    "left.red < 10": (ValueCondition("left_red", "<", "10"), "left_red < 10"),
+    "right.color changes": (ValueCondition("right_color", "changes"), "right_color changes"),
+    "left.color = Blue": (ValueCondition("left_color", "==", "Blue"), "left_color == Blue"),
+    "left.color == Blue": (ValueCondition("left_color", "==", "Blue"), "left_color == Blue"),
+    "ultrasonic<200": (ValueCondition("ultrasonic_mm", "<", "200"), "ultrasonic_mm < 200"),
+    "ultrasonic sensor <= 2.5e2": (ValueCondition("ultrasonic_mm", "<=", "250"), "ultrasonic_mm <= 250"),
+    "gyro > 90": (ValueCondition("gyro_deg", ">", "90"), "gyro_deg > 90"),
+    "gyro.rate != 0": (ValueCondition("gyro_rate_dps", "!=", "0"), "gyro_rate_dps != 0"),
+    "x_mm > 1000": (ValueCondition("x_mm", ">", "1000"), "x_mm > 1000"),
+    "x_mm > 0.1234567890123456": (ValueCondition("x_mm", ">", "0.1234567890123456"), "x_mm > 0.1234567890123456"),
     "time 3.5": (TimeBreak(3.5), "time 3.5"),
     "time 3.5 s": (TimeBreak(3.5), "time 3.5"),
-    "sample Colour": (SampleBreak("Colour", "is seen"), "sample Colour"),
-    "sample Colour changes": (SampleBreak("Colour", "changes"), "sample Colour changes"),
-    "sample Colour >= -1.5": (SampleBreak("Colour", ">=", -1.5), "sample Colour >= -1.5"),
-    "print matches a|b c": (PrintBreak("a|b c"), "print matches a|b c"),
+    "sample Colour": (ValueCondition("Colour", "is seen", "", ValueSource.SAMPLE), "sample Colour"),
+    "sample Colour changes": (ValueCondition("Colour", "changes", "", ValueSource.SAMPLE), "sample Colour changes"),
+    "sample Colour >= -1.5": (ValueCondition("Colour", ">=", "-1.5", ValueSource.SAMPLE), "sample Colour >= -1.5"),
+    "print matches a|b c": (ValueCondition("", "matches", "a|b c", ValueSource.PRINT), "print matches a|b c"),
     "stall": (StallBreak(), "stall"),
 }
 
@@ -95,8 +94,8 @@ def test_what_is_no_break_says_why_and_what_is_allowed(text: str, why: str) -> N
 def test_every_column_of_a_robot_can_be_compared_and_without_one_any_name() -> None:
     for column in columns_of(ROBOT):
         for name in (column.name, *column.also):
-            assert parse_break(f"{name} > 1.5", ROBOT).rule == ValueBreak(column.name, ">", 1.5)
-    assert parse_break("middle.red > 1").rule == ValueBreak("middle.red", ">", 1.0)
+            assert parse_break(f"{name} > 1.5", ROBOT).rule == ValueCondition(column.name, ">", "1.5")
+    assert parse_break("middle.red > 1").rule == ValueCondition("middle.red", ">", "1")
 
 
 def test_lines_with_a_break_and_breaks_that_move() -> None:

@@ -1,42 +1,47 @@
 """Breakpoints: when a run pauses, in a small language shared by app, command line and child.
 
-| text | pauses when |
-| --- | --- |
-| `12` | line 12 is about to run (or the next line of code, if 12 is blank or a comment) |
-| `12 if x > 3` | … and the expression is true there |
-| `left_red_pc < 10`, `ultrasonic_mm <= 200`, `x_mm > 1000` | this becomes true, checked after each tick |
-| `left_color changes`, `left_color == Blue` | the value changes, or becomes the given colour |
-| `sample Colour < 50`, `sample Colour changes`, `sample Colour` | a printed sample matches |
-| `print matches REGEX` | a printed line matches |
-| `time 3.5` | 3.5 simulated seconds have passed |
-| `stall` | an obstacle stalls a running motor |
-
-A leading `#` disables a breakpoint. A comparison triggers when it
-becomes true, not while it stays true.
+`FORMS` lists what a breakpoint can be. A leading `#` disables it. A comparison
+triggers when it becomes true, not while it stays true.
 """
 
 from __future__ import annotations
 
 import ast
-import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from tuisim.core.columns import column_name
-from tuisim.core.comparison import COMPARE, comparison_form, comparison_in, finite_number
-from tuisim.core.sensors import columns_of, number_in
-from tuisim.core.sensors.color import COLOR_NAMES
+from tuisim.core.conditions import ValueCondition, ValueSource, comparison_form, finite_number, run_condition_in
+from tuisim.core.sensors import named_column
 from tuisim.core.spec import RobotSpec
-from tuisim.errors import ConfigError, nearest, see_page
+from tuisim.errors import ConfigError, see_page
 
-CHANGES, SEEN = "changes", "is seen"
-"""Relations without a number: the value has changed; a sample was printed, with any value."""
+FORMS = (
+    ("12", "line 12 is about to run, or the next line of code if 12 is blank or a comment"),
+    ("12 if x > 3", "line 12 is about to run, and the expression is true"),
+    (
+        "left_red_pc < 10",
+        "a column becomes so after a tick; also ultrasonic_mm <= 200, gyro_deg > 90, x_mm > 1000",
+    ),
+    ("left_color changes", "the sensor sees another colour; left_color == Blue: it sees this one"),
+    ("sample Colour < 50", "such a sample is printed; also sample Colour changes, sample Colour"),
+    ("print matches black", "a line is printed in which the regular expression is found"),
+    ("time 3.5", "3.5 simulated seconds have passed"),
+    ("stall", "an obstacle stalls a running motor"),
+)
+"""The forms of a breakpoint, and when it pauses."""
 
 ALLOWED = (
     f"{comparison_form()}, such as left_red_pc < 10 · x_mm > 1000 · sample Colour < 50; or 12 · 12 if x > 3 · "
     "left_color changes · print matches REGEX · time 3.5 · stall"
 )
+
+_PRINT_FORM = "such as: print matches black|white"
+_NO_CONDITION = {
+    "print": ("what is printed can only be matched", _PRINT_FORM),
+    "sample": ("a sample has a name", f"{comparison_form()}, such as: sample Colour < 50, sample Colour changes"),
+}
+"""What is wrong with a text that begins like a condition, and the hint."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,34 +51,6 @@ class LineBreak:
     line: int
     condition: str = ""
     """A Python expression that must be true; empty for none."""
-
-
-@dataclass(frozen=True, slots=True)
-class ValueBreak:
-    """Pauses on a value of a sensor or of the robot's motion."""
-
-    column: str
-    """Name of a column, see `core.columns`."""
-    relation: str
-    """An `Operator`, or `CHANGES`."""
-    number: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class SampleBreak:
-    """Pauses on a printed sample."""
-
-    name: str
-    relation: str
-    """An `Operator`, `CHANGES` or `SEEN`."""
-    number: float = 0.0
-
-
-@dataclass(frozen=True, slots=True)
-class PrintBreak:
-    """Pauses on a printed line that contains a match of a regular expression."""
-
-    pattern: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +65,7 @@ class StallBreak:
     """Pauses when a running motor is blocked."""
 
 
-BreakRule = LineBreak | ValueBreak | SampleBreak | PrintBreak | TimeBreak | StallBreak
+BreakRule = LineBreak | ValueCondition | TimeBreak | StallBreak
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +96,7 @@ def parse_break(text: str, robot: RobotSpec | None = None) -> Breakpoint:
     disabled = stripped.startswith("#")
     bare = stripped.lstrip("#").strip()
     rule = _rule(bare, robot)
-    return Breakpoint(rule, _common_text(rule, bare), disabled)
+    return Breakpoint(rule, _common_text(rule), disabled)
 
 
 def parse_breakpoints(texts: Iterable[str], robot: RobotSpec | None = None) -> tuple[Breakpoint, ...]:
@@ -147,7 +124,7 @@ def moved(one: Breakpoint, line: int) -> Breakpoint:
     if not isinstance(one.rule, LineBreak):
         return one
     rule = LineBreak(line, one.rule.condition)
-    return Breakpoint(rule, _common_text(rule, one.text), one.disabled)
+    return Breakpoint(rule, _common_text(rule), one.disabled)
 
 
 def _refuse(text: str, why: str, hint: str = f"{ALLOWED}; {see_page('breakpoints')}") -> ConfigError:
@@ -158,18 +135,13 @@ def _rule(text: str, robot: RobotSpec | None) -> BreakRule:
     if not text:
         raise _refuse(text, "is empty")
     word, _, rest = text.partition(" ")
-    rest = rest.strip()
     if found := _LINE.fullmatch(text):
         return _line_rule(text, int(found[1]), found[2])
     if text == "stall":
         return StallBreak()
     if word == "time":
-        return TimeBreak(_number(text, rest.removesuffix("s").strip(), least=0.0))
-    if word == "print":
-        return _print_rule(text, rest)
-    if word == "sample":
-        return _sample_rule(text, rest)
-    return _value_rule(text, robot)
+        return TimeBreak(_seconds(text, rest.strip().removesuffix("s").strip()))
+    return _condition(text, word, robot)
 
 
 def _line_rule(text: str, line: int, condition: str | None) -> LineBreak:
@@ -204,86 +176,54 @@ def parse_watch(text: str) -> str:
     return text
 
 
-def _print_rule(text: str, rest: str) -> PrintBreak:
-    word, _, pattern = rest.partition(" ")
-    if word != "matches" or not pattern.strip():
-        raise _refuse(text, "what is printed can only be matched", "such as: print matches black|white")
+def _condition(text: str, word: str, robot: RobotSpec | None) -> ValueCondition:
+    found = run_condition_in(text)
+    if found is None or (found.source is ValueSource.SAMPLE and not found.name):
+        raise _refuse(text, *_NO_CONDITION.get(word, ("is not a breakpoint",)))
+    name = found.name
+    match found.source:
+        case ValueSource.PRINT:
+            try:
+                re.compile(found.value)
+            except (re.error, OverflowError, RecursionError) as error:
+                raise _refuse(text, f"not a regular expression: {error}", _PRINT_FORM) from error
+        case ValueSource.COLUMN:
+            name = _column(text, found.name, robot)
     try:
-        re.compile(pattern.strip())
-    except (re.error, OverflowError, RecursionError) as error:
-        raise _refuse(text, f"not a regular expression: {error}", "such as: print matches black|white") from error
-    return PrintBreak(pattern.strip())
-
-
-def _sample_rule(text: str, rest: str) -> SampleBreak:
-    name, relation, value = _relation(rest)
-    if not name.isidentifier():
-        raise _refuse(
-            text, "a sample has a name", f"{comparison_form()}, such as: sample Colour < 50, sample Colour changes"
-        )
-    return SampleBreak(name, relation or SEEN, _number(text, value) if value else 0.0)
-
-
-def _value_rule(text: str, robot: RobotSpec | None) -> ValueBreak:
-    written, relation, value = _relation(text)
-    if not relation:
-        raise _refuse(text, "is not a breakpoint")
-    name = written
-    if robot is not None:
-        columns = columns_of(robot)
-        name = column_name(written, columns) or ""
-        if not name:
-            raise _refuse(text, f"this robot has no {written!r}", nearest(written, (one.name for one in columns)))
-    if not _NAME.fullmatch(name):
-        raise _refuse(text, f"there is no {written!r}")
-    try:
-        return ValueBreak(name, relation, number_in(value, name) if value else 0.0)
+        return found.of_column(name)
     except ValueError as error:
         raise _refuse(text, str(error)) from None
 
 
-def _relation(text: str) -> tuple[str, str, str]:
-    """Return the quantity, the operator (or `CHANGES`, or an empty string) and the number as text."""
-    words = text.split()
-    if len(words) > 1 and words[-1] == CHANGES:
-        return text[: -len(CHANGES)].strip(), CHANGES, ""
-    found = comparison_in(text)
-    return (found.name, found.operator, found.value) if found and found.operator in COMPARE else (text, "", "")
-
-
-def is_color(column: str) -> bool:
-    """Return whether the values of a column are codes of colours, which have names."""
-    return column.endswith(("_color", ".color"))
-
-
-def _number(text: str, written: str, least: float = -math.inf) -> float:
+def _column(text: str, written: str, robot: RobotSpec | None) -> str:
+    """Return the name of a column; without a robot, what is written, if it can be one."""
+    if robot is None:
+        if not _NAME.fullmatch(written):
+            raise _refuse(text, f"there is no {written!r}")
+        return written
     try:
-        value = finite_number(written)
+        return named_column(written, robot)
+    except ConfigError as error:
+        raise _refuse(text, error.message, error.hint) from None
+
+
+def _seconds(text: str, written: str) -> float:
+    try:
+        time_s = finite_number(written)
     except ValueError as error:
         raise _refuse(text, str(error)) from None
-    if value < least:
+    if time_s < 0.0:
         raise _refuse(text, f"{written!r} is not possible here")
-    return value
+    return time_s
 
 
-def _common_text(rule: BreakRule, written: str) -> str:
+def _common_text(rule: BreakRule) -> str:
     match rule:
         case LineBreak(line=line, condition=condition):
             return f"{line} if {condition}" if condition else str(line)
-        case ValueBreak(column=name, relation=relation) | SampleBreak(name=name, relation=relation):
-            head = f"sample {name}" if isinstance(rule, SampleBreak) else name
-            if relation in COMPARE:
-                return f"{head} {relation} {_shown_number(rule)}"
-            return head if relation == SEEN else f"{head} {CHANGES}"
-        case PrintBreak(pattern=pattern):
-            return f"print matches {pattern}"
+        case ValueCondition():
+            return str(rule)
         case TimeBreak(time_s=time_s):
             return f"time {time_s:.12g}"
         case StallBreak():
-            return written
-
-
-def _shown_number(rule: ValueBreak | SampleBreak) -> str:
-    if isinstance(rule, ValueBreak) and is_color(rule.column) and rule.number in range(len(COLOR_NAMES)):
-        return COLOR_NAMES[int(rule.number)]
-    return f"{rule.number:.12g}"
+            return "stall"

@@ -58,6 +58,15 @@ def nearest(name: str, allowed: Iterable[str]) -> str:
     return did_you_mean(close) or f"one of {', '.join(names)}"
 
 
+def among(name: str, allowed: Iterable[str], unlisted: Iterable[str] = ()) -> str:
+    """Return the hint for an unknown name in data: all names, after the closest one, which may be an unlisted one."""
+    from difflib import get_close_matches
+
+    names = list(allowed)
+    close = get_close_matches(name, [*names, *unlisted], 1)
+    return f"{did_you_mean(list(map(repr, close)))} there are {listed(names)}".lstrip()
+
+
 def see_page(topic: str) -> str:
     """Return the hint that names a page of the guide."""
     return f"see `tuisim guide {topic}`"

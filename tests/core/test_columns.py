@@ -14,6 +14,10 @@ import pytest
 from tests.conftest import ROOT
 from tests.goals.recorded import goals_of
 from tests.running import PATIENCE_S
+from tuisim.analysis.events import events_of, thresholds_of
+from tuisim.analysis.model import Model, derive
+from tuisim.analysis.source import LogRequest, opening
+from tuisim.analysis.table import conditions_of
 from tuisim.app.timeline import Timeline, find
 from tuisim.cli import run_command
 from tuisim.config.build import build_run_spec
@@ -22,14 +26,14 @@ from tuisim.core.columns import column_name
 from tuisim.core.sensors import columns_of
 from tuisim.core.spec import RobotSpec
 from tuisim.goals.judge import judge
-from tuisim.runs.frames import telemetry_frame
+from tuisim.runs.frames import column_values
 from tuisim.runs.recorded_run import Recording
 from tuisim.runs.run_folder import StoredRun, open_mat
 from tuisim.runs.store import RunStore
 
 ROBOT = build_run_spec(Settings()).robot
 TRACES = [column.name for column in columns_of(ROBOT) if column.is_traced]
-PROGRAM = "tank_drive.on_for_rotations(30, 30, 1)\nx = 1\n"
+PROGRAM = "tank_drive.on_for_rotations(30, 20, 1)\nx = 1\n"
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +53,8 @@ def run(home_of_runs: Path, monkeypatch: pytest.MonkeyPatch) -> StoredRun:
 
 
 def value_of(run: StoredRun, name: str) -> float:
-    return float(telemetry_frame(run, also=[name])[name].iloc[-1])
+    values = column_values([name], run.telemetry.array(), run.spec, run.actions, open_mat(run))
+    return float(values[name][-1])
 
 
 @pytest.mark.parametrize("name", TRACES)
@@ -81,9 +86,62 @@ def test_the_name_of_a_trace_is_a_breakpoint_a_watch_and_an_event(
     assert capsys.readouterr().out == "[]\n"
 
 
+@pytest.mark.parametrize("name", TRACES)
+def test_the_name_of_a_trace_is_an_event_a_filter_and_a_variable_of_the_analyser(name: str, run: StoredRun) -> None:
+    *_, opened = opening(LogRequest(runs=("1",), telemetry=True))
+    model = Model(opened)
+    model.add_named_columns(f"{name} changes")
+    assert len(events_of(model.log, thresholds_of(f"{name} changes", model.log))) > 5
+    conditions = conditions_of(f"{name} == {value_of(run, name)!r}", model.log.table.column_names)
+    assert 0 < len(model.rows.filtered(tuple(conditions)).fulfilled) < model.log.rows
+    derive(model, f"half = {name} / 2")
+    assert model.log.series("half").values[-1] == value_of(run, name) / 2
+
+
+@pytest.mark.parametrize("name", TRACES)
+def test_the_name_of_a_trace_is_a_variable_of_every_log_command(
+    name: str, run: StoredRun, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command(["log", "summary", "1", "--variable", name, "--json"]) == 0
+    assert f'"variable": "{name}"' in capsys.readouterr().out
+    assert run_command(["log", "calc", "1", "--expression", f"{name} + 1"]) == 0
+    out = capsys.readouterr().out.splitlines()
+    assert float(out[-1].rpartition(",")[2]) == value_of(run, name) + 1
+    assert run_command(["log", "export", "1", "--variable", name, "--out", str(tmp_path / "a.csv")]) == 0
+    assert set((tmp_path / "a.csv").read_text().splitlines()[0].split(",")) == {"time", "line", name}
+    assert run_command(["log", "plot", "1", "--telemetry", "--variable", "x_mm", "--against", name]) == 0
+    assert f"x_mm against {name}" in capsys.readouterr().out
+
+
+def test_a_name_that_is_nearly_a_column_is_told(run: StoredRun, capsys: pytest.CaptureFixture[str]) -> None:
+    said = []
+    for words in (["events", "1", "--when", "left_red_p < 50"], ["summary", "1", "--variable", "gyro_d"]):
+        assert run_command(["log", *words, "--telemetry"]) == 2
+        said.append(capsys.readouterr().err)
+    assert "did you mean 'left_red_pc'?" in said[0]
+    assert "did you mean 'gyro_deg'?" in said[1]
+
+
+def test_a_name_of_before_is_the_column_in_the_commands_for_logs(
+    run: StoredRun, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command(["log", "events", "1", "--when", "left.red% changes", "--json"]) == 0
+    assert '"variable": "left_red_pc"' in capsys.readouterr().out
+
+
 NEW = """\
     Column("right_speed_dps"),
     Column("speed_mm_s", lambda moved, robot: (moved[5] + moved[6]) * robot.wheel_diameter_mm * 3.14159 / 720, True),
+"""
+
+
+TRACED = """\
+from tuisim.app.feed import Feed
+from tuisim.runs.recorded_run import Recording
+from tuisim.runs.run_folder import open_mat
+from tuisim.runs.store import RunStore
+run = RunStore().load_run("last")
+print(*Feed(Recording(run)).chart_series(open_mat(run)))
 """
 
 
@@ -103,10 +161,10 @@ def test_a_new_value_is_added_by_one_line(tmp_path: Path) -> None:
     (folder,) = (tmp_path / "venv").glob("lib/python*/site-packages")
     (folder / "copy.pth").write_text("\n".join((str(tmp_path), *map(str, site.getsitepackages()))))
 
-    def said(*words: str) -> str:
+    def said(*words: str, start: tuple[str, ...] = ("-m", "tuisim")) -> str:
         environment = {**os.environ, "TUISIM_HOME": str(tmp_path / "home"), "TUISIM_ASSETS": str(ROOT)}
         done = subprocess.run(
-            [python, "-m", "tuisim", *words],
+            [python, *start, *words],
             cwd=tmp_path,
             env=environment,
             capture_output=True,
@@ -120,6 +178,7 @@ def test_a_new_value_is_added_by_one_line(tmp_path: Path) -> None:
     run = said("run", "a.py", "--break", "speed_mm_s > 100", "--break-then", "go", "--watch", "speed_mm_s")
     assert "break speed_mm_s > 100" in run
     assert "speed_mm_s → 1" in run
+    assert "speed_mm_s" in said(TRACED, start=("-c",))
     assert "rises" in said("log", "events", "last", "--when", "speed_mm_s > 100")
     said("log", "export", "last", "--variable", "speed_mm_s", "--out", "speed.csv")
     assert (tmp_path / "speed.csv").read_text().startswith("time,line,speed_mm_s\n")

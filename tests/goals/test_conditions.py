@@ -463,6 +463,15 @@ READINGS = {
     "when not at all": Case(
         "when = 'left_red_p < 10'", (wait(1),), "missed", reason="no column left_red_p (did you mean left_red_pc or"
     ),
+    "when changes": Case("when = 'x_mm changes'", (wait(0.1), ahead(200, 1)), "met", 0.11, line=1),
+    "when never changes": Case(
+        "when = 'left_color changes'", (wait(1),), "missed", reason="left_color changes never became true."
+    ),
+    "when a sample": Case("when = 'sample a > 1'", (says("a: 1"), wait(0.1), says("a: 2"), wait(1)), "met", 0.1),
+    "when printed": Case("when = ['print matches ^b', 'x_mm > 600']", (says("b"), ahead(200, 1), says("b")), "met"),
+    "when printed elsewhere": Case(
+        "when = ['print matches ^b', 'x_mm > 600']", (says("b"), ahead(200, 1)), "missed", reason="at the same time."
+    ),
     "when no number": Case("when = 'x_mm < far'", (wait(1),), "missed", reason="x_mm < far: 'far' is not a number"),
     "read": Case("read = { reading = 'color', times = 2 }", (wait(0.05, 2),), "met", 0.02, line=2, text=LOOKS),
     "read in a line that also pauses": Case(

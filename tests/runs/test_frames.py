@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from dataclasses import replace
+from types import FrameType
 
 import numpy as np
 import pandas as pd
@@ -15,15 +17,16 @@ from tuisim.config.mat_cache import FieldFiles, open_field, prepare
 from tuisim.config.mats import background
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
-from tuisim.core.sensors import mounted
+from tuisim.core.sensors import readings
 from tuisim.core.sensors.color import reading
 from tuisim.core.spec import ColorSensorSpec, NoiseSpec, Obstacle, RunSpec, WorldSpec
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
 from tuisim.errors import LogError
-from tuisim.runs.frames import SAMPLE_COLUMNS, quiet_color_columns, samples_frame, telemetry_frame
+from tuisim.runs.frames import SAMPLE_COLUMNS, samples_frame, telemetry_frame
 from tuisim.runs.records import TELEMETRY_FILE
 from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.sensor_arrays import quiet_color_columns
 from tuisim.runs.views import instant_of
 
 TELEMETRY_COLUMNS = [
@@ -98,11 +101,7 @@ def sensors_one_by_one(run: StoredRun, field: Field) -> pd.DataFrame:
     for tick in range(run.telemetry.count):
         record = run.telemetry.record(tick)
         instant = instant_of(record, run.spec, run.noise_at(record))
-        rows.append({
-            name: value
-            for kind, sensor in mounted(run.spec.robot)
-            for name, value in zip(kind.names(sensor), kind.measure(sensor, instant, run.spec, field), strict=True)
-        })  # fmt: skip
+        rows.append(readings(run.spec.robot.sensors, instant, run.spec, field))
     return pd.DataFrame(rows)
 
 
@@ -118,6 +117,29 @@ def test_sensors_are_those_of_the_core_to_the_last_bit(
     frame = telemetry_frame(run, field)
     pd.testing.assert_frame_equal(frame[expected.columns], expected, check_exact=True)
     assert frame["left_red"].nunique() > 20
+
+
+def test_a_frame_of_more_ticks_takes_no_more_calls(
+    record: Callable[..., Recorder], spec: RunSpec, field: Field
+) -> None:
+    def calls(ticks: int) -> int:
+        recorder = record(replace(spec, world=replace(spec.world, obstacles=(Obstacle(300, 900, 50, 300),))))
+        recorder.drive(400, 310, ticks)
+        run, counted = recorder.end(), 0
+
+        def count(frame: FrameType, event: str, _: object) -> None:
+            nonlocal counted
+            counted += event == "call" and frame.f_globals.get("__name__", "").startswith("tuisim.")
+
+        sys.setprofile(count)
+        try:
+            telemetry_frame(run, field)
+        finally:
+            sys.setprofile(None)
+        return counted
+
+    calls(5)
+    assert calls(200) == calls(20)
 
 
 def test_noise_that_the_user_changes_is_in_the_sensors(

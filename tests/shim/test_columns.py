@@ -6,7 +6,7 @@ import pytest
 
 from tests.shim.conftest import RunOn
 from tuisim.config.mat_cache import open_field
-from tuisim.runs.frames import sensor_columns
+from tuisim.runs.frames import column_values
 
 PROGRAM = """
 from ev3dev2.motor import *
@@ -21,8 +21,9 @@ print(touch.is_pressed, eye.proximity)
 @pytest.mark.parametrize("profile", ["ev3", "robolab"])
 def test_columns_of_touch_and_infrared(run_on: RunOn, profile: str) -> None:
     done = run_on(PROGRAM, "eyes", "furnished", profile)
-    columns = sensor_columns(done.run.telemetry.array(), done.run.spec, [], open_field(done.run.field))
-    assert list(columns)[-2:] == ["touch_pressed", "infrared_proximity"]
+    names, mat = ["touch_pressed", "infrared_proximity"], open_field(done.run.field)
+    columns = column_values(names, done.run.telemetry.array(), done.run.spec, [], mat)
+    assert list(columns) == names
     pressed, proximity = columns["touch_pressed"], columns["infrared_proximity"]
     assert (pressed[0], pressed[-1]) == (0, 1)
     assert proximity[0] == 54

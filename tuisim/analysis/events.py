@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tuisim.core.comparison import NUMBER, Operator, comparison_form, comparison_in
-from tuisim.errors import LogError, listed
+from tuisim.core.conditions import NUMBER, Operator, ValueCondition, comparison_form, condition_in
+from tuisim.errors import LogError, among
 from tuisim.logs.log import Log, Series
 from tuisim.logs.signals import known_in_order
 from tuisim.runs.arrays import FloatArray
@@ -63,6 +63,14 @@ def crossings(time_s: FloatArray, values: FloatArray, threshold: float, hysteres
     return found
 
 
+def _changes(time_s: FloatArray, values: FloatArray) -> list[Crossing]:
+    """Return where a signal has another value than before, in order of time."""
+    known = np.arange(len(values))[known_in_order(time_s, values)]
+    turns = np.flatnonzero(np.diff(values[known]))
+    pairs = zip(known[turns].tolist(), known[turns + 1].tolist(), strict=True)
+    return [Crossing(at, float(time_s[at]), float(values[at]), bool(values[at] > values[was])) for was, at in pairs]
+
+
 def _meets(time_s: FloatArray, values: FloatArray, first: int, last: int, threshold: float) -> float:
     # Halved, so that the difference is finite.
     start, stop = float(values[first]) / 2.0, float(values[last]) / 2.0
@@ -77,19 +85,20 @@ _WIDTH = re.compile(rf"(?P<comparison>.+?)(?:\+-|±)\s*(?P<width>{NUMBER})\s*")
 
 
 @dataclass(frozen=True, slots=True)
-class Threshold:
-    """A threshold of a variable."""
+class Threshold(ValueCondition):
+    """A condition on a variable: it falls below a value, rises above it, or either (EQUAL), or it changes."""
 
-    name: str
-    op: Operator
-    """LESS: falls below; GREATER: rises above; EQUAL: either."""
-    value: float
     hysteresis: float = 0.0
-    """Hysteresis: the signal must pass the value by this margin on both sides."""
+    """The signal must pass the value by this margin on both sides."""
 
     def __str__(self) -> str:
         width = f" +- {self.hysteresis:g}" if self.hysteresis else ""
-        return f"{self.name} {self.op.short} {self.value:g}{width}"
+        return f"{self.name} {self.operator.short} {self.level}".rstrip() + width
+
+    @property
+    def level(self) -> str:
+        """The value as it is shown; empty for a change."""
+        return f"{float(self.value):g}" if self.value else ""
 
     def among(self, series: Sequence[Series]) -> list[Series]:
         """Return the series of its variable: of all runs, unless it names one."""
@@ -97,8 +106,11 @@ class Threshold:
 
     def crossings(self, series: Series) -> list[Crossing]:
         """Return where a series crosses it, in order of time."""
-        found = crossings(series.time_s, series.values, self.value, self.hysteresis)
-        return [one for one in found if self.op is Operator.EQUAL or one.rising is (self.op is Operator.GREATER)]
+        if self.operator is Operator.CHANGES:
+            return _changes(series.time_s, series.values)
+        found = crossings(series.time_s, series.values, float(self.value), self.hysteresis)
+        ways = {Operator.GREATER: (True,), Operator.LESS: (False,)}.get(self.operator, (True, False))
+        return [one for one in found if one.rising in ways]
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,12 +135,12 @@ class Event:
 def threshold_of(text: str) -> Threshold | None:
     """Return the threshold in a text such as `Colour < 50`, None if it is none."""
     match = _WIDTH.fullmatch(text)
-    found = comparison_in(match["comparison"], value=NUMBER) if match else None
+    found = condition_in(match["comparison"], value=NUMBER) if match else None
     width = float(match["width"]) if match and found else 0.0
-    found = found or comparison_in(text, value=NUMBER)
-    if found is None or found.operator not in _OPERATORS:
+    found = found or condition_in(text, value=NUMBER)
+    if found is None or found.operator not in (*_OPERATORS, Operator.CHANGES):
         return None
-    return Threshold(found.name, found.operator, float(found.value), width)
+    return Threshold(found.name, found.operator, found.value, hysteresis=width)
 
 
 def thresholds_of(text: str, log: Log) -> tuple[Threshold, ...]:
@@ -144,7 +156,7 @@ def thresholds_of(text: str, log: Log) -> tuple[Threshold, ...]:
             raise LogError(f"no threshold: {part.strip()!r}", FORM)
         names = dict.fromkeys(name.partition(" #")[0] for name in log.names)
         if threshold.name not in log.names and threshold.name not in names:
-            raise LogError(f"no variable {threshold.name!r}", f"there are {listed(names)}", file=log.title)
+            raise LogError(f"no variable {threshold.name!r}", among(threshold.name, names), file=log.title)
         found.append(threshold)
     return tuple(found)
 

@@ -15,10 +15,10 @@ from tuisim.analysis.source import Note, OpenedLog, read_notes, write_notes
 from tuisim.analysis.table import Rows
 from tuisim.analysis.traces import TIME, LogTrace, LogTraces, aligned
 from tuisim.charts.axes import Limits
-from tuisim.errors import LogError, listed
+from tuisim.errors import LogError, among
 from tuisim.logs.bands import Band, BandReport, band_report, in_words
 from tuisim.logs.columns import is_numeric
-from tuisim.logs.derived import RECKONED_COLUMNS, definition_of, derived, reckoned_series
+from tuisim.logs.derived import RECKONED_COLUMNS, definition_of, derived, named_columns, reckoned_series
 from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Plateau, plateaus
 from tuisim.logs.signals import Summary, known_at, summary_of
@@ -123,7 +123,7 @@ class Model:
         if name not in self.log.table.column_names or not is_numeric(self.log.table.column(name).type):
             numbers = [at.name for at in self.log.table.schema if is_numeric(at.type)]
             known = dict.fromkeys((*self.log.names, *numbers))
-            raise LogError(f"no variable {name!r}", f"there are {listed(known)}", file=self.log.title)
+            raise LogError(f"no variable {name!r}", among(name, known), file=self.log.title)
         return self.log.numbers(name)[series.rows]
 
     def run_of(self, row: int) -> int:
@@ -210,12 +210,18 @@ class Model:
         if names:
             self.selected = names[(names.index(self.selected) + step) % len(names)]
 
+    def add_named_columns(self, text: str) -> None:
+        """Derive those columns of the recording that a text names, and that telemetry has only if it is asked."""
+        for name in named_columns(self.log, text):
+            derive(self, name)
+
     def align(self, way: str) -> None:
         """Align the runs by `time`; by `distance`, so far as each has driven; or by an event such as `Colour < 50`.
 
         Raises:
             LogError: the log does not say how far the robot drove, or no run has such an event.
         """
+        self.add_named_columns(way)
         places_of_all = aligned(self.log, [trace.series for trace in self.traces], way)
         for trace, places in zip(self.traces, places_of_all, strict=True):
             trace.align(places)

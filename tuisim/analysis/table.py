@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tuisim.core.comparison import Comparison, Operator, comparison_form, comparison_in
-from tuisim.errors import LogError, listed
+from tuisim.core.conditions import COMPARE, Operator, ValueCondition, comparison_form, condition_in
+from tuisim.errors import LogError, among
 from tuisim.logs.arrow import cell_text, contains, mask_of, sorted_places
 from tuisim.logs.log import Log, LogTable
 from tuisim.runs.arrays import IntArray
@@ -32,12 +32,12 @@ class TableTask:
         return f"{self.word} {self.part:.0%}" if self.part else self.word
 
 
-FORM = f"{comparison_form(Operator)} and NAME a column; several with `and`"
+FORM = f"{comparison_form((*COMPARE, Operator.CONTAINS))} and NAME a column; several with `and`"
 _STRETCH = 100_000
 """Rows that are searched at a time."""
 
 
-def conditions_of(text: str, columns: list[str]) -> list[Comparison]:
+def conditions_of(text: str, columns: list[str]) -> list[ValueCondition]:
     """Return the conditions in a text such as `variable == Colour and value > 50`.
 
     Raises:
@@ -45,11 +45,11 @@ def conditions_of(text: str, columns: list[str]) -> list[Comparison]:
     """
     found = []
     for part in re.split(r"\s+and\s+|\s*,\s*", text.strip()):
-        condition = comparison_in(part, name=r"[^<>=!~]+?", value=".*?")
+        condition = condition_in(part, name=r"[^<>=!~]+?", value=".*?")
         if condition is None:
             raise LogError(f"no condition: {part!r}", FORM)
         if condition.name not in columns:
-            raise LogError(f"no column {condition.name!r}", f"there are {listed(columns)}")
+            raise LogError(f"no column {condition.name!r}", among(condition.name, columns))
         found.append(replace(condition, value=condition.value.strip("'\"")))
     return found
 
@@ -58,7 +58,7 @@ def conditions_of(text: str, columns: list[str]) -> list[Comparison]:
 class TableView:
     """Which rows of a log a table shows, in which order."""
 
-    conditions: tuple[Comparison, ...] = ()
+    conditions: tuple[ValueCondition, ...] = ()
     fulfilled: IntArray | None = None
     """Rows that match the filter, increasing; None for all."""
     sorted_by: str = ""
@@ -112,7 +112,7 @@ class Rows:
 
     # Which rows, in which order
 
-    def filter(self, conditions: tuple[Comparison, ...]) -> None:
+    def filter(self, conditions: tuple[ValueCondition, ...]) -> None:
         """Show only the rows that meet all conditions.
 
         Raises:
@@ -124,7 +124,7 @@ class Rows:
         """Sort the rows by a column; empty for the order of the log."""
         self.view = self.sorted(column, descending)
 
-    def filtered(self, conditions: tuple[Comparison, ...]) -> TableView:
+    def filtered(self, conditions: tuple[ValueCondition, ...]) -> TableView:
         """Return the rows that meet all conditions, in the current order. Slow for a long log.
 
         Raises:
@@ -139,7 +139,7 @@ class Rows:
         return self._arrangement(self.view.conditions, self.view.fulfilled, column, descending)
 
     def _arrangement(
-        self, conditions: tuple[Comparison, ...], fulfilled: IntArray | None, sorted_by: str, descending: bool
+        self, conditions: tuple[ValueCondition, ...], fulfilled: IntArray | None, sorted_by: str, descending: bool
     ) -> TableView:
         order = fulfilled
         if sorted_by:

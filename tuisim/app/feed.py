@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.app.snapshot import telemetry_traces
 from tuisim.charts.world_image import pen_points_mm
 from tuisim.core.field import Field
+from tuisim.core.sensors import columns_of
 from tuisim.core.spec import RobotSpec
 from tuisim.core.tick_record import FLAG_PEN_DOWN
+from tuisim.runs.frames import column_values
 from tuisim.runs.records import OutputRow
 from tuisim.runs.samples import samples_of
-from tuisim.runs.views import instant_of
 
 if TYPE_CHECKING:
     from tuisim.app.panel_area import PanelArea
@@ -71,17 +71,16 @@ class Feed:
         count = run.telemetry.count
         stride = max(1, (count - self._charted) // POINTS_OF_A_RUN)
         end = min(count, self._charted + stride * POINTS_A_FEED)
-        spec, hz = run.spec, run.spec.profile.tick_hz
-        series: Series = {}
-        for at in _thinned(self._charted, end, POINTS_A_FEED):
-            record = run.telemetry.record(at)
-            instant = instant_of(record, spec, run.noise_at(record))
-            for name, value in telemetry_traces(instant, spec, run.field_at(at, mat)).items():
-                times, values = series.setdefault(name, ([], []))
-                times.append(record.tick / hz)
-                values.append(value)
+        if end == self._charted:
+            return {}
+        records = run.telemetry.array(self._charted)[_thinned(0, end - self._charted, POINTS_A_FEED)]
+        names = [column.name for column in columns_of(run.spec.robot) if column.is_traced]
+        values = column_values(
+            names, records, run.spec, run.actions(), mat, lambda record: run.field_at(int(record[0]), mat)
+        )
+        times_s = (records["tick"] / run.spec.profile.tick_hz).tolist()
         self._charted = end
-        return series
+        return {name: (times_s, values[name].tolist()) for name in values}
 
     def trace_points(self) -> Points:
         """Return where the pen drew since the last call."""

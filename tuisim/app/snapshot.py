@@ -10,7 +10,7 @@ from typing import assert_never
 
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
-from tuisim.core.sensors import color, gyro, sources, ultrasonic, with_kinds
+from tuisim.core.sensors import color, gyro, readings, ultrasonic
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
@@ -116,12 +116,9 @@ class Snapshot:
     @cached_property
     def further(self) -> Mapping[str, float]:
         """Measurements of sensors that not every robot has, by telemetry column, such as `bumper_pressed`."""
-        values: dict[str, float] = {}
-        if self.field is not None:
-            for kind, sensor in with_kinds(self.spec.robot.further_sensors):
-                measured = kind.measure(sensor, self.instant, self.spec, self.field)
-                values |= zip(kind.names(sensor), measured, strict=True)
-        return values
+        if self.field is None:
+            return {}
+        return readings(self.spec.robot.further_sensors, self.instant, self.spec, self.field)
 
     def has_stopped_since(self, before: Snapshot | None) -> bool:
         """Whether the run stands still now, and did not at an earlier moment."""
@@ -191,15 +188,6 @@ class AppState:
     def failed(self) -> bool:
         """Whether the end of a failed run is in view."""
         return self.run.failed and not self.looks_back
-
-
-def telemetry_traces(instant: Instant, spec: RunSpec, field: Field) -> dict[str, float]:
-    """Return the chart's telemetry of a moment, which needs no prints, by the name of its column."""
-    values: dict[str, float] = {}
-    for source in sources(spec.robot):
-        if names := {column.name for column in source.columns if column.is_traced}:
-            values |= source.values(names, source.measure(instant, spec, field), spec.robot)
-    return values
 
 
 def speed_label(speed: float) -> str:

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Iterable
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from tuisim.core.columns import column_name
-from tuisim.core.comparison import COMPARE, Comparison, comparison_form, comparison_in, finite_number, spelled
+from tuisim.core.conditions import Operator, ValueCondition, ValueSource, comparison_form, run_condition_in, spelled
 from tuisim.core.field import Field
-from tuisim.core.sensors import columns_of, number_in
-from tuisim.errors import ConfigError, nearest
+from tuisim.core.sensors import named_column
+from tuisim.errors import ConfigError
 from tuisim.runs.brick_state import BrickState, face_after
-from tuisim.runs.frames import column_values, ticks_when
+from tuisim.runs.frames import begins, column_values, held
 from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow
-from tuisim.runs.samples import parse_sample
+from tuisim.runs.samples import parse_sample, rows_when
 from tuisim.source import source_lines
 
 if TYPE_CHECKING:
@@ -148,7 +145,10 @@ _FORMS = (
     ("line 12", "{which} time that line 12 runs"),
     ("sample Colour", "{which} sample with this name; `sample` alone: with any name"),
     ("sample Colour < 90", f"{{which}} sample that matches; operators: {spelled()}"),
-    ("left_red_pc < 50", "{which} tick at which a column becomes so; also x_mm, ultrasonic_mm, gyro_deg …"),
+    (
+        "left_red_pc < 50",
+        "{which} tick at which a column becomes so, or `changes`; also x_mm, ultrasonic_mm, gyro_deg …",
+    ),
     ("print REGEX", "{which} printed line that matches the regular expression"),
     ("start, end", "the first and the latest instant"),
     ("… back, … first", "a line, sample or print: searched backwards, or from the start of the run"),
@@ -165,7 +165,6 @@ def forms(timeline: Timeline) -> list[tuple[str, str]]:
 
 _HINT = f"3.5, tick 120, line 12, sample NAME, sample {comparison_form()}, COLUMN < 50, print REGEX, start or end"
 _SECONDS = re.compile(r"([0-9]+\.?[0-9]*|\.[0-9]+)\s*s?")
-_NAME = r"(?:[^\W\d]\w*)?"
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,13 +183,18 @@ class _Search:
     def words(self) -> str:
         return "in this run" if self.at < 0 else f"{self.side} {self.at / self.recording.spec.profile.tick_hz:.2f} s"
 
-    def tick_of(self, fits: Callable[[OutputRow], bool]) -> int | None:
-        """Return the tick of the next matching row that is at another tick than the current one."""
+    def texts(self) -> Iterator[OutputRow]:
+        """Yield the printed rows that come next, at another tick than the current one."""
         rows = self.recording.rows
-        found: Iterable[OutputRow] = (
-            rows.rows(rows.until(self.at - 1) - 1, -1) if self.back else rows.rows(rows.until(self.at))
-        )
-        return next((row.tick for row in found if fits(row)), None)
+        found = rows.rows(rows.until(self.at - 1) - 1, -1) if self.back else rows.rows(rows.until(self.at))
+        return (row for row in found if row.stream in TEXT_STREAMS)
+
+    def tick_of(self, condition: ValueCondition) -> int | None:
+        """Return the tick of the next row of which a condition is true."""
+        if condition.operator is Operator.CHANGES:
+            every = (row for row in self.recording.rows.rows(0) if row.stream in TEXT_STREAMS)
+            return self.nearest([row.tick for row in rows_when(condition, every)])
+        return next((row.tick for row in rows_when(condition, self.texts())), None)
 
     def nearest(self, ticks: list[int]) -> int | None:
         """Return the next of some sorted ticks."""
@@ -227,16 +231,20 @@ def find(text: str, timeline: Timeline, mat: Field | None = None) -> int:
     search = _Search(recording, -1, False) if first else _Search(recording, timeline.tick, backwards)
     if word == "line" and rest.isdecimal():
         return _line(search, int(rest))
-    if word == "sample" and re.fullmatch(_NAME, rest):
-        return _sample(search, rest, None)
-    if word == "sample" and (wanted := comparison_in(rest, _NAME)) and wanted.operator in COMPARE:
-        return _sample(search, wanted.name, wanted)
-    if word == "print" and rest:
-        return _printed(search, rest)
-    words = re.sub(r"\s+(?:back|first)$", "", text.strip())
-    if (condition := comparison_in(words)) and condition.operator in COMPARE:
-        return _becomes(search, condition, mat)
-    raise ConfigError(f"{text.strip()!r} is not an instant" if text.strip() else "no instant given", _HINT)
+    if (condition := _condition(word, rest, text)) is None:
+        raise ConfigError(f"{text.strip()!r} is not an instant" if text.strip() else "no instant given", _HINT)
+    try:
+        return _when(search, condition, mat)
+    except ValueError as error:
+        raise ConfigError(str(error), _HINT) from error
+
+
+def _condition(word: str, rest: str, text: str) -> ValueCondition | None:
+    """Return the condition in the words of an instant; `word` is the first one, `rest` is without the direction."""
+    if word == ValueSource.PRINT and rest:
+        return run_condition_in(f"{word} {rest}") or ValueCondition("", Operator.MATCHES, rest, ValueSource.PRINT)
+    is_sample = word == ValueSource.SAMPLE
+    return run_condition_in(f"{word} {rest}" if is_sample else re.sub(r"\s+(?:back|first)$", "", text.strip()))
 
 
 def _within(tick: int, recording: Recording) -> int:
@@ -251,9 +259,9 @@ def _line(search: _Search, line: int) -> int:
     lines = len(source_lines(search.recording.program.text))
     if not 1 <= line <= lines:
         raise ConfigError(f"the program has no line {line}", f"1 … {lines}")
-    at_it = search.recording.telemetry.array()["line"] == line
     # Of consecutive ticks at one line, the first is meant: that is when the program reached the line.
-    came = np.flatnonzero(at_it & ~np.concatenate(([False], at_it[:-1]))).tolist()
+    at_it = ValueCondition("line", Operator.EQUAL, str(line))
+    came = begins(at_it, held(at_it, search.recording.telemetry.array()["line"])).tolist()
     tick = search.nearest(sorted({*came, *search.recording.rows.ticks_of_line(line)}))
     if tick is None:
         hint = "only lines that let time pass, or print, can be found"
@@ -261,55 +269,52 @@ def _line(search: _Search, line: int) -> int:
     return tick
 
 
-def _sample(search: _Search, name: str, wanted: Comparison | None) -> int:
-    try:
-        value = finite_number(wanted.value) if wanted else 0.0
-    except ValueError as error:
-        raise ConfigError(str(error), _HINT) from error
-    seen: set[str] = set()
+def _when(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
+    """Return the next tick at which a condition becomes true.
 
-    def fits(row: OutputRow) -> bool:
-        sample = parse_sample(row.text) if row.stream in TEXT_STREAMS else None
-        if sample is None:
-            return False
-        seen.add(sample[0])
-        return name in ("", sample[0]) and (wanted is None or COMPARE[wanted.operator](sample[1], value))
+    Raises:
+        ConfigError: there is none, or the condition cannot be tested.
+        ValueError: what it compares with is no number.
+    """
+    match condition.source:
+        case ValueSource.PRINT:
+            return _printed(search, condition)
+        case ValueSource.SAMPLE:
+            return _sample(search, condition)
+        case ValueSource.COLUMN:
+            return _becomes(search, condition, mat)
 
-    tick = search.tick_of(fits)
+
+def _sample(search: _Search, condition: ValueCondition) -> int:
+    tick = search.tick_of(condition)
     if tick is None:
-        what = f"sample {wanted or name}".rstrip()
-        hint = f"there are {', '.join(sorted(seen))}" if seen and name not in seen and name else ""
-        raise ConfigError(f"no {what} {search.words}", hint)
+        seen = {sample[0] for row in search.texts() if (sample := parse_sample(row.text))}
+        hint = f"there are {', '.join(sorted(seen))}" if seen and condition.name and condition.name not in seen else ""
+        raise ConfigError(f"no {condition} {search.words}", hint)
     return tick
 
 
-def _becomes(search: _Search, condition: Comparison, mat: Field | None) -> int:
+def _becomes(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
     """Return the tick at which a column begins to meet a condition."""
     recording = search.recording
-    columns = columns_of(recording.spec.robot)
-    name = column_name(condition.name, columns)
-    if name is None:
-        hint = nearest(condition.name, (column.name for column in columns))
-        raise ConfigError(f"this robot has no {condition.name!r}", hint)
+    name = named_column(condition.name, recording.spec.robot)
     if mat is None:
         raise ConfigError("the mat is still being opened", "a moment later")
-    try:
-        value = number_in(condition.value, name)
-    except ValueError as error:
-        raise ConfigError(str(error), _HINT) from error
-    values = column_values(name, recording.telemetry.array(), recording.spec, recording.actions(), mat)
-    tick = search.nearest(ticks_when(values, condition.operator, value).tolist())
+    condition = condition.of_column(name)
+    values = column_values((name,), recording.telemetry.array(), recording.spec, recording.actions(), mat)
+    tick = search.nearest(begins(condition, held(condition, values[name])).tolist())
     if tick is None:
-        raise ConfigError(f"no tick {search.words} at which {name} {condition.operator} {value:g} becomes true")
+        becomes = "" if condition.is_momentary else " becomes true"
+        raise ConfigError(f"no tick {search.words} at which {condition}{becomes}")
     return tick
 
 
-def _printed(search: _Search, pattern: str) -> int:
+def _printed(search: _Search, condition: ValueCondition) -> int:
+    pattern = condition.value
     try:
-        regex = re.compile(pattern)
+        tick = search.tick_of(condition)
     except re.error as error:
         raise ConfigError(f"{pattern!r} is not a regular expression: {error}") from error
-    tick = search.tick_of(lambda row: row.stream in TEXT_STREAMS and regex.search(row.text) is not None)
     if tick is None:
         raise ConfigError(f"nothing printed {search.words} matches {pattern!r}")
     return tick

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def names_of(field: str) -> Iterable[str]:
-    """Return the names of programs, or of examples of goals, or those that an option such as `background` accepts."""
+    """Return the names of programs, columns or goal files, or those that an option such as `background` accepts."""
     match field:
         case "programs":
             from tuisim.config.program_file import programs
@@ -41,11 +41,19 @@ def names_of(field: str) -> Iterable[str]:
             return OBSTACLES
         case "profile":
             return PROFILES
+        case "columns":
+            from tuisim.core.sensors import column_names
+
+            return column_names(RobotSpec())
         case "goals":
             from tuisim.goals.files import example_names
 
             return example_names()
     return ()
+
+
+COLUMN = Value(names=lambda: names_of("columns"))
+"""The value of an option in which the columns of a recording can be named."""
 
 
 # Mats

@@ -11,6 +11,7 @@ from importlib import import_module
 from typing import cast
 
 from tuisim.commands.echo import Progress
+from tuisim.commands.listings import COLUMN
 from tuisim.config.command_line import Arguments, Command, Group, GroupedOption, Value, argument, choice, option
 from tuisim.logs.export import LISTED
 from tuisim.logs.units import SECONDS
@@ -26,23 +27,27 @@ COLUMNS = (
 
 OPTIONS: Mapping[str, GroupedOption] = {
     "at": option("--at", type=float, metavar="VALUE", help="Threshold."),
-    "when": option("--when", default="", metavar="TEXT", help="Variable, operator, threshold: 'Colour < 50 +- 2'."),
+    "when": option(
+        "--when", type=COLUMN, default="", metavar="TEXT", help="Variable, operator, threshold: 'Colour < 50 +- 2'."
+    ),
     "hysteresis": option(
         "--hysteresis", type=float, default=0.0, metavar="VALUE", help="Margin around the threshold (0)."
     ),
     "between": choice("--between", ("hold", "linear"), default="hold", help="Interpolation between samples (hold)."),
     "width": option("--width", type=int, default=5, metavar="N", help="Window in samples, odd (5)."),
     "period": option("--period", type=float, metavar="S", help="Seconds between rows."),
-    "expression": option("--expression", default="", metavar="TEXT", help="Expression, such as '(left + right) / 2'."),
+    "expression": option(
+        "--expression", type=COLUMN, default="", metavar="TEXT", help="Expression, such as '(left + right) / 2'."
+    ),
     "facets": option("--facets", is_flag=True, help="Draw one chart per variable."),
     "marks": option("--marks", is_flag=True, help="Draw points instead of lines."),
     "from": option("--from", type=float, metavar="S", help="Start of the time range, in seconds."),
     "to": option("--to", type=float, metavar="S", help="End of the time range, in seconds."),
-    "against": option(
-        "--against", default="", metavar="NAME", help="Variable or column for the x axis, instead of time."
-    ),
+    "against": option("--against", type=COLUMN, default="", metavar="NAME",
+                      help="Variable or column for the x axis, instead of time."),
     "size": option("--size", default="", metavar="WxH", help="Size in pixels; in characters for text."),
-    "variable": option("--variable", multiple=True, metavar="NAME", help="Only this variable; may be repeated."),
+    "variable": option("--variable", type=COLUMN, multiple=True, metavar="NAME",
+                       help="Only this variable; may be repeated."),
     "telemetry": TELEMETRY,
     "json": option("--json", is_flag=True, help="Print JSON."),
     "out": option("--out", metavar="FILE", type=Value(), help=f"Write the result to a file: {LISTED}."),

@@ -9,7 +9,7 @@ from typing import Any
 from tuisim.breakpoints import parse_breakpoints, parse_watch
 from tuisim.commands import exit_status
 from tuisim.commands.echo import Progress, echo_error, echo_written, is_watched, tell
-from tuisim.commands.listings import names_of
+from tuisim.commands.listings import COLUMN, names_of
 from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
 from tuisim.commands.relay import Follower, RelayInterrupts
 from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
@@ -47,10 +47,10 @@ _OPTIONS = (
            help="Run all program cells of a notebook, or of a folder's notebooks; print a table."),
     option("--json", is_flag=True, group=_REPORTS,
            help="Print one JSON object per program; program output goes to stderr."),
-    option("--break", "breaks", multiple=True, metavar="TEXT", group=_BREAKPOINTS,
+    option("--break", "breaks", multiple=True, metavar="TEXT", type=COLUMN, group=_BREAKPOINTS,
            help="Set a breakpoint, reported on stderr: 12, 12 if x > 3, left_red_pc < 10, left_color changes, "
            "ultrasonic < 200, sample Colour < 50, print matches REGEX, time 3.5, stall; may be repeated."),
-    option("--watch", "watches", multiple=True, metavar="EXPR", group=_BREAKPOINTS,
+    option("--watch", "watches", multiple=True, metavar="EXPR", type=COLUMN, group=_BREAKPOINTS,
            help="Evaluate an expression at each breakpoint; may be repeated."),
     choice("--break-then", (GO, STOP), default=GO, group=_BREAKPOINTS,
            help="What to do after a breakpoint (go); stop ends the run with exit code 3."),

@@ -10,7 +10,8 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from tuisim.core.spec import RobotSpec
+from tuisim.core.field import Field
+from tuisim.core.spec import RobotSpec, RunSpec
 from tuisim.core.state import Instant
 
 
@@ -45,7 +46,7 @@ MOTION: tuple[Column, ...] = (
 """The columns of the robot itself."""
 
 
-def motion_of(instant: Instant) -> tuple[float, ...]:
+def motion_of(instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
     """Return what is measured of `MOTION`, in that order."""
     pose = instant.pose
     return (

@@ -9,14 +9,15 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from tuisim.config.mat_cache import open_field
+from tuisim.core.conditions import ValueCondition, ValueSource
 from tuisim.core.field import Field
 from tuisim.core.profile import NS_PER_S
 from tuisim.protocol import End, Ended, Unended
-from tuisim.runs.frames import column_values, tick_times_s
+from tuisim.runs.frames import column_values, held, tick_times_s
 from tuisim.runs.handle import RunHandle
 from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun, open_mat
-from tuisim.runs.samples import Sample, parse_sample
+from tuisim.runs.samples import Sample, rows_when, samples_of
 from tuisim.runs.side_files import read_actions
 
 if TYPE_CHECKING:
@@ -106,13 +107,7 @@ class Evidence:
     @cached_property
     def samples(self) -> list[tuple[int, Sample]]:
         """The samples, each with the index of its row."""
-        found = []
-        for number, row in enumerate(self.rows):
-            if row.stream == Stream.STDOUT and (parsed := parse_sample(row.text)):
-                name, value, time_s = parsed
-                printed_s = row.time_ns / NS_PER_S if time_s is None else time_s
-                found.append((number, Sample(name, value, printed_s, row.time_ns, row.tick, row.line)))
-        return found
+        return [(number, sample) for number, row in enumerate(self.rows) for sample in samples_of([row])]
 
     def column(self, name: str) -> Array:
         """Return a column of `columns_of` the robot at every tick.
@@ -120,13 +115,26 @@ class Evidence:
         Raises:
             LogError, ConfigError: the mat no longer exists, or its image has changed.
         """
-        key = f"column {name}"
-        if key not in self.memo:
+        if name not in self.memo:
             run = self._run
             actions = run.actions if isinstance(run, StoredRun) else read_actions(run.folder)[0]
-            self.memo[key] = column_values(name, self.records, self.spec, actions, self.mat)
-        found: Array = self.memo[key]
+            self.memo |= column_values((name,), self.records, self.spec, actions, self.mat)
+        found: Array = self.memo[name]
         return found
+
+    def held(self, condition: ValueCondition) -> Array:
+        """Return whether a condition is true in each tick; one on printed lines is where such a line was printed.
+
+        Raises:
+            ValueError: what it compares with is no number.
+            LogError, ConfigError: as `column`.
+        """
+        import numpy as np
+
+        if condition.source is ValueSource.COLUMN:
+            return held(condition, self.column(condition.name))
+        printed = (row for row in self.rows if row.stream == Stream.STDOUT)
+        return np.isin(np.arange(len(self.records)), [row.tick for row in rows_when(condition, printed)])
 
     @cached_property
     def mat(self) -> Field:

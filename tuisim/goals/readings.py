@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from tuisim.core.columns import column_name
-from tuisim.core.comparison import COMPARE, comparison_in
-from tuisim.core.sensors import columns_of, number_in
+from tuisim.core.conditions import ValueCondition, ValueSource
+from tuisim.core.sensors import named_column
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
-from tuisim.errors import counted, nearest
+from tuisim.errors import ConfigError, counted
 from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.goals.found import Occurrence, share_words
 from tuisim.goals.places import line_of_motion
 from tuisim.goals.provenance import Provenance, provenance_of
 from tuisim.goals.spec import FollowCondition, Range, ReadCondition, Reading, WhenCondition
-from tuisim.runs.frames import quiet_color_columns
 
 if TYPE_CHECKING:
     import numpy as np
@@ -90,6 +89,8 @@ def _light(records: Array, evidence: Evidence) -> Array:
     """Return the levels of light that each colour sensor would give without noise, shape (levels, ticks)."""
     import numpy as np
 
+    from tuisim.runs.sensor_arrays import quiet_color_columns
+
     rows = []
     for sensor in evidence.spec.robot.color_sensors:
         channels = quiet_color_columns(records, sensor, evidence.mat)
@@ -118,36 +119,39 @@ def find_read(condition: ReadCondition, evidence: Evidence, span: EvidenceSpan) 
 
 
 def find_when(condition: WhenCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
-    """Find the first tick at which columns have the values that are asked for."""
+    """Find the first tick at which all conditions are true."""
     import numpy as np
 
-    columns = columns_of(evidence.spec.robot)
     ticks = span.ticks
     met = np.ones(len(evidence.records[ticks]), np.bool_)
     never: list[str] = []
-    for text in condition.comparisons:
-        wanted = comparison_in(text)
-        assert wanted is not None
-        name = column_name(wanted.name, columns)
+    for text, wanted in zip(condition.comparisons, condition.conditions, strict=True):
         try:
-            number = number_in(wanted.value, name or "")
+            is_column = wanted.source is ValueSource.COLUMN
+            named = replace(wanted, name=named_column(wanted.name, evidence.spec.robot)) if is_column else wanted
+            here = evidence.held(named)[ticks]
+        except ConfigError as error:
+            return Occurrence(None, f"The robot has no column {wanted.name} ({error.hint}).")
         except ValueError as error:
             return Occurrence(None, f"{text}: {error}.")
-        if name is None:
-            names = (column.name for column in columns)
-            return Occurrence(None, f"The robot has no column {wanted.name} ({nearest(wanted.name, names)}).")
-        values = evidence.column(name)[ticks]
-        here = COMPARE[wanted.operator](values, number)
-        if len(values) and not here.any():
-            at = int(np.argmin(np.abs(values - number)))
-            when = evidence.time_words(span.first_tick + at)
-            near = f"the nearest was {values[at]:.6g} at {when}"
-            never.append(f"{name} {wanted.sign} {wanted.value} never became true: {near}")
+        if len(here) and not here.any():
+            never.append(f"{named} never became true{_nearest_words(named, evidence, span)}")
         met &= here
     found = np.flatnonzero(met)
     if len(found):
         return Occurrence(EvidencePoint(span.first_tick + int(found[0])))
     return Occurrence(None, f"{'; '.join(never)}." if never else "They were not true at the same time.")
+
+
+def _nearest_words(wanted: ValueCondition, evidence: Evidence, span: EvidenceSpan) -> str:
+    """Return how near a column came to what it is compared with, as the end of a sentence; empty for what is not."""
+    import numpy as np
+
+    if wanted.source is not ValueSource.COLUMN or wanted.is_momentary:
+        return ""
+    values = evidence.column(wanted.name)[span.ticks]
+    at = int(np.argmin(np.abs(values - wanted.number)))
+    return f": the nearest was {values[at]:.6g} at {evidence.time_words(span.first_tick + at)}"
 
 
 def find_off_line(condition: FollowCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
@@ -201,6 +205,8 @@ def _light_at_percent(records: Array, x_mm: float, y_mm: float, evidence: Eviden
 
 def _reflected_percent(records: Array, sensor: ColorSensorSpec, evidence: Evidence) -> Array:
     """Return what `reflected_light_intensity_pc` would be without noise, at every tick."""
+    from tuisim.runs.sensor_arrays import quiet_color_columns
+
     red, *_ = quiet_color_columns(records, sensor, evidence.mat).values()
     percent: Array = red.astype("i8") / 255 * 100
     return percent

@@ -14,7 +14,7 @@ from typing import Annotated, ClassVar, TypeAlias
 
 from msgspec import Meta
 
-from tuisim.core.comparison import COMPARE, comparison_form, comparison_in
+from tuisim.core.conditions import ValueCondition, ValueSource, comparison_form, run_condition_in
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import ConfigError, require_regex
 
@@ -315,20 +315,27 @@ class ReadCondition:
 
 @dataclass(frozen=True, slots=True)
 class WhenCondition:
-    """Columns of the recording take values, all in the same tick."""
+    """Conditions on the recording are true, all in the same tick."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = "comparisons"
 
     comparisons: tuple[str, ...]
-    """Such as `left_red_pc < 10`, see `core.columns`."""
+    """Such as `left_red_pc < 10`, see `core.conditions`."""
 
     def __post_init__(self) -> None:
         _check_count(self.comparisons, "comparisons")
         for number, text in enumerate(self.comparisons, start=1):
-            if (found := comparison_in(text)) is None or found.operator not in COMPARE:
-                key = f"comparisons[{number}]"
+            key, found = f"comparisons[{number}]", run_condition_in(text)
+            if found is None:
                 raise ConfigError(f"no comparison: {text!r}", f"{comparison_form()}, such as left_red_pc < 10", key=key)
+            if found.source is ValueSource.PRINT:
+                require_regex(found.value, key)
+
+    @property
+    def conditions(self) -> tuple[ValueCondition, ...]:
+        """What the texts mean."""
+        return tuple(found for text in self.comparisons if (found := run_condition_in(text)))
 
 
 @dataclass(frozen=True, slots=True)

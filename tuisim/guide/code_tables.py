@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from inspect import getdoc
 
-from tuisim import breakpoints as rules
+from tuisim.breakpoints import FORMS
 from tuisim.config.files import toml_value
 from tuisim.config.options import OPTIONS
 from tuisim.config.profiles import SOURCES
 from tuisim.config.user_config import SETTINGS
 from tuisim.core.profile import MS, PROFILES, ProfileSpec
-from tuisim.core.sensors import columns_of, mounted
+from tuisim.core.sensors import column_names, mounted
 from tuisim.core.spec import RobotSpec
 from tuisim.guide.tables import Table, code
 from tuisim.logs.export import EXPORTERS
@@ -118,12 +117,10 @@ def _value(key: str, profile: ProfileSpec) -> str:
 
 
 def breakpoints() -> Table:
-    """Return the forms of a breakpoint: the table in the description of their module."""
-    lines = [line for line in (getdoc(rules) or "").split("\n") if line.startswith("|")]
-    cells = [tuple(cell.strip() for cell in line.strip("|").split(" | ")) for line in lines]
-    return Table(cells[0], cells[2:])
+    """Return the forms of a breakpoint."""
+    return Table(("text", "pauses when"), [(code(form), meaning) for form, meaning in FORMS])
 
 
 def columns() -> Table:
     """Return the columns that every run of the default robot has."""
-    return _columns(tuple(column.name for column in columns_of(RobotSpec())))
+    return _columns(column_names(RobotSpec()))

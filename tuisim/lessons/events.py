@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias, assert_never
 
+from tuisim.core.conditions import NUMBER
 from tuisim.lessons.spec import (
     BreakCheck,
     Check,
@@ -108,7 +109,7 @@ Event: TypeAlias = (
     JudgedRun | TriedElsewhere | Typed | ExpressionWatched | BreakMet | Exported | Noted | Visited | Shown
 )
 
-_NUMBER = re.compile(r"\s*([+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?)\s*[^\d.,]*$")
+_NUMBER = re.compile(rf"\s*({NUMBER})\s*[^\d.,]*$")
 
 
 def is_met(check: Check, events: Sequence[Event]) -> bool:
@@ -158,8 +159,8 @@ def is_right(question: QuestionCheck, text: str) -> bool:
     """Return whether a typed text answers a question. A number may have a unit; a choice may be given by its number."""
     match question.answer:
         case int() | float() as wanted:
-            found = _NUMBER.match(text)
-            return found is not None and abs(float(found[1].replace(",", ".")) - wanted) <= question.within + 1e-9
+            found = _number(text)
+            return found is not None and abs(found - wanted) <= question.within + 1e-9
         case str() as wanted:
             return _same(_chosen(question, text), wanted)
         case several:
@@ -183,10 +184,16 @@ def unready(question: QuestionCheck, event: Typed) -> str:
 def wanted_form(question: QuestionCheck, text: str) -> str:
     """Return in words what form an answer must have; empty if the text has it."""
     if isinstance(question.answer, int | float):
-        return "" if _NUMBER.match(text) else "a number, such as 12.5"
+        return "a number, such as 12.5" if _number(text) is None else ""
     if question.choices and not any(_same(_chosen(question, text), choice) for choice in question.choices):
         return f"the number of a choice, 1 to {len(question.choices)}"
     return ""
+
+
+def _number(text: str) -> float | None:
+    """Return the number in a text, which may have a decimal comma and a unit; None if it has another form."""
+    found = _NUMBER.match(text.replace(",", "."))
+    return None if found is None else float(found[1])
 
 
 def _chosen(question: QuestionCheck, text: str) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from tuisim.core.comparison import Comparison, Operator
+from tuisim.core.conditions import Operator, ValueCondition
 from tuisim.errors import LogError
 from tuisim.logs.warnings import Notes
 from tuisim.runs.arrays import FloatArray, IntArray
@@ -85,7 +85,7 @@ def contains(column: pa.ChunkedArray, text: str) -> BoolArray:
     return _mask(pc.match_substring(texts_of(column), text, ignore_case=True))
 
 
-def mask_of(column: pa.ChunkedArray, condition: Comparison) -> BoolArray:
+def mask_of(column: pa.ChunkedArray, condition: ValueCondition) -> BoolArray:
     """Return which cells meet a condition, shape (n,); empty ones do not.
 
     Numbers, and spans of time in seconds, are compared as numbers, all else as texts.
@@ -95,6 +95,9 @@ def mask_of(column: pa.ChunkedArray, condition: Comparison) -> BoolArray:
     """
     if condition.operator is Operator.CONTAINS:
         return contains(column, condition.value)
+    if condition.operator is Operator.CHANGES:
+        turns = _mask(pc.not_equal(column[1:], column[:-1])) if len(column) > 1 else np.zeros(0, bool)
+        return np.concatenate((np.zeros(min(1, len(column)), bool), turns))
     compare: Callable[[Any, Any], Any] = getattr(pc, condition.operator.name.lower())
     kind = column.type
     if not (pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_duration(kind)):

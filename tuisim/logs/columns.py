@@ -5,14 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from tuisim.errors import LogError, listed
+from tuisim.errors import LogError, among
 from tuisim.logs.arrow import PER_S, numbers_of
 from tuisim.logs.dates import in_usual_form, order_is_guessed
 from tuisim.logs.units import SECONDS
@@ -374,6 +373,4 @@ def choose_columns(table: pa.Table, time: str | None, values: Sequence[str], uni
 
 def _require(table: pa.Table, name: str) -> None:
     if name not in table.column_names:
-        near = get_close_matches(name, table.column_names, 1)
-        hint = f"did you mean {near[0]!r}? " if near else ""
-        raise LogError(f"no column {name!r}", f"{hint}there are {listed(table.column_names)}")
+        raise LogError(f"no column {name!r}", among(name, table.column_names))

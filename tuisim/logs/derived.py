@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from tuisim.core.columns import Column, measured_names
+from tuisim.core.conditions import NUMBER
 from tuisim.core.drive import mm_per_degree
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import RobotSpec, from_plain
-from tuisim.errors import LogError, listed
+from tuisim.core.sensors import owners
+from tuisim.core.spec import RobotSpec, RunSpec, from_plain
+from tuisim.errors import ConfigError, LogError, among
 from tuisim.logs.columns import is_numeric, numeric_columns
 from tuisim.logs.expressions import FUNCTIONS, Functions, evaluate, names_in
 from tuisim.logs.log import Log, Series
 from tuisim.logs.signals import derivative, integral, known_at, known_in_order, moving_average, resample
 from tuisim.runs.arrays import FloatArray
+from tuisim.runs.frames import computed
 
 TIME = "time"
 """Name of the sample times in an expression."""
@@ -31,9 +35,7 @@ SIGNALS = {
 """Functions besides `FUNCTIONS`, with their descriptions."""
 
 _NAMED = re.compile(r"\s*(?P<name>[^\W\d]\w*)\s*=(?!=)(?P<expression>.*)", re.DOTALL)
-_EVEN = re.compile(
-    r"\s*resample\s*\((?P<expression>.*),\s*(?P<period_s>-?\d*\.?\d+(?:e-?\d+)?)\s*s?\s*\)\s*", re.DOTALL
-)
+_EVEN = re.compile(rf"\s*resample\s*\((?P<expression>.*),\s*(?P<period_s>{NUMBER})\s*s?\s*\)\s*", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,9 +121,56 @@ def _column(log: Log, name: str, base: Series) -> FloatArray:
     schema = log.table.schema
     if name in schema.names and is_numeric(schema.field(name).type):
         return log.numbers(name)[base.rows]
+    if (known := computed_columns(log).get(name)) is not None:
+        return known()[base.rows]
     numbers = numeric_columns(schema)
     there = dict.fromkeys((*(known.partition(" #")[0] for known in log.names), *numbers, TIME))
-    raise LogError(f"no variable {name!r}", f"there are {listed(there)}", file=log.title)
+    raise LogError(f"no variable {name!r}", among(name, there), file=log.title)
+
+
+def computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
+    """Return what computes those columns of a recording that a log of telemetry has not, but can compute, by name."""
+    if (robot := robot_of(log)) is None:
+        return {}
+    there = set(numeric_columns(log.table.schema))
+    return {
+        column.name: partial(_computed_column, column.of, columns, log, robot)
+        for columns, _ in owners(robot)
+        for column in columns
+        if column.of is not None and column.name not in there and there.issuperset(measured_names(columns))
+    }
+
+
+def _computed_column(of: Any, columns: Sequence[Column], log: Log, robot: RobotSpec) -> FloatArray:
+    return computed(of, columns, {name: log.numbers(name) for name in measured_names(columns)}, robot)
+
+
+def robot_of(log: Log) -> RobotSpec | None:
+    """Return the robot of a log, None if its metadata describe none."""
+    try:
+        return _run_of(log).robot
+    except (*_NO_RUN, ConfigError):
+        return None
+
+
+def named_columns(log: Log, text: str) -> list[str]:
+    """Return those of `computed_columns` that a text names."""
+    return [name for name in computed_columns(log) if re.search(rf"\b{name}\b", text)]
+
+
+def with_named_columns(log: Log, text: str) -> Log:
+    """Return a log with those columns that are computed for it because a text names them."""
+    for name in named_columns(log, text):
+        log = log.with_derived(name, derived(log, Definition(name, name), log.names[0]))
+    return log
+
+
+_NO_RUN = (KeyError, IndexError, TypeError)
+"""What `_run_of` raises if the metadata of a log describe no run."""
+
+
+def _run_of(log: Log) -> RunSpec:
+    return from_plain({k: v for k, v in log.metadata["runs"][0].items() if k not in ("run", "program")})
 
 
 def _of_signal(base: Series, change: Any, values: Any) -> FloatArray:
@@ -198,8 +247,8 @@ def reckoned_series(log: Log) -> list[Series]:
             f"no column {missing[0]!r} with numbers", "a stored run, or its telemetry exported", file=log.title
         )
     try:
-        spec = from_plain({k: v for k, v in log.metadata["runs"][0].items() if k not in ("run", "program")})
-    except (KeyError, IndexError, TypeError) as error:
+        spec = _run_of(log)
+    except _NO_RUN as error:
         hint = "a stored run, or its telemetry exported to a file"
         raise LogError("has no metadata of the robot", hint, file=log.title) from error
     left, right, x_mm, y_mm, _ = (log.numbers(name) for name in NEEDED)

@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from tuisim.core.comparison import COMPARE, Operator, spelled
-from tuisim.errors import LogError, listed
+from tuisim.core.conditions import COMPARE, Operator, spelled
+from tuisim.errors import LogError, among
 from tuisim.runs.arrays import FloatArray
 
 MAX_CHARS = 1000
@@ -194,11 +194,11 @@ class _Evaluation:
             return np.asarray(self._columns[name], np.float64)
         if name in CONSTANTS:
             return CONSTANTS[name]
-        raise LogError(f"no column {name!r}", f"there are {listed(self._columns)}")
+        raise LogError(f"no column {name!r}", among(name, self._columns))
 
     def _called(self, name: str, arguments: list[ast.expr]) -> Any:
         if name not in self._functions:
-            raise LogError(f"no function {name!r}", f"there are {', '.join(self._functions)}")
+            raise LogError(f"no function {name!r}", among(name, self._functions))
         count, function, _ = self._functions[name]
         if len(arguments) != count:
             raise LogError(f"{name} takes {count} {'value' if count == 1 else 'values'}, got {len(arguments)}")

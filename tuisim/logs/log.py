@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from tuisim.errors import LogError, listed
+from tuisim.errors import LogError, among
 from tuisim.logs.arrow import numbers_of, whole_numbers, whole_numbers_of
 from tuisim.logs.columns import ROW, Layout, seconds_of
 from tuisim.runs.arrays import FloatArray, IntArray
@@ -174,7 +174,7 @@ class Log:
         if name not in self._kept.series:
             member = self._members().get(name)
             if member is None:
-                raise LogError(f"no variable {name!r}", f"there are {listed(self.names)}", file=self.title)
+                raise LogError(f"no variable {name!r}", among(name, self.names), file=self.title)
             self._kept.series[name] = self._series(member)
         return self._kept.series[name]
 

@@ -7,7 +7,7 @@ import json
 import os
 import stat
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
@@ -331,13 +331,13 @@ def log_of_runs(runs: Sequence[StoredRun]) -> Log:
     return _log_of_frame("samples", runs, samples_frame(runs))
 
 
-def telemetry_log(run: StoredRun, also: Iterable[str] = ()) -> Log:
-    """Return the telemetry of a run; `also` names further columns, see `telemetry_frame`.
+def telemetry_log(run: StoredRun) -> Log:
+    """Return the telemetry of a run.
 
     Raises:
         LogError: the recording is damaged, or the mat no longer exists.
     """
-    return _log_of_frame("telemetry", [run], telemetry_frame(run, also=also))
+    return _log_of_frame("telemetry", [run], telemetry_frame(run))
 
 
 def _log_of_frame(kind: str, runs: Sequence[StoredRun], frame: pd.DataFrame) -> Log:

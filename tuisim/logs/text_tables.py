@@ -16,6 +16,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pa_csv
 
+from tuisim.core.conditions import NUMBER
 from tuisim.errors import LogError
 from tuisim.logs.arrow import texts_array, unique_names
 from tuisim.logs.blocks import Block
@@ -40,7 +41,7 @@ def text_kind(cells: pa.Array) -> pa.DataType:
     return CODED if often else pa.string()
 
 
-_NUMBER = r"^[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?$|^[+-]?(?i:inf|infinity|nan)$"
+_NUMBER = rf"^{NUMBER}$|^[+-]?(?i:inf|infinity|nan)$"
 EMPTY_CELLS = ("", "NA", "N/A", "null", "None", "-")
 """Cells that mean a missing value."""
 

@@ -20,7 +20,7 @@ from tuisim.config.mat_cache import FieldFiles, mat_pixels, open_field
 from tuisim.config.options import Settings
 from tuisim.core.end_stops import flags_at_start
 from tuisim.core.geometry import shown_heading_deg
-from tuisim.core.sensors import mounted
+from tuisim.core.sensors import readings
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
 from tuisim.notebook.image_log import arrays_at
@@ -98,8 +98,8 @@ def instrumentation(scene: Scene) -> list[Row]:
         ("LeftMotor", f"{record.left_position_deg:.0f} counts, {record.left_speed_dps:.0f} °/s"),
         ("RightMotor", f"{record.right_position_deg:.0f} counts, {record.right_speed_dps:.0f} °/s"),
     ]
-    for kind, sensor in mounted(spec.robot):
-        values = dict(zip(kind.names(sensor), kind.measure(sensor, instant, spec, field), strict=True))
+    for sensor in spec.robot.sensors:
+        values = readings([sensor], instant, spec, field)
         name = getattr(sensor, "name", "gyro")
         shown = f"Sensor{_LEFT_RIGHT.index(name) + 1} ({name})" if name in _LEFT_RIGHT else name.capitalize()
         rows.append((shown, _reading(name, values)))

@@ -185,15 +185,13 @@ def robot_state(
         highest_deg: The largest heading up to then.
         wheels: The registers of the wheel motors.
     """
-    from tuisim.core.sensors import mounted
+    from tuisim.core.sensors import readings
     from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING
     from tuisim.notebook.image_log import arrays_at, with_alpha
     from tuisim.runs.views import instant_of
 
     start, pose, instant = spec.world.start, record.pose, instant_of(record, spec, noise)
-    measured: dict[str, float] = {}
-    for kind, sensor in mounted(spec.robot):
-        measured.update(zip(kind.names(sensor), kind.measure(sensor, instant, spec, field), strict=True))
+    measured = readings(spec.robot.sensors, instant, spec, field)
     seen = {sensor.name: values_text(with_alpha(rgb)) for sensor, rgb in arrays_at(spec, record, noise, field)}
     state: dict[str, Any] = {
         **_place("", pose.x_mm, pose.y_mm, _wrapped(pose.heading_deg, highest_deg)),

@@ -1,24 +1,22 @@
 """Recordings as pandas frames: printed samples, and the telemetry of every tick with the readings of every sensor.
 
-The readings are computed from the telemetry. They equal those of `core.sensors` bit by bit: the colour sums are looked
-up for all ticks at once, everything else is measured tick by tick with the same functions.
+The readings are computed from the telemetry. They equal those of `core.sensors` bit by bit: what `sensor_arrays` can
+is measured at all ticks at once, everything else tick by tick with the same functions.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Sequence
-from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from itertools import chain, pairwise, repeat
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from tuisim.core.columns import MOTION, measured_names
-from tuisim.core.comparison import COMPARE, Operator
+from tuisim.core.columns import MOTION, Column, measured_names
+from tuisim.core.conditions import ValueCondition
 from tuisim.core.field import Field
 from tuisim.core.pen_marks import PenMarks
 from tuisim.core.profile import NS_PER_S
-from tuisim.core.sensors import SENSORS, SensorKind, mounted
-from tuisim.core.sensors.color import disc_pixels_of
-from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, NoiseSpec, RunSpec
+from tuisim.core.sensors import SensorKind, columns_of, mounted
+from tuisim.core.spec import NoiseSpec, RobotSpec, RunSpec
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.protocol import SetNoise, UserAction
 from tuisim.runs.records import TELEMETRY_FILE
@@ -31,6 +29,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
     Array = np.ndarray[Any, Any]
+
+FieldAt: TypeAlias = Callable[[tuple[float, ...]], Field]
+"""Returns the mat as the sensors see it in the tick of a record, which has the fields of `TICK_RECORD`."""
 
 _POSE = ("x_mm", "y_mm", "heading_deg")
 SAMPLE_COLUMNS = ("index", "variable", "value", "time", "run", *_POSE, "line")
@@ -90,7 +91,7 @@ def _samples_of_run(run: StoredRun, ordinal: int) -> dict[str, Any]:
     return columns
 
 
-def telemetry_frame(run: StoredRun, field: Field | None = None, also: Iterable[str] = ()) -> pd.DataFrame:
+def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
     """Return one row per tick, including tick 0 (the start); damaged records are omitted, see `damage_note`.
 
     Columns: `time` in s, simulated; MOTION_COLUMNS; those of every mounted sensor, such as
@@ -99,7 +100,6 @@ def telemetry_frame(run: StoredRun, field: Field | None = None, also: Iterable[s
 
     Args:
         field: The mat; by default that of the run.
-        also: Names of further columns of `columns_of`, which come last.
 
     Raises:
         LogError: a recording is damaged, or the mat no longer exists.
@@ -107,54 +107,74 @@ def telemetry_frame(run: StoredRun, field: Field | None = None, also: Iterable[s
     import pandas as pd
 
     records = _sound(run.telemetry.array())
-    columns: dict[str, Any] = {"time": tick_times_s(records, run.spec)}
-    for name in MOTION_COLUMNS:
-        columns[name] = records[name].astype("f8")
     mat = open_mat(run) if field is None else field
-    columns.update(sensor_columns(records, run.spec, run.actions, mat))
-    columns["line"] = records["line"].astype("i8")
-    for name in also:
-        columns[name] = column_values(name, records, run.spec, run.actions, mat)
-    return pd.DataFrame(columns)
+    exported = measured_names(columns_of(run.spec.robot))
+    values = column_values(exported, records, run.spec, run.actions, mat)
+    return pd.DataFrame({"time": tick_times_s(records, run.spec), **values, "line": records["line"].astype("i8")})
 
 
-def column_values(name: str, records: Array, spec: RunSpec, actions: Sequence[UserAction], field: Field) -> Array:
-    """Return a column at every tick: float64, shape (n,).
+def column_values(
+    names: Collection[str],
+    records: Array,
+    spec: RunSpec,
+    actions: Sequence[UserAction],
+    field: Field,
+    field_at: FieldAt | None = None,
+) -> dict[str, Array]:
+    """Return columns at every tick by name: float64, shape (n,).
 
     Args:
-        name: One of `columns_of` the robot.
-        records: Telemetry from tick 0 on, structured as `TICK_FIELDS`, shape (n,).
+        names: Some of `columns_of` the robot.
+        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
         spec: The specification of the run.
         actions: The user's actions, which may have changed the noise.
         field: The mat.
+        field_at: Returns the mat as the sensors saw it in a tick; needed if the records do not begin with tick 0, or
+            some are left out. None: the pen's marks are drawn on it as the records say.
+    """
+    sensors = [one for one in mounted(spec.robot) if any(column.name in names for column in one[0].columns(one[1]))]
+    measured = {name: records[name].astype("f8") for name in MOTION_COLUMNS}
+    measured |= _measured(records, sensors, _noises(records, spec, actions), spec, field, field_at)
+    return {
+        column.name: measured[column.name] if column.of is None else computed(column.of, columns, measured, spec.robot)
+        for columns in (MOTION, *(kind.columns(sensor) for kind, sensor in sensors))
+        for column in columns
+        if column.name in names
+    }
+
+
+def computed(
+    of: Callable[[Sequence[float], RobotSpec], float],
+    columns: Iterable[Column],
+    measured: Mapping[str, Array],
+    robot: RobotSpec,
+) -> Array:
+    """Return what is computed from the measured columns of an owner, at every tick, shape (n,)."""
+    import numpy as np
+
+    rows = zip(*(measured[name].tolist() for name in measured_names(columns)), strict=True)
+    return np.array([of(row, robot) for row in rows], np.float64)
+
+
+def held(condition: ValueCondition, values: Array) -> Array:
+    """Return whether a condition on a column is true at each tick, from its values there.
+
+    Raises:
+        ValueError: what it compares with is no number.
     """
     import numpy as np
 
-    robot = spec.robot
-    owners = [(kind.columns(sensor), [(kind, sensor)]) for kind, sensor in mounted(robot)]
-    columns, owner = next(one for one in [*owners, (MOTION, [])] if any(column.name == name for column in one[0]))
-    if owner:
-        measured = sensor_columns(records, spec, actions, field, owner)
-    else:
-        measured = {moved: records[moved].astype("f8") for moved in MOTION_COLUMNS}
-    compute = next(column.of for column in columns if column.name == name)
-    if compute is None:
-        return measured[name]
-    return np.array([compute(row, robot) for row in zip(*map(_listed, measured.values()), strict=True)], np.float64)
+    true: Array = condition.test()(values, np.concatenate(([np.nan], values[:-1])))
+    return true
 
 
-def ticks_when(values: Array, operator: Operator, number: float) -> Array:
-    """Return the indices at which a column begins to meet a condition, in ascending order."""
+def begins(condition: ValueCondition, true: Array) -> Array:
+    """Return the ticks at which a condition becomes true, in ascending order, from whether it is true at each."""
     import numpy as np
 
-    met = COMPARE[operator](values, number)
-    began: Array = np.flatnonzero(met & ~np.concatenate(([False], met[:-1])))
+    before = np.concatenate(([False], true[:-1]))
+    began: Array = np.flatnonzero(true if condition.is_momentary else true & ~before)
     return began
-
-
-def _listed(values: Array) -> list[float]:
-    found: list[float] = values.tolist()
-    return found
 
 
 def damage_note(run: StoredRun) -> str:
@@ -190,96 +210,64 @@ def tick_times_s(records: Array, spec: RunSpec) -> Array:
     return times
 
 
-def sensor_columns(
-    records: Array,
-    spec: RunSpec,
-    actions: Sequence[UserAction],
-    field: Field,
-    sensors: Sequence[tuple[SensorKind, Any]] | None = None,
-) -> dict[str, Array]:
-    """Return what sensors have measured, in the order of the telemetry frame.
-
-    Args:
-        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
-        spec: The specification of the run.
-        actions: The user's actions, which may have changed the noise.
-        field: The mat.
-        sensors: Some of `mounted`; None for all.
-
-    Returns:
-        Arrays of float64 with shape (n,), by column name.
-    """
-    noises = _noises(records, spec, actions)
-    lit = any(noise.light for noise in noises)
-    sensors = mounted(spec.robot) if sensors is None else sensors
-    found: dict[str, Array] = {}
-    slow = []
-    for kind, sensor in sensors:
-        if kind is SENSORS["color"] and not lit and sensor.strategy == "mean" and not spec.world.pen_marks:
-            found.update(quiet_color_columns(records, sensor, field))
-        else:
-            slow.append((kind, sensor))
-    found.update(_measured(records, slow, noises, spec, field))
-    return {name: found[name] for kind, sensor in sensors for name in kind.names(sensor)}
-
-
-def quiet_color_columns(records: Array, sensor: ColorSensorSpec, field: Field) -> dict[str, Array]:
-    """Return red, green and blue of a colour sensor at every tick, for a run without light noise.
-
-    Args:
-        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
-        sensor: The sensor.
-        field: The mat; it must have sums of the sensor's diameter.
-    """
-    import numpy as np
-
-    # The cosine of numpy may differ from that of `math` in the last bit, which can change a pixel.
-    turns = [math.radians(heading - 90.0) for heading in records["heading_deg"].tolist()]
-    cos, sin = np.array([math.cos(turn) for turn in turns]), np.array([math.sin(turn) for turn in turns])
-    diameter = sensor.diameter_mm
-    x_mm = records["x_mm"] + cos * sensor.x_mm - sin * sensor.y_mm
-    y_mm = records["y_mm"] + sin * sensor.x_mm + cos * sensor.y_mm
-    with np.errstate(invalid="ignore"):  # a position beyond all integers is off the mat either way
-        col = (x_mm - diameter / 2).astype(np.int64) + diameter
-        row = (FIELD_HEIGHT_MM - y_mm - diameter / 2).astype(np.int64) + diameter
-    height, width = field.height_px + diameter, field.width_px + diameter
-    inside = (col >= 0) & (col < width) & (row >= 0) & (row < height)
-    sums = np.zeros((len(records), 3), np.uint32)
-    table = np.frombuffer(field.sums[diameter], np.uint32).reshape(height, width, 3)
-    sums[inside] = table[row[inside], col[inside]]
-    means = sums / disc_pixels_of(diameter)
-    return {name: means[:, channel] for channel, name in enumerate(SENSORS["color"].names(sensor))}
-
-
-def _noises(records: Array, spec: RunSpec, actions: Sequence[UserAction]) -> list[NoiseSpec]:
+def _noises(records: Array, spec: RunSpec, actions: Sequence[UserAction]) -> list[tuple[NoiseSpec, int]]:
+    """Return the noises in order of time, each with its number of ticks."""
     import numpy as np
 
     if not any(isinstance(action.command, SetNoise) for action in actions):
-        return [spec.world.noise] * len(records)
-    noises: list[NoiseSpec] = []
+        return [(spec.world.noise, len(records))]
     # The noise can change only where the count of actions does.
     starts = [0, *(np.flatnonzero(np.diff(records["actions"])) + 1).tolist(), len(records)]
-    for start, end in pairwise(starts):
-        if end > start:
-            noises += [noise_at(spec, actions, TickRecord(*records[start].item()))] * (end - start)
-    return noises
+    return [
+        (noise_at(spec, actions, TickRecord(*records[start].item())), end - start)
+        for start, end in pairwise(starts)
+        if end > start
+    ]
 
 
 def _measured(
-    records: Array, sensors: Sequence[Any], noises: Sequence[NoiseSpec], spec: RunSpec, field: Field
+    records: Array,
+    sensors: Sequence[tuple[SensorKind, Any]],
+    noises: Sequence[tuple[NoiseSpec, int]],
+    spec: RunSpec,
+    field: Field,
+    field_at: FieldAt | None,
 ) -> dict[str, Array]:
-    """Return the columns of sensors that are measured tick by tick."""
+    """Return the measured columns of sensors: at once where that is possible, else tick by tick."""
     import numpy as np
 
-    names = [name for kind, sensor in sensors for name in kind.names(sensor)]
+    from tuisim.runs.sensor_arrays import measured_at_once
+
+    found: dict[str, Array] = {}
+    slow = []
+    lit = any(noise.light for noise, _ in noises)
+    for kind, sensor in sensors:
+        values = measured_at_once(sensor, records, spec, field, lit)
+        if values is None:
+            slow.append((kind, sensor))
+        else:
+            found.update(zip(kind.names(sensor), values, strict=True))
+    if not slow:
+        return found
+    names = [name for kind, sensor in slow for name in kind.names(sensor)]
     rows = np.empty((len(records), len(names)))
-    measures = [(kind.measure, sensor) for kind, sensor in sensors]
-    pen = PenMarks(field, spec) if spec.world.pen_marks else None
-    seen = field if pen is None else pen.field
+    field_at = field_at or _field_with_marks(field, spec)
+    every = chain.from_iterable(repeat(noise, count) for noise, count in noises)
     # One by one: all at once, as objects, the records of a long run take much memory.
-    for at, (values, noise) in enumerate(zip(TICK_RECORD.iter_unpack(records.data), noises, strict=True)):
-        if pen is not None:
-            pen.take_in([values])
-        instant = instant_of(TickRecord(*values), spec, noise)
-        rows[at] = [value for measure, sensor in measures for value in measure(sensor, instant, spec, seen)]
-    return {name: rows[:, at] for at, name in enumerate(names)}
+    for at, (record, noise) in enumerate(zip(TICK_RECORD.iter_unpack(records.data), every, strict=True)):
+        instant, seen = instant_of(TickRecord(*record), spec, noise), field_at(record)
+        rows[at] = [value for kind, sensor in slow for value in kind.measure(sensor, instant, spec, seen)]
+    return {**found, **{name: rows[:, at] for at, name in enumerate(names)}}
+
+
+def _field_with_marks(field: Field, spec: RunSpec) -> FieldAt:
+    """Return a function that takes every record from tick 0 on, and returns the mat as the sensors saw it then."""
+    if not spec.world.pen_marks:
+        return lambda _: field
+    pen = PenMarks(field, spec)
+
+    def field_at(record: tuple[float, ...]) -> Field:
+        pen.take_in([record])
+        return pen.field
+
+    return field_at

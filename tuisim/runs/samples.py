@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from tuisim.core.conditions import NUMBER, ValueCondition, ValueSource
 from tuisim.runs.records import OutputRow, Stream
 
 if TYPE_CHECKING:
@@ -20,8 +21,7 @@ if TYPE_CHECKING:
 _STDOUT = Stream.STDOUT
 """Runs may print millions of rows, and an attribute of an enumeration is slow to reach."""
 
-_NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-_SAMPLE = re.compile(rf"(?:\^log[ \t]+)?([^\W\d]\w*):[ \t]*({_NUMBER})(?:[ \t]+({_NUMBER}))?\s*")
+_SAMPLE = re.compile(rf"(?:\^log[ \t]+)?([^\W\d]\w*):[ \t]*({NUMBER})(?:[ \t]+({NUMBER}))?\s*")
 _PLAIN_SAMPLE = re.compile(rb"(?:\^log[ \t]+)?[A-Za-z_]\w*:[ \t]*[+-]?[0-9]{1,18}(?:\.[0-9]{0,18})?[ \t]*")
 """Matches most samples in the bytes of the recording; a line that it does not match may still be a sample."""
 
@@ -38,7 +38,7 @@ class Sample:
     """Simulated time of the print."""
     tick: int
     line: int
-    """Source line that printed it; 0 for none."""
+    """ValueSource line that printed it; 0 for none."""
 
 
 def parse_sample(text: str) -> tuple[str, float, float | None] | None:
@@ -86,3 +86,34 @@ def samples_of(rows: Iterable[OutputRow]) -> Iterator[Sample]:
             name, value, time_s = parsed
             printed_s = row.time_ns / 1e9 if time_s is None else time_s
             yield Sample(name, value, printed_s, row.time_ns, row.tick, row.line)
+
+
+def value_reader(condition: ValueCondition) -> Callable[[str], float | None]:
+    """Return a function that takes a printed line, and returns the value that a condition on such lines tests.
+
+    That is the number of a sample with its name, or 1 for a line that it matches; None where there is nothing to test.
+    """
+    if condition.source is ValueSource.PRINT:
+        pattern = re.compile(condition.value)
+        return lambda text: 1.0 if pattern.search(text) else None
+
+    def number(text: str) -> float | None:
+        sample = parse_sample(text)
+        return sample[1] if sample is not None and condition.name in ("", sample[0]) else None
+
+    return number
+
+
+def rows_when(condition: ValueCondition, rows: Iterable[OutputRow]) -> Iterator[OutputRow]:
+    """Yield the rows of printed lines of which a condition is true.
+
+    Raises:
+        ValueError: what a sample is to be compared with is no number.
+    """
+    read, test, before = value_reader(condition), condition.test(), math.nan
+    for row in rows:
+        value = read(row.text)
+        if value is not None:
+            if test(value, before):
+                yield row
+            before = value

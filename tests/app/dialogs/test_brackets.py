@@ -35,7 +35,7 @@ def _differences() -> Screen[Any]:
 DIALOGS: dict[str, tuple[Callable[[], Screen[Any]], tuple[str, ...]]] = {
     "poses": (_poses, ("door [/x]",)),
     "breaks": (lambda: BreaksDialog((parse_break("print matches [/b]"),), RobotSpec(), lambda _: None), ("[/b]",)),
-    "watches": (lambda: WatchesDialog(("table[row]",), lambda _: None), ("table[row]",)),
+    "watches": (lambda: WatchesDialog(("table[row]",), RobotSpec(), lambda _: None), ("table[row]",)),
     "differences": (_differences, ("'[/x]' at 0.000 s | '[beep]' at 0.100 s", "[b] | 1", "-a[i]")),
 }
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 from textual.pilot import Pilot
@@ -178,10 +179,13 @@ async def test_words_find_their_instants() -> None:
         rows = list(recording.rows.rows(0))
         dark = next(row.tick for row in rows if row.text.startswith("Colour: ") and float(row.text[8:]) < 90)
         waits = next(tick for tick in range(1, 400) if recording.telemetry.record(tick).line == 9)
+        values = [(row.tick, float(row.text[8:])) for row in rows if row.text.startswith("Colour: ")]
+        changed = [tick for (_, before), (tick, value) in pairwise(values) if before != value]
         table = {
             "3.5": 350, " 3.5 s": 350, "3.5s": 350, "tick 120": 120, "start": 0, "end": timeline.newest,
             "sample Colour < 90": dark, "print off": rows[1].tick, "line 9": waits, "line 4 back": None,
-            "sample back": None, "sample": rows[0].tick,
+            "sample back": None, "sample": rows[0].tick, "print matches off": rows[1].tick,
+            "sample Colour < 90 first": dark, "sample Colour changes": changed[0],
         }  # fmt: skip
         for text, tick in table.items():
             timeline.go(0)
@@ -196,6 +200,7 @@ async def test_words_find_their_instants() -> None:
         assert find("sample Colour", timeline) == find("sample", timeline) == newest
         assert find("sample Colour < 90 first", timeline) == dark
         timeline.go(dark)
+        assert find("sample Colour changes back", timeline) == max(tick for tick in changed if tick < dark)
         assert find("sample Colour back", timeline) == max(r.tick for r in rows if r.tick < dark)
         assert find("sample", timeline) == min(r.tick for r in rows if r.tick > dark)
 

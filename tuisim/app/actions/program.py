@@ -98,4 +98,6 @@ def list_watches(context: ActionContext) -> None:
     """Show the dialog of the watches."""
     from tuisim.app.dialogs.entries import WatchesDialog
 
-    context.app.push_screen(WatchesDialog(context.debugger.watches, context.debugger.set_watches))
+    context.app.push_screen(
+        WatchesDialog(context.debugger.watches, context.runs.spec.robot, context.debugger.set_watches)
+    )

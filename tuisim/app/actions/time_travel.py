@@ -10,6 +10,7 @@ from tuisim.app.branch import Branch, action_words
 from tuisim.app.setup.mat import mat_key
 from tuisim.app.snapshot import RunPhase
 from tuisim.app.timeline import find, forms
+from tuisim.core.sensors import column_names
 from tuisim.errors import TuisimError
 
 if TYPE_CHECKING:
@@ -121,9 +122,9 @@ def ask_where(context: ActionContext) -> None:
         mat = context.runs.mat
         to_tick(context, find(text, timeline, mat.field if mat is not None else None))
 
-    context.app.push_screen(
-        LinePrompt("Go to", go, forms=forms(timeline), placeholder=f"now at {timeline.time_s:.2f} s")
-    )
+    words = column_names(context.runs.spec.robot)
+    now = f"now at {timeline.time_s:.2f} s"
+    context.app.push_screen(LinePrompt("Go to", go, forms=forms(timeline), words=words, placeholder=now))
 
 
 def to_sample(context: ActionContext, words: str) -> None:

@@ -101,7 +101,7 @@ def _event(event: Event) -> Cells:
     return (
         event.variable, "above" if event.rising else "below", f"{event.time_s:.3f}",
         f"{event.since_s:.3f}" if isfinite(event.since_s) else "–", _figure(event.value), f"{event.row + 1:,}",
-        f"{event.threshold.value:g}",
+        event.threshold.level,
     )  # fmt: skip
 
 

@@ -29,7 +29,7 @@ from tuisim.app.dialogs.question import Form, LinePrompt
 from tuisim.app.terminal.cell_view import LinesView
 from tuisim.errors import LogError, TuisimError
 from tuisim.logs.columns import choose_columns, is_numeric
-from tuisim.logs.derived import SIGNALS, TIME
+from tuisim.logs.derived import SIGNALS, TIME, computed_columns
 from tuisim.logs.expressions import CONSTANTS, FUNCTIONS
 from tuisim.logs.log import Log
 
@@ -47,6 +47,7 @@ def expression_words(log: Log) -> Iterator[str]:
     columns = (at.name for at in log.table.schema if is_numeric(at.type))
     known = dict.fromkeys((*(name.partition(" #")[0] for name in log.names), *columns, TIME))
     yield from (name if name.isidentifier() else f"`{name}`" for name in known)
+    yield from computed_columns(log)
     yield from (f"{name}(" for name in (*SIGNALS, *FUNCTIONS))
     yield from CONSTANTS
     yield RECKONING

@@ -14,25 +14,15 @@ from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim.app.dialogs.dialog import Dialog, Result, name_and_title
-from tuisim.app.dialogs.question import form_list
+from tuisim.app.dialogs.question import LineInput, form_list
 from tuisim.app.setup.poses import MAX_NAME, delete_pose, load_poses, save_pose
-from tuisim.breakpoints import Breakpoint, parse_break, parse_watch
+from tuisim.breakpoints import FORMS, Breakpoint, parse_break, parse_watch
 from tuisim.core.geometry import Pose, shown_heading_deg
+from tuisim.core.sensors import column_names
 from tuisim.core.spec import RobotSpec
 from tuisim.errors import TuisimError
 
 Entry = TypeVar("Entry")
-
-FORMS = (
-    ("12", "line 12 is about to run"),
-    ("12 if x > 3", "line 12 is about to run, and the expression is true"),
-    ("left_red_pc < 10", "a column: ultrasonic_mm < 200, gyro_deg > 90, x_mm > 1000"),
-    ("left_color changes", "the sensor sees another colour"),
-    ("sample Colour < 50", "also: sample Colour changes"),
-    ("print matches black", "a printed line, by a regular expression"),
-    ("time 3.5", "3.5 simulated seconds have passed"),
-    ("stall", "an obstacle blocks a motor"),
-)
 
 
 class _List(Dialog[Result]):
@@ -56,7 +46,13 @@ class _List(Dialog[Result]):
 
 
 class _TextList(_List[None], Generic[Entry]):
-    """A list of entries that are written as text, and can be edited in the field."""
+    """A list of entries that are written as text, and can be edited in the field.
+
+    Args:
+        entries: The current ones.
+        robot: Its columns can be used in entries.
+        changed: Called with the new entries after each change.
+    """
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("delete,backspace", "remove", "Delete", show=False),
@@ -65,8 +61,11 @@ class _TextList(_List[None], Generic[Entry]):
     ]
     PLACEHOLDER: ClassVar[str] = ""
 
-    def __init__(self, entries: Sequence[Entry], changed: Callable[[tuple[Entry, ...]], None]) -> None:
+    def __init__(
+        self, entries: Sequence[Entry], robot: RobotSpec, changed: Callable[[tuple[Entry, ...]], None]
+    ) -> None:
         super().__init__()
+        self.robot = robot
         self._entries: list[Entry] = list(entries)
         self._changed = changed
         self._editing: int | None = None
@@ -74,7 +73,7 @@ class _TextList(_List[None], Generic[Entry]):
 
     def content(self) -> ComposeResult:
         yield OptionList(markup=False)
-        yield Input(placeholder=self.PLACEHOLDER, compact=True)
+        yield LineInput("", column_names(self.robot), self.PLACEHOLDER)
         yield Static(id="message", classes="wrong", markup=False)
         yield from self.explanation()
 
@@ -145,23 +144,11 @@ class _TextList(_List[None], Generic[Entry]):
 
 
 class BreaksDialog(_TextList[Breakpoint]):
-    """The breakpoints.
-
-    Args:
-        breaks: The current ones.
-        robot: Its sensors can be used in conditions.
-        changed: Called with the new breakpoints after each change.
-    """
+    """The breakpoints."""
 
     TITLE_TEXT: str = "Breakpoints"
     HINT: str = "Enter changes · Space switches · Delete removes · Escape closes"
     PLACEHOLDER: ClassVar[str] = "new breakpoint, such as 12 if x > 3"
-
-    def __init__(
-        self, breaks: Sequence[Breakpoint], robot: RobotSpec, changed: Callable[[tuple[Breakpoint, ...]], None]
-    ) -> None:
-        super().__init__(breaks, changed)
-        self._robot = robot
 
     def explanation(self) -> ComposeResult:
         """Return the syntax of breakpoints."""
@@ -169,7 +156,7 @@ class BreaksDialog(_TextList[Breakpoint]):
 
     def parse(self, text: str) -> Breakpoint:
         """Parse a breakpoint."""
-        return parse_break(text, self._robot)
+        return parse_break(text, self.robot)
 
     def written(self, entry: Breakpoint) -> str:
         """Return the text of a breakpoint."""

@@ -126,8 +126,8 @@ Form = tuple[str, str]
 """An accepted form, and what it means."""
 
 
-class _Line(Input):
-    """The input; tab accepts the suggested completion.
+class LineInput(Input):
+    """A field; tab accepts the suggested completion, without one it goes to the next widget.
 
     Args:
         value: Initial text.
@@ -135,11 +135,17 @@ class _Line(Input):
         placeholder: Text of the empty field.
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("tab", "cursor_right", "Accept the completion", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("tab", "accept", "Accept the completion", show=False)]
 
     def __init__(self, value: str, words: Sequence[str], placeholder: str) -> None:
         super().__init__(value, placeholder, compact=True, select_on_focus=True)
         self._words = words
+
+    def action_accept(self) -> None:
+        if completed(self.value, self._words) is None:
+            self.screen.focus_next()
+        else:
+            self.action_cursor_right()
 
     @on(Input.Changed)
     def _complete(self, event: Input.Changed) -> None:
@@ -210,7 +216,7 @@ class LinePrompt(Dialog[bool]):
     def content(self) -> ComposeResult:
         if self._text:
             yield Static(self._text, markup=False, classes="start")
-        yield _Line(self._value, self._words, self._placeholder)
+        yield LineInput(self._value, self._words, self._placeholder)
         yield Static(id="message", classes="wrong", markup=False)
         yield form_list(self._forms)
 

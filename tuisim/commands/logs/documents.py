@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import shutil
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from tuisim.commands.echo import echo, echo_drawn, echo_error
 from tuisim.commands.logs.sources import asked, names_of, the_source
 from tuisim.config.command_line import Arguments
 from tuisim.errors import ConfigError, LogError, listed
+from tuisim.logs.derived import with_named_columns
 from tuisim.logs.log import Log
 
 _SIZE = re.compile(r"(\d{1,6})[x×](\d{1,6})")
@@ -127,6 +129,7 @@ def report(arguments: Arguments) -> int:
     if request.runs and (arguments.time is not None or arguments.value):
         raise ConfigError("are for files only", "the columns of a run are fixed", key="--time and --value")
     *_, source = opening(request)
+    source = replace(source, log=with_named_columns(source.log, " ".join(arguments.variable)))
     names = names_of(source.log, arguments) if arguments.variable else ()
     target = Path(arguments.out or default_name(source))
     write_report(source, target, names)

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
 from tuisim.analysis.source import LogRequest
 from tuisim.commands.echo import echo_error, tell
 from tuisim.config.command_line import Arguments
-from tuisim.core.sensors import columns_of
-from tuisim.core.spec import RobotSpec
-from tuisim.errors import ConfigError, LogError, listed
+from tuisim.core.columns import column_name
+from tuisim.core.sensors import column_names, columns_of
+from tuisim.errors import ConfigError, LogError, among, listed
 from tuisim.logs.columns import choose_columns, time_in_words
+from tuisim.logs.derived import robot_of, with_named_columns
+from tuisim.logs.expressions import names_in
 from tuisim.logs.log import Log
 from tuisim.logs.reader import STDIN, log_of_runs, read_pieces, telemetry_log
 from tuisim.runs.run_folder import StoredRun
@@ -91,24 +93,34 @@ def _open_runs(words: Sequence[str], arguments: Arguments) -> Iterator[Log]:
             hint = "a program logs by printing lines such as `Colour: 50`; --telemetry uses every tick instead"
             raise LogError("no samples", damage or hint, file=log.title)
         layout = choose_columns(log.table, arguments.time, arguments.value, arguments.unit)
-        yield _with_notes(log.with_layout(layout))
+        yield _ready(log.with_layout(layout), arguments)
 
 
 def _logs_of(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
     """Return the samples of some runs, or the telemetry of each, where that is asked for or has what is asked for."""
-    asked_for: Sequence[str] = getattr(arguments, "variable", None) or ()
-    if not arguments.telemetry:
-        samples = log_of_runs(runs)
-        known = {name.partition(" #")[0] for name in samples.names}
-        columns = [{column.name for column in columns_of(run.spec.robot)} for run in runs]
-        if not asked_for or known & set(asked_for) or not all(set(asked_for) <= names for names in columns):
-            return [samples]
-    return [telemetry_log(run, _derived(asked_for, run.spec.robot)) for run in runs]
+    if arguments.telemetry:
+        _name_columns(arguments, (), runs)
+        return list(map(telemetry_log, runs))
+    samples = log_of_runs(runs)
+    known = {name.partition(" #")[0] for name in samples.names}
+    asked_for = _name_columns(arguments, known, runs)
+    is_telemetry = bool(asked_for) and all(
+        asked_for.isdisjoint(known) and asked_for.issubset(column_names(run.spec.robot)) for run in runs
+    )
+    return list(map(telemetry_log, runs)) if is_telemetry else [samples]
 
 
-def _derived(names: Iterable[str], robot: RobotSpec) -> list[str]:
-    """Return those of some names that are columns which telemetry has only if it is asked for them."""
-    return [column.name for column in columns_of(robot) if column.of is not None and column.name in names]
+def _name_columns(arguments: Arguments, known: Container[str], runs: Sequence[StoredRun]) -> set[str]:
+    """Give the variables that are asked for the names of columns; return these names and those in the expression.
+
+    Args:
+        known: The names of samples, which come first.
+    """
+    columns = columns_of(runs[0].spec.robot)
+    words: Sequence[str] = getattr(arguments, "variable", None) or ()
+    arguments.variable = tuple(word if word in known else column_name(word, columns) or word for word in words)
+    expression = getattr(arguments, "expression", "")
+    return {*arguments.variable, *(names_in(expression) if expression else ())}
 
 
 def _open_file(word: str, arguments: Arguments) -> Log:
@@ -123,13 +135,15 @@ def _open_file(word: str, arguments: Arguments) -> Log:
     if arguments.time is None and not log.metadata:
         hint = "--time COLUMN selects another, --time '' uses row numbers"
         echo_error(f"note: {log.title}: {time_in_words(log.layout)} ({hint})")
-    return _with_notes(log)
+    return _ready(log, arguments)
 
 
-def _with_notes(log: Log) -> Log:
+def _ready(log: Log, arguments: Arguments) -> Log:
+    """Tell the notes on a log; return it with the columns that must be asked for by name."""
     for note in log.notes:
         echo_error(f"note: {log.title}: {note}")
-    return log
+    words = [getattr(arguments, name, "") for name in ("expression", "against")]
+    return with_named_columns(log, " ".join((*words, *(getattr(arguments, "variable", None) or ()))))
 
 
 def names_of(log: Log, arguments: Arguments) -> tuple[str, ...]:
@@ -149,6 +163,8 @@ def names_of(log: Log, arguments: Arguments) -> tuple[str, ...]:
     for word in wanted:
         matching = [name for name in with_rows if name == word or name.partition(" #")[0] == word]
         if not matching:
-            raise LogError(f"no variable {word!r}", f"there are {listed(with_rows)}", file=log.title)
+            robot = robot_of(log)
+            columns = () if robot is None else column_names(robot)
+            raise LogError(f"no variable {word!r}", among(word, with_rows, columns), file=log.title)
         found += matching
     return tuple(dict.fromkeys(found))

@@ -13,7 +13,7 @@ from tuisim.analysis.events import THRESHOLD_FORM, Threshold, threshold_of
 from tuisim.commands.echo import CsvOut, echo_json, echo_lines, echo_wrapped, echo_written, table
 from tuisim.commands.logs.sources import names_of, open_sources, the_source
 from tuisim.config.command_line import Arguments
-from tuisim.core.comparison import Operator
+from tuisim.core.conditions import Operator
 from tuisim.errors import ConfigError
 from tuisim.logs import signals
 from tuisim.logs.arrow import numbers_of, unique_names
@@ -97,7 +97,7 @@ def _threshold_of(arguments: Arguments) -> Threshold:
     if bool(arguments.when) is (arguments.at is not None):
         raise ConfigError("takes one threshold", "such as --at 50, or --when 'Colour < 50'", key="events")
     if not arguments.when:
-        return Threshold("", Operator.EQUAL, arguments.at, arguments.hysteresis)
+        return Threshold("", Operator.EQUAL, repr(arguments.at), hysteresis=arguments.hysteresis)
     if arguments.variable:
         raise ConfigError("names the variable already", "leave --variable out", key="--when")
     threshold = threshold_of(arguments.when)

@@ -8,13 +8,12 @@ test walk these tables.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from tuisim.core.columns import MOTION, Column, measured_names, motion_of
-from tuisim.core.comparison import finite_number
+from tuisim.core.columns import MOTION, Column, column_name, measured_names, motion_of
 from tuisim.core.field import Field
 from tuisim.core.sensors import color, gyro, infrared, touch, ultrasonic
 from tuisim.core.spec import (
@@ -28,6 +27,7 @@ from tuisim.core.spec import (
     UltrasonicSpec,
 )
 from tuisim.core.state import Instant
+from tuisim.errors import ConfigError, nearest
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,57 +59,61 @@ SENSORS: Mapping[str, SensorKind] = {
 """All kinds of sensors, in the order of the telemetry columns."""
 
 
-@dataclass(frozen=True, slots=True)
-class ColumnSource:
-    """What measures columns: a sensor, or the robot itself."""
-
-    columns: tuple[Column, ...]
-    measure: Callable[[Instant, RunSpec, Field], tuple[float, ...]]
-    """Returns the values of the columns that are measured."""
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The names of what is measured."""
-        return measured_names(self.columns)
-
-    def values(self, names: Container[str], measured: Sequence[float], robot: RobotSpec) -> dict[str, float]:
-        """Return those of its values that have some names, from what is measured at an instant."""
-        known = dict(zip(self.names, measured, strict=True))
-        return {
-            column.name: known[column.name] if column.of is None else float(column.of(measured, robot))
-            for column in self.columns
-            if column.name in names
-        }
+Measure = Callable[[Instant, RunSpec, Field], tuple[float, ...]]
+"""Returns the values of the columns of an owner that are measured."""
 
 
-def sources(robot: RobotSpec) -> list[ColumnSource]:
-    """Return what measures the columns of a robot, in the order of the telemetry columns."""
-    of_sensors = [ColumnSource(kind.columns(sensor), partial(kind.measure, sensor)) for kind, sensor in mounted(robot)]
-    return [ColumnSource(MOTION, lambda instant, _spec, _field: motion_of(instant)), *of_sensors]
+def owners(robot: RobotSpec) -> list[tuple[tuple[Column, ...], Measure]]:
+    """Return the columns of the robot and of each sensor, in the order of telemetry, and how they are measured."""
+    of_sensors = [(kind.columns(sensor), partial(kind.measure, sensor)) for kind, sensor in mounted(robot)]
+    return [(MOTION, motion_of), *of_sensors]
 
 
 def columns_of(robot: RobotSpec) -> tuple[Column, ...]:
     """Return the columns that every run of a robot has."""
-    return tuple(column for source in sources(robot) for column in source.columns)
+    return tuple(column for columns, _ in owners(robot) for column in columns)
 
 
-def number_in(text: str, column: str) -> float:
-    """Return the number that a text means as the value of a column; colours have names.
+def column_names(robot: RobotSpec) -> tuple[str, ...]:
+    """Return the names of `columns_of`."""
+    return tuple(column.name for column in columns_of(robot))
+
+
+def named_column(text: str, robot: RobotSpec) -> str:
+    """Return the name of the column that a text means, see `column_name`.
 
     Raises:
-        ValueError: it is no number.
+        ConfigError: the robot has no such column.
     """
-    is_name = column.endswith(("_color", ".color")) and text in color.COLOR_NAMES
-    return float(color.COLOR_NAMES.index(text)) if is_name else finite_number(text)
+    found = column_name(text, columns_of(robot))
+    if found is None:
+        raise ConfigError(f"this robot has no {text!r}", nearest(text, column_names(robot)))
+    return found
 
 
 def reader_of(name: str, robot: RobotSpec) -> Callable[[Instant, RunSpec, Field], float] | None:
     """Return a function that gives the value of a column at an instant; None if the robot has no such column."""
-    source = next((one for one in sources(robot) if any(column.name == name for column in one.columns)), None)
-    if source is None:
-        return None
-    measure, values = source.measure, source.values
-    return lambda instant, spec, field: values((name,), measure(instant, spec, field), robot)[name]
+    for columns, measure in owners(robot):
+        for column in columns:
+            if column.name == name:
+                return partial(_value, column, measured_names(columns), measure)
+    return None
+
+
+def _value(
+    column: Column, names: tuple[str, ...], measure: Measure, instant: Instant, spec: RunSpec, field: Field
+) -> float:
+    measured = measure(instant, spec, field)
+    return measured[names.index(column.name)] if column.of is None else float(column.of(measured, spec.robot))
+
+
+def readings(sensors: Iterable[SensorSpec], instant: Instant, spec: RunSpec, field: Field) -> dict[str, float]:
+    """Return what some sensors measure at an instant, by column."""
+    return {
+        name: value
+        for kind, sensor in with_kinds(sensors)
+        for name, value in zip(kind.names(sensor), kind.measure(sensor, instant, spec, field), strict=True)
+    }
 
 
 def mounted(robot: RobotSpec) -> list[tuple[SensorKind, Any]]:

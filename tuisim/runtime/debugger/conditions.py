@@ -3,30 +3,17 @@
 from __future__ import annotations
 
 import ast
-import re
 import types
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import partial
 from typing import Any
 
-from tuisim.breakpoints import (
-    CHANGES,
-    SEEN,
-    Breakpoint,
-    PrintBreak,
-    SampleBreak,
-    StallBreak,
-    TimeBreak,
-    ValueBreak,
-    is_color,
-)
+from tuisim.breakpoints import Breakpoint, LineBreak, StallBreak, TimeBreak
 from tuisim.core.columns import column_name
-from tuisim.core.comparison import COMPARE
+from tuisim.core.conditions import Edge, Operator, ValueCondition, ValueSource, value_text
 from tuisim.core.profile import NS_PER_S
 from tuisim.core.sensors import columns_of, reader_of
-from tuisim.core.sensors.color import COLOR_NAMES
 from tuisim.runs.records import Stream
-from tuisim.runs.samples import parse_sample
+from tuisim.runs.samples import value_reader
 from tuisim.runtime.debugger.value_text import evaluate_truth
 from tuisim.runtime.session import Session
 
@@ -91,27 +78,6 @@ class Condition:
 Value = Callable[[], float]
 
 
-class Relation:
-    """Edge detection for a value: it matches when the relation becomes true, not while it stays true."""
-
-    __slots__ = ("_before", "_met", "_number", "_relation")
-
-    def __init__(self, relation: str, number: float) -> None:
-        self._relation, self._number = relation, number
-        self._before: float | None = None
-        self._met = False
-
-    def meets(self, value: float) -> bool:
-        """Process the next value; return whether the run has to pause."""
-        if self._relation == SEEN:
-            return True
-        if self._relation == CHANGES:
-            before, self._before = self._before, value
-            return before is not None and before != value
-        met, self._met = self._met, COMPARE[self._relation](value, self._number)
-        return self._met and not met
-
-
 class Watcher:
     """The breakpoints of one run that have no line. They cost nothing while there are none.
 
@@ -141,10 +107,12 @@ class Watcher:
         self._after_tick, self._on_row = {}, {}
         for one in breaks:
             match one.rule:
-                case SampleBreak() | PrintBreak():
-                    self._on_row[one.text] = rows.get(one.text) or self._row_check(one.rule)
-                case ValueBreak() | TimeBreak() | StallBreak():
-                    check = ticks.get(one.text) or self._tick_check(one.rule)
+                case LineBreak():
+                    pass
+                case ValueCondition(source=ValueSource.SAMPLE | ValueSource.PRINT) as condition:
+                    self._on_row[one.text] = rows.get(one.text) or _row_check(condition)
+                case rule:
+                    check = ticks.get(one.text) or self._tick_check(rule)
                     if check is not None:
                         self._after_tick[one.text] = check
 
@@ -160,39 +128,25 @@ class Watcher:
 
     # Checks
 
-    def _row_check(self, rule: SampleBreak | PrintBreak) -> Callable[[str], str]:
-        if isinstance(rule, PrintBreak):
-            pattern = re.compile(rule.pattern)
-            return lambda row: row if pattern.search(row) else ""
-        relation = Relation(rule.relation, rule.number)
-
-        def check(row: str) -> str:
-            sample = parse_sample(row)
-            if sample is None or sample[0] != rule.name:
-                return ""
-            return row if relation.meets(sample[1]) else ""
-
-        return check
-
-    def _tick_check(self, rule: ValueBreak | TimeBreak | StallBreak) -> Callable[[], str] | None:
+    def _tick_check(self, rule: ValueCondition | TimeBreak | StallBreak) -> Callable[[], str] | None:
         match rule:
             case TimeBreak(time_s=time_s):
                 value: Value | None = self._time_s
-                relation = Relation(">=", time_s - 0.5 / NS_PER_S)
-                if self._time_s() >= time_s:
-                    # That time has passed already and does not come again.
-                    relation.meets(time_s)
+                condition = ValueCondition("time", Operator.GREATER_EQUAL, repr(time_s - 0.5 / NS_PER_S))
             case StallBreak():
-                value, relation = self._stalled, Relation(">", 0.0)
-            case ValueBreak():
-                value, relation = self._value_of(rule.column), Relation(rule.relation, rule.number)
+                value, condition = self._stalled, ValueCondition("stall", Operator.GREATER, "0")
+            case ValueCondition():
+                value, condition = self._value_of(rule.name), rule
         if value is None:
             return None
-        shown = partial(_shown, color=isinstance(rule, ValueBreak) and is_color(rule.column))
+        edge = Edge(condition)
+        if isinstance(rule, TimeBreak) and self._time_s() >= rule.time_s:
+            # That time has passed already and does not come again.
+            edge.meets(rule.time_s)
 
         def check() -> str:
             number = value()
-            return shown(number) if relation.meets(number) else ""
+            return value_text(number, condition.name) if edge.meets(number) else ""
 
         return check
 
@@ -217,5 +171,11 @@ def _first(found: Iterator[tuple[str, str]]) -> tuple[str, str] | None:
     return met[0] if met else None
 
 
-def _shown(number: float, color: bool) -> str:
-    return COLOR_NAMES[int(number)] if color else f"{number:.6g}"
+def _row_check(condition: ValueCondition) -> Callable[[str], str]:
+    read, edge = value_reader(condition), Edge(condition)
+
+    def check(row: str) -> str:
+        value = read(row)
+        return row if value is not None and edge.meets(value) else ""
+
+    return check

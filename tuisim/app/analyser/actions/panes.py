@@ -10,7 +10,7 @@ from tuisim.analysis.events import Event, Threshold, events_of, thresholds_of
 from tuisim.analysis.model import Model
 from tuisim.analysis.table import TableTask, TableView, conditions_of
 from tuisim.app.analyser.world import NO_POSES, has_poses
-from tuisim.core.comparison import spelled
+from tuisim.core.conditions import spelled
 from tuisim.errors import LogError
 from tuisim.logs.log import Log
 
@@ -43,6 +43,7 @@ def events(screen: LogScreen) -> None:
 
 
 def _search(screen: LogScreen, text: str) -> None:
+    screen.model.add_named_columns(text)
     log = screen.model.log
     thresholds = thresholds_of(text, log)
 
@@ -109,11 +110,12 @@ def select(screen: LogScreen) -> None:
 
     def keep(text: str) -> None:
         model = screen.model
+        model.add_named_columns(text)
         conditions = tuple(conditions_of(text, model.log.table.column_names)) if text else ()
         then = partial(_arrange, screen, model)
         screen.work("filtering …", model.log.rows, lambda _: model.rows.filtered(conditions), then)
 
-    screen.ask("Filter", keep, " and ".join(map(str, screen.model.rows.view.conditions)), _FILTERS)
+    screen.ask("Filter", keep, " and ".join(map(str, screen.model.rows.view.conditions)), _FILTERS, completes=True)
 
 
 def show_all(screen: LogScreen) -> None:

@@ -1,4 +1,4 @@
-"""One language of comparisons for breakpoints, go-to, filters, events and expressions."""
+"""One language of conditions for breakpoints, go-to, filters, events, goals and expressions."""
 
 from __future__ import annotations
 
@@ -13,22 +13,23 @@ import pytest
 from tuisim.analysis.events import FORM, threshold_of, thresholds_of
 from tuisim.analysis.table import Rows, conditions_of
 from tuisim.app.timeline import find
-from tuisim.breakpoints import SampleBreak, parse_break
+from tuisim.breakpoints import parse_break
+from tuisim.core.conditions import Edge, ValueCondition, ValueSource, condition_in, run_condition_in
 from tuisim.core.profile import PROFILES
 from tuisim.errors import ConfigError, LogError
 from tuisim.logs.columns import Layout
 from tuisim.logs.expressions import evaluate
 from tuisim.logs.log import Log
+from tuisim.runs.frames import begins, held
 from tuisim.runs.records import OutputRow, Stream
-from tuisim.runtime.debugger.conditions import Relation
 
 VALUES = (40.0, 50.0, 60.0)
 
 
 def by_breakpoint(condition: str) -> list[float]:
     rule = parse_break(f"sample {condition}").rule
-    assert isinstance(rule, SampleBreak)
-    return [value for value in VALUES if Relation(rule.relation, rule.number).meets(value)]
+    assert isinstance(rule, ValueCondition)
+    return [value for value in VALUES if Edge(rule).meets(value)]
 
 
 class OneRow:
@@ -84,9 +85,34 @@ def test_a_comparison_means_the_same_everywhere(place: str, condition: str, expe
     assert PLACES[place](condition) == expected
 
 
+@pytest.mark.parametrize("condition", ["x < 2", "x >= 2", "x != 1", "x changes"])
+def test_an_edge_is_found_in_a_recording_where_it_was_met_during_the_run(condition: str) -> None:
+    values = np.random.default_rng(2).integers(0, 4, 300).astype(float)
+    found = condition_in(condition)
+    assert found is not None
+    edge = Edge(found)
+    met = [at for at, value in enumerate(values.tolist()) if edge.meets(value)]
+    assert begins(found, held(found, values)).tolist() == met
+    assert 50 < len(met) < 250
+
+
+RUN_CONDITIONS = {
+    "left_color changes": ValueCondition("left_color", "changes"),
+    "sample Colour < 5": ValueCondition("Colour", "<", "5", ValueSource.SAMPLE),
+    "sample": ValueCondition("", "is seen", "", ValueSource.SAMPLE),
+    "print matches a = b": ValueCondition("", "matches", "a = b", ValueSource.PRINT),
+    "sample 1x < 3": None, "print a": None, "x ~ 3": None, "x": None, "changes": None,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "condition"), RUN_CONDITIONS.items(), ids=RUN_CONDITIONS)
+def test_conditions_on_a_run(text: str, condition: ValueCondition | None) -> None:
+    assert run_condition_in(text) == condition
+
+
 EVENTS = {
     "Colour < 50": (False,), "Colour>50": (True,), "Colour = 50": (False, True), "Colour == 50": (False, True),
-    "Colour > 50 +- 2": (True,), "Colour>50±-2e-1": None, " Colour < +5.e1 ": (False,),
+    "Colour > 50 +- 2": (True,), "Colour changes": (False, True), "Colour>50±-2e-1": None, " Colour < +5.e1 ": (False,),
 }  # fmt: skip
 
 
@@ -112,7 +138,8 @@ def test_names_of_variables_may_hold_operators(text: str, name: str) -> None:
 
 OTHER_FILTERS = {
     "word = 'a b'": [40], "word ~ A": [40], "word == > 5": [50], "word ==": [60], "Colour < inf": [40, 50, 60],
-    "Colour = 50, word ~ 5": [50], "word != a b and Colour < 60": [50],
+    "Colour = 50, word ~ 5": [50], "word changes": [50, 60], "Colour changes and Colour > 50": [60],
+    "word != a b and Colour < 60": [50],
 }  # fmt: skip
 
 

@@ -1,0 +1,139 @@
+"""What sensors measure at many ticks at once, equal to their functions in `core.sensors` to the last bit.
+
+To add a kind of sensor: a function of its spec, the records, the run and the mat, and a line in `_AT_ONCE`. A kind
+without one is measured tick by tick.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tuisim.core.drive import turn_rate_dps
+from tuisim.core.field import Field
+from tuisim.core.noise import stream
+from tuisim.core.sensors import SENSORS
+from tuisim.core.sensors.color import disc_pixels_of
+from tuisim.core.sensors.ultrasonic import MAX_ECHO_DEG, MIN_ECHO_DEG, Edge, surfaces
+from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, GyroSpec, RunSpec, SensorSpec, UltrasonicSpec
+from tuisim.runs.arrays import cos_and_sin, world_points_mm
+
+Array = NDArray[Any]
+
+
+def measured_at_once(
+    sensor: SensorSpec, records: Array, run: RunSpec, field: Field, has_light_noise: bool
+) -> tuple[Array, ...] | None:
+    """Return what is measured of a sensor at every tick, in the order of its columns; None if it cannot be at once.
+
+    Args:
+        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
+        run: The specification of the run.
+        field: The mat.
+        has_light_noise: Whether there is light noise at any of the ticks.
+    """
+    if isinstance(sensor, ColorSensorSpec) and (has_light_noise or sensor.strategy != "mean" or run.world.pen_marks):
+        return None
+    measure = _AT_ONCE.get(type(sensor))
+    if measure is None:
+        return None
+    # A ray may be parallel to an edge, and a damaged record may hold any numbers.
+    with np.errstate(all="ignore"):
+        return measure(sensor, records, run, field)
+
+
+def quiet_color_columns(records: Array, sensor: ColorSensorSpec, field: Field) -> dict[str, Array]:
+    """Return red, green and blue of a colour sensor at every tick without light noise, by column.
+
+    Args:
+        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
+        sensor: The sensor.
+        field: The mat; it must have sums of the sensor's diameter.
+    """
+    x_mm, y_mm = world_points_mm(records, sensor.x_mm, sensor.y_mm)
+    diameter = sensor.diameter_mm
+    with np.errstate(invalid="ignore"):  # a position beyond all integers is off the mat either way
+        col = (x_mm - diameter / 2).astype(np.int64) + diameter
+        row = (FIELD_HEIGHT_MM - y_mm - diameter / 2).astype(np.int64) + diameter
+    height, width = field.height_px + diameter, field.width_px + diameter
+    inside = (col >= 0) & (col < width) & (row >= 0) & (row < height)
+    sums = np.zeros((len(records), 3), np.uint32)
+    table = np.frombuffer(field.sums[diameter], np.uint32).reshape(height, width, 3)
+    sums[inside] = table[row[inside], col[inside]]
+    means = sums / disc_pixels_of(diameter)
+    return {name: means[:, channel] for channel, name in enumerate(SENSORS["color"].names(sensor))}
+
+
+def _color(sensor: ColorSensorSpec, records: Array, run: RunSpec, field: Field) -> tuple[Array, ...]:
+    return tuple(quiet_color_columns(records, sensor, field).values())
+
+
+def _gyro(sensor: GyroSpec, records: Array, run: RunSpec, field: Field) -> tuple[Array, ...]:
+    left_dps: Any = records["left_speed_dps"].astype("f8")
+    right_dps: Any = records["right_speed_dps"].astype("f8")
+    angle_deg = records["gyro_zero_deg"].astype("f8") - records["heading_deg"]
+    rate_dps: Any = -turn_rate_dps(left_dps, right_dps, run.robot)
+    return _rounded(angle_deg), _rounded(rate_dps)
+
+
+def _ultrasonic(sensor: UltrasonicSpec, records: Array, run: RunSpec, field: Field) -> tuple[Array, ...]:
+    start = world_points_mm(records, sensor.x_mm, sensor.y_mm)
+    facing_deg = records["heading_deg"] + sensor.angle_deg
+    found = surfaces(run.world)
+    nearest_mm = np.full(len(records), sensor.max_range_mm)
+    for ray_deg in sensor.ray_angles_deg:
+        cos, sin = cos_and_sin(facing_deg + ray_deg)
+        nearest_mm = _cut_off(nearest_mm, found.upright, start, (cos, sin), _echoes(90.0, facing_deg))
+        nearest_mm = _cut_off(nearest_mm, found.level, start[::-1], (sin, cos), _echoes(0.0, facing_deg))
+    distance_mm = _rounded(nearest_mm)
+    if not sensor.noise_mm:
+        return (distance_mm,)
+    drawn = (stream(run.seed, tick, sensor.name, 4) for tick in records["tick"].tolist())
+    shares = np.array([int.from_bytes(four, "little") / 2147483647.5 - 1 for four in drawn])
+    noisy_mm = _rounded(distance_mm + sensor.noise_mm * shares)
+    return (np.clip(noisy_mm, 0.0, float(round(sensor.max_range_mm))),)
+
+
+def _cut_off(
+    nearest_mm: Array, edges: tuple[Edge, ...], start: tuple[Array, Array], step: tuple[Array, Array], echoes: Array
+) -> Array:
+    """Return the lengths of rays that end at the first of some edges, as `core.sensors.ultrasonic.first_hit_mm`.
+
+    Args:
+        nearest_mm: Their lengths without the edges, shape (n,).
+        edges: Parallel to one axis.
+        start: Where they begin: across the edges, and along them.
+        step: Change in each direction per mm along the ray.
+        echoes: Whether the edges return an echo at each tick.
+    """
+    across, along = start
+    across_step, along_step = step
+    echoes = echoes & (np.abs(across_step) >= 1e-12)
+    for place, low, high in edges:
+        way_mm = (place - across) / across_step
+        at = along + way_mm * along_step
+        ahead = np.where(across_step > 0, place >= across, place <= across)
+        hits = echoes & ahead & (way_mm < nearest_mm) & (low - 1e-9 <= at) & (at <= high + 1e-9)
+        nearest_mm = np.where(hits, way_mm, nearest_mm)
+    return nearest_mm
+
+
+def _echoes(edge_deg: float, facing_deg: Array) -> Array:
+    angle_deg = np.abs(edge_deg - facing_deg) % 180.0
+    return (angle_deg > MIN_ECHO_DEG) & (angle_deg < MAX_ECHO_DEG)
+
+
+def _rounded(values: Array) -> Array:
+    """Return whole numbers, as Python rounds; -0.0 becomes 0.0."""
+    rounded: Array = np.rint(values) + 0.0
+    return rounded
+
+
+_AT_ONCE: Mapping[type[SensorSpec], Callable[..., tuple[Array, ...]]] = {
+    ColorSensorSpec: _color,
+    UltrasonicSpec: _ultrasonic,
+    GyroSpec: _gyro,
+}
