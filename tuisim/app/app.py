@@ -149,31 +149,14 @@ class LabApp(PanelMessages):
         self._drawn: tuple[Any, ...] = ((None,),)
         self._footed: tuple[Any, ...] = ()
         """What of the state the footer tells."""
-        self.goals = GoalsController(self, self.run_controller, self.panel_area, settings.goals)
-        self.loader = Loader(
-            self,
-            self.run_controller,
-            self.panel_area,
-            self.goals,
-            self.next_run_changed,
-            self.mat_ready,
-            settings.world_file,
-        )
-        self.document = Document(self, self.run_controller, self.panel_area, self.loader)
-        self.debugger = DebugController(self, self.run_controller, self.panel_area, self.document.lines, self._to_now)
-        self.lesson = LessonController(
-            self,
-            self.run_controller,
-            self.panel_area,
-            self.goals,
-            self.loader,
-            self.debugger,
-            settings.lesson,
-            settings.lessons_folder,
-        )
-        self.context = ActionContext(
-            self, self.run_controller, self.panel_area, self.document, self.loader, self.debugger, self.lesson
-        )
+        runs, panels = self.run_controller, self.panel_area
+        self.goals = GoalsController(self, runs, panels, settings.goals)
+        self.loader = Loader(self, runs, panels, self.goals, settings.world_file)
+        self.document = Document(self, runs, panels, self.loader)
+        self.debugger = DebugController(self, runs, panels, self.document.lines)
+        of_lesson = self.goals, self.loader, self.debugger, settings.lesson, settings.lessons_folder
+        self.lesson = LessonController(self, runs, panels, *of_lesson)
+        self.context = ActionContext(self, runs, panels, self.document, self.loader, self.debugger, self.lesson)
         self.run_controller.propose = partial(time_travel.propose_branch, self.context)
         self._run_when_ready = settings.autorun and settings.replay is None
         self._frame_timer: Timer | None = None
@@ -241,7 +224,8 @@ class LabApp(PanelMessages):
         """Reload the files that have changed on disk, or ask about those with unsaved edits."""
         self.loader.check_files(self.document.conflicts_with)
 
-    def _to_now(self) -> None:
+    def to_now(self) -> None:
+        """Return from the past to the newest instant."""
         time_travel.to_now(self.context)
 
     def _waits(self, event: events.Event) -> bool:
@@ -548,7 +532,7 @@ class LabApp(PanelMessages):
     def action_leave_field(self) -> None:
         """Leave an input field; from the world, return from the past."""
         if self.debugger.is_away and self.focused in (None, self.panel_area.world):
-            time_travel.to_now(self.context)
+            self.to_now()
         self.panel_area.focus_world()
 
     def on_output_answered(self, message: Output.Answered) -> None:

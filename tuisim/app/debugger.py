@@ -96,7 +96,6 @@ class DebugController:
         run_controller: Gets debug commands.
         panel_area: Has the code and debug panels.
         lines: Returns the map between the lines of the current run and those of the edited text.
-        to_now: Returns from the past to the newest instant.
     """
 
     def __init__(
@@ -105,10 +104,9 @@ class DebugController:
         run_controller: RunController,
         panel_area: PanelArea,
         lines: Callable[[], LineMap],
-        to_now: Callable[[], None],
     ) -> None:
         self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
-        self._lines, self._to_now = lines, to_now
+        self._lines = lines
         self.breaks: tuple[Breakpoint, ...] = ()
         self.watches: tuple[str, ...] = ()
         self.view: PauseView | None = None
@@ -383,7 +381,7 @@ class DebugController:
         return at.is_before(Position(now.tick, now.ordinal))
 
     def _reached_now(self) -> None:
-        self._to_now()
+        self._app.to_now()
         self._back_to_now()
 
     def _not_there(self, why: str) -> None:

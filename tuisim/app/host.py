@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from typing import TYPE_CHECKING
 
 from tuisim.app.action import ActionHost
 from tuisim.app.terminal.terminal_app import TerminalApp
+
+if TYPE_CHECKING:
+    from tuisim.app.render.mat import Pixels
 
 
 class LabHost(ActionHost, TerminalApp):
@@ -26,6 +30,18 @@ class LabHost(ActionHost, TerminalApp):
         Args:
             paused: Pause it at its first line.
         """
+
+    @abstractmethod
+    def mat_ready(self, pixels: Pixels | None) -> None:
+        """Show the image of the mat that has been prepared; None if it is shown already."""
+
+    @abstractmethod
+    def next_run_changed(self) -> None:
+        """Update the panels after the plan of the next run has changed."""
+
+    @abstractmethod
+    def to_now(self) -> None:
+        """Return from the past to the newest instant."""
 
     @abstractmethod
     def run_changed(self, last_words: str = "", error_line: int = 0) -> None:
