@@ -446,6 +446,7 @@ class LabApp(PanelMessages):
             self._show_footer(state)
 
     def situation(self) -> Situation:
+        """Return the state that decides which keys are available."""
         return self._situation(self.run_controller.state)
 
     def _situation(self, phase: RunPhase) -> Situation:
