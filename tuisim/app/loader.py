@@ -19,7 +19,7 @@ from tuisim.config.folders import user_path
 from tuisim.config.options import Settings
 from tuisim.config.program_settings import Decided, free_fields
 from tuisim.errors import LogError, TuisimError
-from tuisim.runs.handle import program_again
+from tuisim.runs.run_folder import program_again
 from tuisim.runs.standstill import standstill_words
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
@@ -556,7 +556,7 @@ def program_of(run: StoredRun) -> Program:
         same = False
     if same:
         return Program(name=stored.name, text=stored.text, prelude=stored.prelude, path=stored.path)
-    return replace(program_again(run), path="")
+    return replace(program_again(run.program, run.folder), path="")
 
 
 def _prepare_run(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | None]:

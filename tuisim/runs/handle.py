@@ -120,11 +120,6 @@ class RunOptions:
         return {**asdict(self), "actions": [action.to_plain() for action in self.actions]}
 
 
-def program_again(run: StoredRun | RunHandle) -> Program:
-    """Return the program of a run with its arguments, working directory and own modules, to be run again."""
-    return replace(run.program, modules_from=run.folder)
-
-
 class RunFolders(Protocol):
     """Where a handle stores its run: a `RunStore`, or a `TemporaryRun`."""
 

@@ -17,9 +17,8 @@ from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING, TICK_RECORD
 from tuisim.errors import LogError
 from tuisim.protocol import SetButtons, UserAction
-from tuisim.runs.handle import program_again
 from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow, Stream
-from tuisim.runs.run_folder import StoredRun, noise_at
+from tuisim.runs.run_folder import StoredRun, noise_at, program_again
 from tuisim.runs.samples import parse_sample
 from tuisim.runs.side_files import read_actions
 
@@ -48,7 +47,7 @@ class Recording:
         self.telemetry: TelemetryView = source.telemetry
         self._output = source.output
         self.rows = RowIndex(source.output)
-        self.program = program_again(source)
+        self.program = program_again(source.program, source.folder)
         self.known_actions: tuple[UserAction, ...] = source.actions if isinstance(source, StoredRun) else ()
         """The user's actions, as far as `actions` has last found them."""
         self._stall_ticks = stall_ticks(self.spec.profile.tick_hz)

@@ -14,14 +14,13 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 
 from tuisim.app import background
-from tuisim.app.analyser.panes import first_shown
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.arrays import Arrays
 from tuisim.app.panels.world import WorldView
 from tuisim.app.setup.mat import Mat, blank_mat, prepare_mat, prepare_mat_of
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesView
-from tuisim.charts.text_runs import Run
+from tuisim.charts.text_runs import Run, first_shown
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import RunSpec, from_plain
 from tuisim.core.state import Instant
