@@ -19,10 +19,7 @@ from tuisim.errors import ConfigError, see_page
 FORMS = (
     ("12", "line 12 is about to run, or the next line of code if 12 is blank or a comment"),
     ("12 if x > 3", "line 12 is about to run, and the expression is true"),
-    (
-        "left_red_pc < 10",
-        "a column becomes so after a tick; also ultrasonic_mm <= 200, gyro_deg > 90, x_mm > 1000",
-    ),
+    ("left_red_pc < 10", "a column becomes so; also ultrasonic_mm <= 200, gyro_deg > 90, x_mm > 1000"),
     ("left_color changes", "the sensor sees another colour; left_color == Blue: it sees this one"),
     ("sample Colour < 50", "such a sample is printed; also sample Colour changes, sample Colour"),
     ("print matches black", "a line is printed in which the regular expression is found"),

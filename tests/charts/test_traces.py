@@ -75,3 +75,10 @@ def test_a_trace_without_end_keeps_its_extremes_in_bounded_memory() -> None:
     assert (np.diff(trace.times_s) >= 0).all()
     # What came last is there as it came.
     assert trace.values[-1000:].tolist() == values[-1000:].tolist()
+
+
+@pytest.mark.parametrize(
+    ("name", "is_other"), [("front_mm", True), ("turn_deg", True), ("speed_mm_s", True), ("eye_red_pc", False)]
+)
+def test_a_trace_of_telemetry_that_is_no_light_has_a_scale_of_its_own(name: str, is_other: bool) -> None:
+    assert Trace(name, 0, logged=False).other_scale is is_other

@@ -62,6 +62,8 @@ def test_light_noise_is_measured_tick_by_tick(spec: RunSpec, field: Field) -> No
 def test_a_damaged_record_has_no_reading_and_spoils_no_other(spec: RunSpec, field: Field) -> None:
     records = places(3)
     records["heading_deg"][1] = math.inf
-    (before,) = measured_at_once(spec.robot.ultrasonic, places(3), spec, field, has_light_noise=False) or ()
-    (after,) = measured_at_once(spec.robot.ultrasonic, records, spec, field, has_light_noise=False) or ()
+    sensor = spec.robot.ultrasonic
+    assert sensor is not None
+    (before,) = measured_at_once(sensor, places(3), spec, field, has_light_noise=False) or ()
+    (after,) = measured_at_once(sensor, records, spec, field, has_light_noise=False) or ()
     assert (after[0], after[2]) == (before[0], before[2])

@@ -145,10 +145,7 @@ _FORMS = (
     ("line 12", "{which} time that line 12 runs"),
     ("sample Colour", "{which} sample with this name; `sample` alone: with any name"),
     ("sample Colour < 90", f"{{which}} sample that matches; operators: {spelled()}"),
-    (
-        "left_red_pc < 50",
-        "{which} tick at which a column becomes so, or `changes`; also x_mm, ultrasonic_mm, gyro_deg …",
-    ),
+    ("left_red_pc < 50", "{which} tick at which a column becomes so; also left_color changes, gyro_deg > 90, x_mm …"),
     ("print REGEX", "{which} printed line that matches the regular expression"),
     ("start, end", "the first and the latest instant"),
     ("… back, … first", "a line, sample or print: searched backwards, or from the start of the run"),
@@ -176,12 +173,9 @@ class _Search:
     back: bool
 
     @property
-    def side(self) -> str:
-        return "before" if self.back else "after"
-
-    @property
     def words(self) -> str:
-        return "in this run" if self.at < 0 else f"{self.side} {self.at / self.recording.spec.profile.tick_hz:.2f} s"
+        time_s, side = self.at / self.recording.spec.profile.tick_hz, "before" if self.back else "after"
+        return "in this run" if self.at < 0 else f"{side} {time_s:.2f} s"
 
     def texts(self) -> Iterator[OutputRow]:
         """Yield the printed rows that come next, at another tick than the current one."""
@@ -234,7 +228,13 @@ def find(text: str, timeline: Timeline, mat: Field | None = None) -> int:
     if (condition := _condition(word, rest, text)) is None:
         raise ConfigError(f"{text.strip()!r} is not an instant" if text.strip() else "no instant given", _HINT)
     try:
-        return _when(search, condition, mat)
+        match condition.source:
+            case ValueSource.PRINT:
+                return _printed(search, condition)
+            case ValueSource.SAMPLE:
+                return _sample(search, condition)
+            case ValueSource.COLUMN:
+                return _becomes(search, condition, mat)
     except ValueError as error:
         raise ConfigError(str(error), _HINT) from error
 
@@ -267,22 +267,6 @@ def _line(search: _Search, line: int) -> int:
         hint = "only lines that let time pass, or print, can be found"
         raise ConfigError(f"line {line} does not run {search.words}", hint)
     return tick
-
-
-def _when(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
-    """Return the next tick at which a condition becomes true.
-
-    Raises:
-        ConfigError: there is none, or the condition cannot be tested.
-        ValueError: what it compares with is no number.
-    """
-    match condition.source:
-        case ValueSource.PRINT:
-            return _printed(search, condition)
-        case ValueSource.SAMPLE:
-            return _sample(search, condition)
-        case ValueSource.COLUMN:
-            return _becomes(search, condition, mat)
 
 
 def _sample(search: _Search, condition: ValueCondition) -> int:

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from tuisim.core.css_colors import Rgb
 from tuisim.logs.signals import Summary, summary_of
+from tuisim.logs.units import unit_of
 from tuisim.runs.arrays import FloatArray
 
 TRACE_COLORS: tuple[Rgb, ...] = (
@@ -43,7 +44,8 @@ class Trace:
         self.on = self.logged = logged
         self.rgb = TRACE_COLORS[number % len(TRACE_COLORS)]
         self.mark = MARKS[number % len(MARKS)]
-        self.other_scale = name.lower().startswith(_OTHER_SCALE)
+        is_light = unit_of(name).sign in ("", "%")
+        self.other_scale = name.lower().startswith(_OTHER_SCALE) if logged else not is_light
         self._times_s = np.empty(256)
         self._values = np.empty(256)
         self._count = 0

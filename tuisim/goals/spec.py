@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from keyword import iskeyword
-from typing import Annotated, ClassVar, TypeAlias
+from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
@@ -92,12 +92,17 @@ def _check_count(found: tuple[object, ...], key: str) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class ReachCondition:
-    """The robot comes to a place, a heading, or both."""
+class Condition:
+    """What is asked of a run."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = ""
     """The key that is meant if a file gives a value instead of a table; its value may be one text instead of a list."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReachCondition(Condition):
+    """The robot comes to a place, a heading, or both."""
 
     x_mm: X | None = None
     """None: any."""
@@ -119,11 +124,10 @@ class ReachCondition:
 
 
 @dataclass(frozen=True, slots=True)
-class AreaCondition:
+class AreaCondition(Condition):
     """A part of the field: a rectangle from its lower left corner, or a circle around its centre."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
-    SHORT: ClassVar[str] = ""
 
     x_mm: Annotated[float, Meta(ge=-10_000, le=10_000)]
     y_mm: Annotated[float, Meta(ge=-10_000, le=10_000)]
@@ -170,11 +174,10 @@ class OutsideCondition(AreaCondition):
 
 
 @dataclass(frozen=True, slots=True)
-class TouchNothingCondition:
+class TouchNothingCondition(Condition):
     """The robot touches no obstacle and no wall; what it touches at the start counts once it has left it."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
-    SHORT: ClassVar[str] = ""
 
     obstacles: bool = True
     walls: bool = True
@@ -187,10 +190,9 @@ class TouchNothingCondition:
 
 
 @dataclass(frozen=True, slots=True)
-class PassCondition:
+class PassCondition(Condition):
     """The robot passes places."""
 
-    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = "places_mm"
 
     places_mm: tuple[tuple[X, Y], ...]
@@ -203,7 +205,7 @@ class PassCondition:
 
 
 @dataclass(frozen=True, slots=True)
-class FollowCondition:
+class FollowCondition(Condition):
     """A part of the robot is on a line for a share of the time. Noise and the pen's marks do not count."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.HELD
@@ -226,11 +228,8 @@ class FollowCondition:
 
 
 @dataclass(frozen=True, slots=True)
-class DrawCondition:
+class DrawCondition(Condition):
     """What the pen draws is near a picture: a share of the picture is drawn, and of the drawing lies on it."""
-
-    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
-    SHORT: ClassVar[str] = ""
 
     picture: bytes
     """Indices of the picture's cells on the field, 32-bit integers in ascending order; see `goals/picture.py`."""
@@ -239,10 +238,9 @@ class DrawCondition:
 
 
 @dataclass(frozen=True, slots=True)
-class PrintCondition:
+class PrintCondition(Condition):
     """The program prints lines."""
 
-    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = "lines"
 
     lines: tuple[str, ...]
@@ -265,11 +263,8 @@ class PrintCondition:
 
 
 @dataclass(frozen=True, slots=True)
-class LogCondition:
+class LogCondition(Condition):
     """The samples of a variable take levels."""
-
-    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
-    SHORT: ClassVar[str] = ""
 
     name: str
     levels: tuple[Number, ...]
@@ -298,11 +293,8 @@ class LogCondition:
 
 
 @dataclass(frozen=True, slots=True)
-class ReadCondition:
+class ReadCondition(Condition):
     """The program takes readings."""
-
-    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
-    SHORT: ClassVar[str] = ""
 
     reading: Reading
     times: Annotated[int, Meta(ge=1, le=1_000_000)] = 1
@@ -314,10 +306,9 @@ class ReadCondition:
 
 
 @dataclass(frozen=True, slots=True)
-class WhenCondition:
+class WhenCondition(Condition):
     """Conditions on the recording are true, all in the same tick."""
 
-    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = "comparisons"
 
     comparisons: tuple[str, ...]
@@ -339,15 +330,12 @@ class WhenCondition:
 
 
 @dataclass(frozen=True, slots=True)
-class FinishCondition:
+class FinishCondition(Condition):
     """The program finishes without an error."""
-
-    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
-    SHORT: ClassVar[str] = ""
 
 
 @dataclass(frozen=True, slots=True)
-class CallsCondition:
+class CallsCondition(Condition):
     """Calls in the program's text, such as `tank_drive.on_for_rotations` or `time.sleep`, also under other names."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.FIXED
@@ -391,10 +379,9 @@ class DialogueTurn:
 
 
 @dataclass(frozen=True, slots=True)
-class DialogueCondition:
+class DialogueCondition(Condition):
     """The program asks, is given answers, and replies."""
 
-    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
     SHORT: ClassVar[str] = "turns"
 
     turns: tuple[DialogueTurn, ...]
@@ -407,7 +394,7 @@ class DialogueCondition:
 
 
 @dataclass(frozen=True, slots=True)
-class Combination:
+class Combination(Condition):
     """Other goals, by name."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.COMBINED
@@ -430,35 +417,13 @@ class AnyOf(Combination):
 
 
 @dataclass(frozen=True, slots=True)
-class Together:
+class Together(Condition):
     """Several conditions of one goal, which are all met; in a file, several keys of a goal."""
 
     KIND: ClassVar[ConditionKind] = ConditionKind.COMBINED
-    SHORT: ClassVar[str] = ""
 
     conditions: tuple[Condition, ...]
 
-
-Condition: TypeAlias = (
-    ReachCondition
-    | InsideCondition
-    | OutsideCondition
-    | TouchNothingCondition
-    | PassCondition
-    | FollowCondition
-    | DrawCondition
-    | PrintCondition
-    | LogCondition
-    | ReadCondition
-    | WhenCondition
-    | FinishCondition
-    | UseCondition
-    | AvoidCondition
-    | DialogueCondition
-    | AllOf
-    | AnyOf
-    | Together
-)
 
 CONDITIONS: Mapping[str, type[Condition]] = {
     "reach": ReachCondition,

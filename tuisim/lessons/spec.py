@@ -57,8 +57,7 @@ class OtherWorld:
     """What is other than in the lesson's world, by field of `Settings`."""
     goals: tuple[str, ...]
     """Names of the goals to be met there."""
-    # `Goal` is not in the type: msgspec cannot describe a union of conditions.
-    own_goals: tuple[Any, ...] = ()
+    own_goals: tuple[Goal, ...] = ()
     """Those of them that only this world has."""
 
 

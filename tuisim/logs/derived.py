@@ -21,6 +21,7 @@ from tuisim.logs.columns import is_numeric, numeric_columns
 from tuisim.logs.expressions import FUNCTIONS, Functions, evaluate, names_in
 from tuisim.logs.log import Log, Series
 from tuisim.logs.signals import derivative, integral, known_at, known_in_order, moving_average, resample
+from tuisim.logs.units import unit_of
 from tuisim.runs.arrays import FloatArray
 from tuisim.runs.frames import computed
 
@@ -162,6 +163,9 @@ def with_named_columns(log: Log, text: str) -> Log:
     """Return a log with those columns that are computed for it because a text names them."""
     for name in named_columns(log, text):
         log = log.with_derived(name, derived(log, Definition(name, name), log.names[0]))
+        # A damaged file may have something else as its units.
+        if isinstance(units := log.metadata.get("units"), dict):
+            log = replace(log, metadata={**log.metadata, "units": {**units, name: unit_of(name).words}})
     return log
 
 

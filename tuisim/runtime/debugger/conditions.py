@@ -27,7 +27,7 @@ _PLAIN_NODES = (
 Apart = Callable[[Callable[[], bytes]], bytes | None]
 
 
-class Condition:
+class LineCondition:
     """The condition of one line breakpoint.
 
     It is evaluated in place if no code of the program can run, otherwise in a copy of the process.

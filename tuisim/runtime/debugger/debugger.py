@@ -13,7 +13,7 @@ from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Message, Paused, Pause
 from tuisim.runs.records import Stream
 from tuisim.runtime.control import ATTENTION, DEBUG, LIVE
 from tuisim.runtime.debugger.code_lines import CodeLines
-from tuisim.runtime.debugger.conditions import Condition, Watcher
+from tuisim.runtime.debugger.conditions import LineCondition, Watcher
 from tuisim.runtime.debugger.fork import apart
 from tuisim.runtime.debugger.inspection import Inspector
 from tuisim.runtime.debugger.steps import NEXT_LINE, Step, step_from
@@ -55,7 +55,7 @@ class Debugger:
         self._tracer = Tracer(session, scheduler, self._at_line)
         self._looker = Inspector(session, scheduler, self._tracer, module, prepared)
         self._watcher = Watcher(session)
-        self._by_line: dict[int, list[tuple[Breakpoint, Condition | None]]] = {}
+        self._by_line: dict[int, list[tuple[Breakpoint, LineCondition | None]]] = {}
         self._step: Step | None = None
         self._step_reason = PauseReason.STEP
         self._line = 0
@@ -154,7 +154,7 @@ class Debugger:
         for one in wanted:
             if isinstance(one.rule, LineBreak):
                 text = one.rule.condition
-                condition = before.get(one.text) or (Condition(text) if text else None)
+                condition = before.get(one.text) or (LineCondition(text) if text else None)
                 self._by_line.setdefault(self._lines.from_here(one.rule.line), []).append((one, condition))
         self._watcher.set(wanted)
         self._session.output.watch = self._after_row if self._watcher.rows else None
