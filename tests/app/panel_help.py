@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, Generic, TypeVar
 
@@ -37,6 +38,17 @@ def small_field() -> Field:
     return Field(400, 300, memoryview(pixels.tobytes()), {})
 
 
+READINGS: Mapping[str, Any] = {
+    "time_s": 3.21,
+    "colors": {"left": ColorReading(220.0, 220.0, 220.0), "right": ColorReading(0.0, 0.0, 255.0)},
+    "ultrasonic_mm": 1342,
+    "rays": ((0.0, 1342.0),),
+    "gyro_deg": -90,
+    "gyro_rate_dps": 12,
+    "further": {},
+}
+
+
 def moment(pose: Pose = Pose(1000.0, 500.0, 0.0), **changes: Any) -> Snapshot:
     """A moment of a run, with some fields changed."""
     now = Snapshot(
@@ -45,17 +57,15 @@ def moment(pose: Pose = Pose(1000.0, 500.0, 0.0), **changes: Any) -> Snapshot:
         spec=SPEC,
         field=None,
         instant=Instant(321, pose, 1234.4, -56.6, 525.0, -512.0),
-        time_s=3.21,
         line=7,
         speed=1.0,
-        colors={"left": ColorReading(220.0, 220.0, 220.0), "right": ColorReading(0.0, 0.0, 255.0)},
-        ultrasonic_mm=1342,
-        rays=((0.0, 1342.0),),
-        gyro_deg=-90,
-        gyro_rate_dps=12,
         pen_down=True,
     )
-    return replace(now, **changes)
+    fields = {name: value for name, value in changes.items() if name in Snapshot.__dataclass_fields__}
+    changed = replace(now, **fields)
+    # What is measured is kept there once it has been asked for.
+    changed.__dict__.update(READINGS, **{name: value for name, value in changes.items() if name not in fields})
+    return changed
 
 
 class PanelApp(App[None], Generic[P]):

@@ -87,7 +87,7 @@ async def test_a_branch_is_the_same_run_up_to_its_instant(deed: Deed, kind: str)
         app = await with_a_past(pilot)
         await stop(pilot, app)
         first = app.run_controller.run_id
-        to_tick(app.workspace, 260)
+        to_tick(app.context, 260)
         await deed(pilot, app)
         await until(pilot, lambda: "Branch from 2.60 s?" in screen_text(app))
         await pilot.press("y")
@@ -145,7 +145,7 @@ async def test_an_edited_program_says_where_it_went_another_way() -> None:
         app.run_controller.program = program(
             DRIVES.replace("    tank_drive.on(", "    time.sleep(1)\n    tank_drive.on(")
         )
-        to_tick(app.workspace, 260)
+        to_tick(app.context, 260)
         await pilot.press("R")
         await until(pilot, lambda: "The edited program" in screen_text(app))
         await pilot.press("y")
@@ -175,7 +175,7 @@ async def test_a_program_that_ends_before_the_instant_is_told() -> None:
         await stop(pilot, app)
         first = app.run_controller.run_id
         app.run_controller.program = program("tank_drive.on_for_seconds(20, 20, 0.2)\n")
-        to_tick(app.workspace, 80)
+        to_tick(app.context, 80)
         await pilot.press("y")
         await until_shown(pilot, "Branch from")
         await pilot.press("y")
@@ -189,7 +189,7 @@ async def test_a_branch_is_compared_with_the_run_that_it_left() -> None:
         app = await with_a_past(pilot)
         await stop(pilot, app)
         first = app.run_controller.run_id
-        to_tick(app.workspace, 200)
+        to_tick(app.context, 200)
         # Neither as at first nor as it was set later, which on a busy machine may be after this instant.
         app.run_controller.set_noise(NoiseSpec(5, 0))
         await until_shown(pilot, "Branch from 2.00 s?")

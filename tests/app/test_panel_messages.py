@@ -6,7 +6,7 @@ import pytest
 
 from tests.app.app_help import notices, ready, settings, until
 from tuisim.app.app import LabApp
-from tuisim.app.brick_hint import looks_at_buttons
+from tuisim.app.panel_messages import looks_at_buttons
 from tuisim.app.snapshot import RunPhase
 
 DRAWS = "from ev3dev2.display import Display\nDisplay().update()\n"

@@ -14,8 +14,8 @@ from textual.widgets import Input
 
 from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
-from tuisim.app.panels.world import Moment, bar_cells, mark_cells, words
-from tuisim.app.snapshot import RunPhase, snapshot_of
+from tuisim.app.panels.world import BarTimes, bar_cells, mark_cells, words
+from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.timeline import Timeline, find
 from tuisim.errors import ConfigError
 from tuisim.protocol import End
@@ -66,15 +66,8 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
         await until(pilot, lambda: app.run_controller.timeline.at == 200)
         record = recording.telemetry.record(200)
         then = instant_of(record, recording.spec, recording.spec.world.noise)
-        expected = snapshot_of(
-            then,
-            recording.spec,
-            mat.field,
-            state=RunPhase.ENDED,
-            end=End.FINISHED,
-            line=record.line,
-            speed=0.0,
-            pen_down=False,
+        expected = Snapshot(
+            RunPhase.ENDED, End.FINISHED, recording.spec, mat.field, then, record.line, speed=0.0, pen_down=False
         )
         shown = app.run_controller.snapshot()
         plain = replace(shown, next_spec=None, past=False, now_tick=0, now_pose=None)
@@ -152,7 +145,7 @@ async def test_the_bar_is_clicked_and_dragged() -> None:
         world = app.panel_area.world
         assert world is not None
         bar = world.time_bar
-        await until(pilot, lambda: bar._moment is not None and bar.region.width > 0)
+        await until(pilot, lambda: bar._times is not None and bar.region.width > 0)
         await pilot.mouse_down(bar, offset=(0, 0))
         await until(pilot, lambda: app.run_controller.timeline.at == 0)
         await pilot.hover(bar, offset=(20, 0))
@@ -227,7 +220,7 @@ async def test_the_dialog_says_what_is_wrong_and_the_keys_go_from_sample_to_samp
         assert app.run_controller.timeline.at == ticks[1]
 
 
-BAR = Moment(tick=200, newest=400, tick_hz=100, past=True, over=True)
+BAR = BarTimes(tick=200, newest=400, tick_hz=100, past=True, over=True)
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.commands.run import ButtonPress, parse_press, press_actions
+from tuisim.commands.run_options import ButtonPress, parse_press, press_actions
 from tuisim.errors import ConfigError
 from tuisim.protocol import BUTTONS, SetButtons, UserAction
 

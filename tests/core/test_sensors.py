@@ -13,11 +13,11 @@ import pytest
 from tests.runtime.debugging import Driver
 from tuisim.app.setup.fields import find
 from tuisim.app.setup.next_run import plan_of_spec
-from tuisim.app.snapshot import RunPhase, snapshot_of
+from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.config.robots import load_robot, save_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
-from tuisim.core.sensors import SENSORS, SensorKind, readings, with_kinds
+from tuisim.core.sensors import SENSORS, SensorKind, with_kinds
 from tuisim.core.spec import MOUNTS, Mount, RobotSpec, RunSpec, SensorSpec, WorldSpec
 from tuisim.core.tree import from_plain, to_plain
 from tuisim.protocol import Resume
@@ -152,12 +152,12 @@ def test_the_panels_show_it(kind: SensorKind) -> None:
     assert last is not None
     instant, field = instant_of(last, run.spec, run.spec.world.noise), open_mat(run)
     (sensor,) = run.spec.robot.sensors
-    now = snapshot_of(instant, run.spec, field, state=RunPhase.ENDED, end=None, line=0, speed=1.0, pen_down=False)
+    now = Snapshot(RunPhase.ENDED, None, run.spec, field, instant, line=0, speed=1.0, pen_down=False)
     if mount_of(kind).standard:
         shown: dict[str, object] = {"color": now.colors, "ultrasonic": now.ultrasonic_mm, "gyro": now.spec.robot.gyro}
         assert shown[next(name for name, one in SENSORS.items() if one is kind)]
     else:
-        assert set(readings(run.spec.robot.further_sensors, instant, run.spec, field)) == set(kind.names(sensor))
+        assert set(now.further) == set(kind.names(sensor))
 
 
 def test_kinds_are_told_apart_by_their_specs() -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from tests.running import Done, over
-from tuisim.commands.run import parse_press, press_actions
+from tuisim.commands.run_options import parse_press, press_actions
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import (

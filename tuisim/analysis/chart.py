@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tuisim.analysis.model import Model
 from tuisim.analysis.traces import DISTANCE, LogTrace, sample_and_hold
 from tuisim.charts.axes import Limits, column_of, value_limits
 from tuisim.charts.canvas import DOTS_X, DOTS_Y, seen_points
@@ -14,6 +14,9 @@ from tuisim.charts.layout import ChartData, Line, with_unit
 from tuisim.charts.traces import LARGEST, min_max
 from tuisim.errors import LogError, printable
 from tuisim.runs.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from tuisim.analysis.model import Model
 
 
 @dataclass(frozen=True, slots=True)

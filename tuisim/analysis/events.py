@@ -5,14 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tuisim.core.conditions import NUMBER, Operator, ValueCondition, comparison_form, condition_in
 from tuisim.errors import LogError, among
-from tuisim.logs.log import Log, Series
 from tuisim.logs.signals import known_in_order
 from tuisim.runs.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from tuisim.logs.log import Log, Series
 
 
 @dataclass(frozen=True, slots=True)

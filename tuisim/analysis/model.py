@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,10 +20,12 @@ from tuisim.errors import LogError, among
 from tuisim.logs.bands import Band, BandReport, band_report, in_words
 from tuisim.logs.columns import is_numeric
 from tuisim.logs.derived import RECKONED_COLUMNS, definition_of, derived, named_columns, reckoned_series
-from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Plateau, plateaus
 from tuisim.logs.signals import Summary, known_at, summary_of
 from tuisim.runs.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from tuisim.logs.log import Log
 
 _LEAST_SPAN = 1e-9
 """Smallest visible fraction of the whole time."""

@@ -5,14 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tuisim.core.conditions import COMPARE, Operator, ValueCondition, comparison_form, condition_in
 from tuisim.errors import LogError, among
 from tuisim.logs.arrow import cell_text, contains, mask_of, sorted_places
-from tuisim.logs.log import Log, LogTable
 from tuisim.runs.arrays import IntArray
+
+if TYPE_CHECKING:
+    from tuisim.logs.log import Log, LogTable
 
 AT_ONCE = 200_000
 """Number of rows that are processed within some hundredths of a second."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,9 +12,11 @@ from tuisim.charts.axes import Limits
 from tuisim.charts.traces import Pyramid, Trace, Traces
 from tuisim.errors import LogError
 from tuisim.logs.bands import driven_mm
-from tuisim.logs.log import Log, Series
 from tuisim.logs.signals import value_at
 from tuisim.runs.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from tuisim.logs.log import Log, Series
 
 MOST_ON = 4
 """Number of variables that are visible at first."""

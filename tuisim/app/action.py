@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, ClassVar, Generic, TypeVar
 
 from rich.console import Console
@@ -15,16 +14,12 @@ from rich.text import Text
 from textual import events
 from textual.app import App
 from textual.binding import Binding, BindingType
-from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
 from textual.dom import DOMNode
 from textual.keys import format_key
 from textual.message import Message
-from textual.theme import ThemeProvider
 from textual.widget import Widget
-from textual.worker import Worker
 
 from tuisim.app.background import is_leaving
-from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.errors import TuisimError
 
 ACT = "act"
@@ -190,56 +185,6 @@ class ActionHost(DOMNode):
     def complain(self, error: TuisimError) -> None:
         """Show an error."""
         self.app.notify(str(error), severity="error", timeout=8, markup=False)
-
-
-class Palette(CommandPalette, ClosesOnce[None]):
-    """Textual's command palette, as one of the app's screens that close once."""
-
-    def is_ready_for(self, event: events.Event) -> bool:
-        """Return whether what a key is meant for is there: the commands that were found, unless it is typed."""
-        types = isinstance(event, events.Key) and (event.is_printable or event.key in ("escape", "backspace"))
-        return super().is_ready_for(event) and (types or not any(map(self._is_search, self.workers)))
-
-    def _is_search(self, worker: Worker[Any]) -> bool:
-        return worker.node is self and worker.group == self._GATHER_COMMANDS_GROUP and not worker.is_finished
-
-    def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
-        """Let waiting keys go on once the commands are found."""
-        if event.worker.is_finished:
-            self.app.post_message(self.Changed())
-
-    def _on_click(self, event: events.Click) -> None:  # type: ignore[override]
-        # Where the terminal was until it became smaller there is nothing any more to be found.
-        if not self.region.contains(event.screen_x, event.screen_y):
-            event.prevent_default()
-
-
-def theme_list() -> Palette:
-    """Return Textual's list of themes."""
-    return Palette(providers=[ThemeProvider], placeholder="Search for themes…")
-
-
-class ActionProvider(Provider):
-    """Provides the actions of the screen that the palette opens above, else those of the app."""
-
-    def _offers(self) -> Iterator[tuple[str, Callable[[], None], str]]:
-        """Yield the title of each action, a call that runs it, and the text below the title."""
-        host = self.screen if isinstance(self.screen, ActionHost) else self.app
-        if isinstance(host, ActionHost):
-            for action in host.ACTIONS.values():
-                yield action.title, partial(host.action_act, action.id), f"{action.group} · key {action.key_label}"
-
-    async def discover(self) -> Hits:
-        """Yield every action, before anything is typed."""
-        for title, do, text in self._offers():
-            yield DiscoveryHit(title, do, help=text)
-
-    async def search(self, query: str) -> Hits:
-        """Yield the actions with a matching title."""
-        matcher = self.matcher(query)
-        for title, do, text in self._offers():
-            if (score := matcher.match(title)) > 0:
-                yield Hit(score, matcher.highlight(title), do, help=text)
 
 
 _ALWAYS = ("help", "quit", "leave")

@@ -16,44 +16,43 @@ from textual.widget import Widget
 from textual.widgets import Input
 
 from tuisim.app.action import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings
-from tuisim.app.actions import time_travel
-from tuisim.app.actions.app import welcome
-from tuisim.app.actions.keys import ACTIONS, PAGES, TEXT_KEYS, footer_actions, working
+from tuisim.app.actions import ActionContext, time_travel
+from tuisim.app.actions.files import welcome
+from tuisim.app.actions.keys import ACTIONS, PAGES, RUN_KEYS, TEXT_KEYS, footer_actions, working
 from tuisim.app.actions.lesson import reads_on, takes_pages
 from tuisim.app.background import is_leaving, leave
 from tuisim.app.branch import branch_message
-from tuisim.app.brick_hint import BrickHint
 from tuisim.app.debugger import DebugController
 from tuisim.app.editor.document import Document
-from tuisim.app.feed import Feed, PastView, Series, sample_series
+from tuisim.app.feed import PanelFeed
 from tuisim.app.form import NumberInput
 from tuisim.app.goals import GoalsController
 from tuisim.app.keymap import check_theme, with_keys
 from tuisim.app.lesson import LessonController
 from tuisim.app.loader import PERIOD_S, Loader
 from tuisim.app.panel_area import PanelArea
-from tuisim.app.panel_messages import PanelMessages
+from tuisim.app.panel_messages import PanelMessages, looks_at_buttons
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
 from tuisim.app.setup import next_run as plans
 from tuisim.app.snapshot import AT_REST, GOOD_ENDS, AppState, RunPhase, Situation, end_words
 from tuisim.app.speech import Voice
+from tuisim.app.terminal.input_order import takes_letters
 from tuisim.app.terminal.pacer import Pacer
 from tuisim.app.terminal.picture_mode import PictureMode, choose_colors, picture_mode_for
-from tuisim.app.workspace import Workspace
 from tuisim.config.options import AUTO, DEFAULT_FPS, Settings
 from tuisim.config.program_settings import Decided
 from tuisim.config.user_config import FILE, UserConfig, load_config
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError, TuisimError
-from tuisim.protocol import Ended
+from tuisim.protocol import Answer, Ended
 from tuisim.runs.child.process import warm_up
+from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.source import Program
 
 if TYPE_CHECKING:
     from tuisim.app.panels.output import Output
     from tuisim.app.render.mat import Pixels
-    from tuisim.core.field import Field
     from tuisim.goals.files import GoalsFile
     from tuisim.lessons.spec import Lesson
 
@@ -146,36 +145,19 @@ class LabApp(PanelMessages):
         self.pacer = Pacer(settings.fps)
         self.picture_mode.is_slow, self.picture_mode.is_idle = lambda: self.pacer.is_slow, lambda: self.pacer.is_idle
         self.voice = Voice(settings.quiet)
-        self.past_view = PastView(self.panel_area, self.run_controller.timeline)
-        self.feed: Feed | None = None
+        self.feed = PanelFeed(self.panel_area, self.run_controller)
         self._drawn: tuple[Any, ...] = ((None,),)
-        self.goals = GoalsController(self, self.run_controller, self.panel_area, settings.goals)
-        self.loader = Loader(
-            self,
-            self.run_controller,
-            self.panel_area,
-            self.goals,
-            self.next_run_changed,
-            self.mat_ready,
-            settings.world_file,
-        )
-        self.document = Document(self, self.run_controller, self.panel_area, self.loader)
-        self.debugger = DebugController(self, self.run_controller, self.panel_area, self.document.lines, self._to_now)
-        self.lesson = LessonController(
-            self,
-            self.run_controller,
-            self.panel_area,
-            self.goals,
-            self.loader,
-            self.debugger,
-            settings.lesson,
-            settings.lessons_folder,
-        )
-        self.workspace = Workspace(
-            self, self.run_controller, self.panel_area, self.document, self.loader, self.debugger, self.lesson
-        )
-        self.run_controller.propose = partial(time_travel.propose_branch, self.workspace)
-        self.brick_hint = BrickHint(self._hint_at_brick)
+        self._footed: tuple[Any, ...] = ()
+        """What of the state the footer tells."""
+        runs, panels = self.run_controller, self.panel_area
+        self.goals = GoalsController(self, runs, panels, settings.goals)
+        self.loader = Loader(self, runs, panels, self.goals, settings.world_file)
+        self.document = Document(self, runs, panels, self.loader)
+        self.debugger = DebugController(self, runs, panels, self.document.lines)
+        of_lesson = self.goals, self.loader, self.debugger, settings.lesson, settings.lessons_folder
+        self.lesson = LessonController(self, runs, panels, *of_lesson)
+        self.context = ActionContext(self, runs, panels, self.document, self.loader, self.debugger, self.lesson)
+        self.run_controller.propose = partial(time_travel.propose_branch, self.context)
         self._run_when_ready = settings.autorun and settings.replay is None
         self._frame_timer: Timer | None = None
         self._awake_until_s = 0.0
@@ -232,7 +214,7 @@ class LabApp(PanelMessages):
         self.lesson.begin()
         self._tell_config()
         if self.settings.welcomes:
-            welcome(self.workspace)
+            welcome(self.context)
         self._set_frame_gap(1 / self.settings.fps)
         self.set_interval(_REST_GAP_S, self._seldom)
         self.set_interval(PERIOD_S, self.check_files)
@@ -242,12 +224,19 @@ class LabApp(PanelMessages):
         """Reload the files that have changed on disk, or ask about those with unsaved edits."""
         self.loader.check_files(self.document.conflicts_with)
 
-    def _to_now(self) -> None:
-        time_travel.to_now(self.workspace)
+    def to_now(self) -> None:
+        """Return from the past to the newest instant."""
+        time_travel.to_now(self.context)
+
+    def _waits(self, event: events.Event) -> bool:
+        """Let the keys of a run wait also for the mat, without which none can start."""
+        is_of_run = isinstance(event, events.Key) and event.key in RUN_KEYS and len(self.screen_stack) == 1
+        waits = is_of_run and self.loader.is_preparing
+        return super()._waits(event) or (waits and not (self.focused and takes_letters(self.focused)))
 
     def suspending(self) -> None:
         """Pause the run and playback before the app is suspended, so that nothing resumes by itself."""
-        time_travel.stop_time(self.workspace)
+        time_travel.stop_time(self.context)
 
     def on_unmount(self) -> None:
         self.document.save_draft()
@@ -300,15 +289,14 @@ class LabApp(PanelMessages):
         self._set_frame_gap(_START_GAP_S)
         self.set_timer(_WARM_UP_AFTER_S, self.run_controller.prepare_next)
         self.run_changed()
-        self.brick_hint.started(self.run_controller.program.text if self.run_controller.program else "")
+        if self.run_controller.program and looks_at_buttons(self.run_controller.program.text):
+            self.hint_at_brick("reads the brick's buttons")
         return True
 
     def run_changed(self, last_words: str = "", error_line: int = 0) -> None:
         """Prepare the panels for another run, which may have ended already with some last words."""
-        recording = self.run_controller.timeline.recording
-        self.feed = Feed(recording) if recording else None
         self._last_words = last_words
-        self.panel_area.clear_log()
+        self.feed.run_changed()
         self.panel_area.release_buttons()
         self.document.run_changed()
         self.document.run_ended_at(error_line)
@@ -320,10 +308,14 @@ class LabApp(PanelMessages):
         try:
             news = self.run_controller.poll()
             self._process(news)
-            time_travel.advance_playback(self.workspace)
-            self.debugger.poll()
-            self.goals.update()
-            self.lesson.update()
+            if self.run_controller.timeline.playing:
+                time_travel.advance_playback(self.context)
+            if self.debugger.view is not None or self.debugger.replay.run is not None or self._looks_back:
+                self.debugger.poll()
+            if self.goals.file is not None:
+                self.goals.update()
+            if self.lesson.lesson is not None:
+                self.lesson.update()
             # A frame that has to wait counts as drawn.
             drew = self._awaits_first_tick() or not self.pacer.ready() or self.draw()
             if drew or news or self.debugger.busy:
@@ -382,7 +374,9 @@ class LabApp(PanelMessages):
         for event in news.pauses:
             self.debugger.handle(event)
         if news.rows:
-            self._process_rows(news)
+            self.feed.add_rows(news.rows)
+        if not self.has_hinted and any(row.stream in (Stream.DISPLAY, Stream.CONSOLE) for row in news.rows):
+            self.hint_at_brick("uses the brick's display")
         if output := self.panel_area.output:
             if news.prompt is not None and not output.asking:
                 self._ask_user(news.prompt)
@@ -396,17 +390,6 @@ class LabApp(PanelMessages):
         if self._last_words and len(news.rows) < ROWS_A_POLL and self.panel_area.output:
             self.panel_area.output.note(self._last_words)
             self._last_words = ""
-
-    def _process_rows(self, news: RunUpdate) -> None:
-        self.brick_hint.shown(news.rows)
-        if self.panel_area.output:
-            self.panel_area.output.add(news.rows)
-        self._append(sample_series(news.rows), logged=True)
-
-    def _append(self, series: Series, logged: bool) -> None:
-        if chart := self.panel_area.chart:
-            for name, (times, values) in series.items():
-                chart.append(name, times, values, logged)
 
     def _ask_user(self, prompt: str) -> None:
         self.panel_area.bring("output")
@@ -430,39 +413,21 @@ class LabApp(PanelMessages):
     def draw(self, force: bool = False) -> bool:
         """Show the current moment in every panel. Return whether it differs from what they show already."""
         state = self.state()
-        snapshot = state.view
+        run = state.run
         now = (
-            (snapshot.state, snapshot.instant, snapshot.line, snapshot.speed, snapshot.pen_down, snapshot.stalled),
-            (snapshot.spec, snapshot.next_spec, snapshot.past, snapshot.now_tick),
-            (snapshot.face, snapshot.pressed),
+            (run.state, run.instant, run.line, run.speed, run.pen_down, run.stalled),
+            (run.spec, run.next_spec, run.past, run.now_tick),
+            (run.face, run.pressed),
         )
-        is_behind = self.feed is not None and self.feed.is_behind and self._charted_field() is not None
-        if now == self._drawn and not force and not is_behind:
+        if now == self._drawn and not force and not self.feed.is_behind:
             return False
         self._drawn = now
-        self._feed_panels()
-        self.past_view.show()
-        self.panel_area.show(snapshot)
-        self._show_footer(state)
+        self.feed.show()
+        self.panel_area.show(run)
+        if force or self._footed != _footed(state):
+            self._show_footer(state)
         self.pacer.drawn()
         return True
-
-    def _feed_panels(self) -> None:
-        if self.feed is None:
-            return
-        if world := self.panel_area.world:
-            xs, ys = self.feed.trace_points()
-            if xs:
-                world.extend_trace(xs, ys, self.feed.recording.spec.robot.pen)
-        if field := self._charted_field():
-            self._append(self.feed.chart_series(field), logged=False)
-
-    def _charted_field(self) -> Field | None:
-        """Return the mat that the chart's readings are taken from; None if no chart or no mat."""
-        mat = self.run_controller.mat
-        if self.feed is None or mat is None or not self.panel_area.shown("chart"):
-            return None
-        return mat.field if mat.serves(self.feed.recording.spec) else None
 
     def painted(self, size: int) -> None:
         """Ask the terminal to report when it has shown what it was sent; the answer is a `CursorPosition` event."""
@@ -476,32 +441,36 @@ class LabApp(PanelMessages):
         """Update the footer; together with the world once it stands still, or it would be said to before it does."""
         self._wake()
         state = self.state()
-        has_stopped = state.view.state in AT_REST and self._drawn[0][0] not in (None, state.view.state)
+        has_stopped = state.run.state in AT_REST and self._drawn[0][0] not in (None, state.run.state)
         if not has_stopped or not self.draw():
             self._show_footer(state)
 
     def situation(self) -> Situation:
         """Return the state that decides which keys are available."""
-        runs, code = self.run_controller, self.panel_area.code
-        facts = runs.program is not None, bool(runs.run_id), runs.in_past, self.debugger.is_away
-        return Situation(runs.state, *facts, code is not None and code.is_read, self.has_pixels)
+        return self._situation(self.run_controller.state)
 
-    def action_target(self) -> Workspace:
-        return self.workspace
+    def _situation(self, phase: RunPhase) -> Situation:
+        runs, timeline, code = self.run_controller, self.run_controller.timeline, self.panel_area.code
+        facts = runs.program is not None, timeline.recording is not None, timeline.at is not None
+        is_away = self._looks_back or self.debugger.replay.busy
+        return Situation(phase, *facts, is_away, code is not None and code.is_read, self.has_pixels)
+
+    @property
+    def _looks_back(self) -> bool:
+        """Whether a past instant is viewed, even one within the newest tick."""
+        return self.run_controller.timeline.at is not None or self.debugger.position is not None
+
+    def action_target(self) -> ActionContext:
+        return self.context
 
     def state(self) -> AppState:
         """Return everything that panels and footer show, at the instant in view."""
-        runs = self.run_controller
-        return AppState(
-            program=runs.program,
-            next_run=runs.next_run,
-            view=runs.snapshot(),
-            debug=self.debugger.state,
-            situation=self.situation(),
-            playing=runs.timeline.playing,
-        )
+        run = self.run_controller.snapshot()
+        playing = self.run_controller.timeline.playing
+        return AppState(run, self._situation(run.state), self._looks_back, playing)
 
     def _show_footer(self, state: AppState) -> None:
+        self._footed = _footed(state)
         names = working(state.situation)
         if self.panel_area.is_single:
             names = ("panel-next", *names)
@@ -521,15 +490,12 @@ class LabApp(PanelMessages):
         typing = code is not None and code.typing and focused is not None and code in focused.ancestors
         return TYPING_KEYS if typing else ()
 
-    def _hint_at_brick(self, what: str) -> None:
-        if not self.panel_area.shown("brick"):
-            self.say(f"The program {what}: {{panel-brick}} opens its panel")
-
     # Panels
 
     def on_panel_area_added(self, message: PanelArea.Added) -> None:
         if message.panel == "world" and (world := self.panel_area.world):
             world.show_rays = self.settings.rays
+            world.time_bar.marks = self.run_controller.timeline.marks
             if self.run_controller.mat:
                 world.set_mat(self.run_controller.mat.pixels)
             if self.focused is None:
@@ -567,17 +533,23 @@ class LabApp(PanelMessages):
     def action_leave_field(self) -> None:
         """Leave an input field; from the world, return from the past."""
         if self.debugger.is_away and self.focused in (None, self.panel_area.world):
-            time_travel.to_now(self.workspace)
+            self.to_now()
         self.panel_area.focus_world()
 
     def on_output_answered(self, message: Output.Answered) -> None:
-        self.run_controller.answer(message.text)
+        self.run_controller.send(Answer(message.text))
         self.action_leave_field()
 
     def on_click(self, event: events.Click) -> None:
         in_a_dialog = self.screen is not self.panel_area.screen
         if isinstance(event.widget, Widget) and not event.widget.can_focus and not in_a_dialog:
             self.action_leave_field()
+
+
+def _footed(state: AppState) -> tuple[Any, ...]:
+    """Return what of a state the footer tells."""
+    run = state.run
+    return state.situation, state.playing, state.looks_back and run.time_s, state.looks_back, run.speed, run.end
 
 
 def run_app(settings: AppSettings) -> int:

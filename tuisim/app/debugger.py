@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from tuisim import protocol
 from tuisim.app.editor.text_file import file_of_program, write_json
 from tuisim.app.editor.text_lines import code_line, same_lines
-from tuisim.app.snapshot import DebugState, PauseView
+from tuisim.app.snapshot import PauseView
 from tuisim.breakpoints import Breakpoint, LineBreak, break_line_of, break_lines, moved, parse_break
 from tuisim.config.files import MAX_FILE_BYTES
 from tuisim.errors import ConfigError, TuisimError
@@ -21,9 +21,9 @@ from tuisim.source import source_lines
 
 if TYPE_CHECKING:
     from tuisim.app.editor.text_lines import LineMap
+    from tuisim.app.host import LabHost
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.run_controller import RunController
-    from tuisim.app.services import AppServices
     from tuisim.source import Program
 
 FOLDER = "breaks"
@@ -96,19 +96,17 @@ class DebugController:
         run_controller: Gets debug commands.
         panel_area: Has the code and debug panels.
         lines: Returns the map between the lines of the current run and those of the edited text.
-        to_now: Returns from the past to the newest instant.
     """
 
     def __init__(
         self,
-        app: AppServices,
+        app: LabHost,
         run_controller: RunController,
         panel_area: PanelArea,
         lines: Callable[[], LineMap],
-        to_now: Callable[[], None],
     ) -> None:
         self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
-        self._lines, self._to_now = lines, to_now
+        self._lines = lines
         self.breaks: tuple[Breakpoint, ...] = ()
         self.watches: tuple[str, ...] = ()
         self.view: PauseView | None = None
@@ -117,10 +115,10 @@ class DebugController:
         self._text = ""
         self._paused: Paused | None = None
         """Where the live run is paused."""
-        self._position: Position | None = None
+        self.position: Position | None = None
         """The past instant that is viewed, exact to the line."""
         self._frame, self._thread = 0, ""
-        self._replay_debugger = ReplayDebugger(self._arrived, self._not_there, self._reached_now)
+        self.replay = ReplayDebugger(self._arrived, self._not_there, self._reached_now)
         self._wanted: Position | None = None
         """The instant that the replay debugger was last sent to."""
         self._first: Message | None = None
@@ -171,7 +169,7 @@ class DebugController:
             runs = lines.to_run(shown)
             if runs or not shown:
                 texts.append(moved(one, runs).written())
-        self._run_controller.debug(protocol.SetBreaks(tuple(texts)))
+        self._run_controller.send(protocol.SetBreaks(tuple(texts)))
 
     def set_watches(self, watches: tuple[str, ...]) -> None:
         """Set the watched expressions and store them."""
@@ -226,11 +224,11 @@ class DebugController:
 
     def run_changed(self) -> None:
         """Reset the state for another run, or none."""
-        self._paused = self._position = self.view = self._run_controller.paused_line = None
+        self._paused = self.position = self.view = self._run_controller.paused_line = None
         self._frame, self._thread, self._wanted = 0, "", None
         self._panels_opened, self._breakpoints_unsent = False, bool(self.breaks)
         self._first, self._more_back = None, 0
-        self._replay_debugger.close()
+        self.replay.close()
         self.show()
 
     def ended(self) -> None:
@@ -251,17 +249,17 @@ class DebugController:
             case protocol.Resumed():
                 self._paused = None
                 if not self._run_controller.in_past:
-                    self._position = self.view = None
+                    self.position = self.view = None
                     self.show()
             case Inspected() if self._paused is not None and not self.looks_back:
                 self._set_paused(PauseView(self._paused, event, False))
 
     def _handle_pause(self, paused: Paused) -> None:
-        self._paused, self._position = paused, None
+        self._paused, self.position = paused, None
         self._frame, self._thread = 0, ""
         if self._first is not None and paused.reason is not PauseReason.BREAK:
             first, self._first = self._first, None
-            self._run_controller.debug(first)
+            self._run_controller.send(first)
             return
         if paused.reason in SHOWS_PANELS:
             self._open_panels()
@@ -286,22 +284,17 @@ class DebugController:
     @property
     def looks_back(self) -> bool:
         """Whether a past instant is viewed, even one within the newest tick."""
-        return self._position is not None or self._run_controller.in_past
+        return self.position is not None or self._run_controller.timeline.at is not None
 
     @property
     def busy(self) -> bool:
         """Whether a past instant is still being computed."""
-        return self._replay_debugger.busy
+        return self.replay.busy
 
     @property
     def is_away(self) -> bool:
         """Whether a past instant is viewed, or will be once it is computed."""
         return self.looks_back or self.busy
-
-    @property
-    def state(self) -> DebugState:
-        """What is known now, as a value."""
-        return DebugState(self.view, self.looks_back, self.busy)
 
     @property
     def inspect_request(self) -> protocol.Inspect:
@@ -324,29 +317,29 @@ class DebugController:
 
     def _inspect_again(self) -> None:
         if self.looks_back:
-            self._replay_debugger.look(self.inspect_request)
+            self.replay.look(self.inspect_request)
         elif self._paused is not None:
-            self._run_controller.debug(self.inspect_request)
+            self._run_controller.send(self.inspect_request)
 
     def poll(self) -> None:
         """Follow the instant in view and process what has been computed."""
-        self._replay_debugger.poll()
+        self.replay.poll()
         timeline = self._run_controller.timeline
-        if self._position is not None and timeline.at not in (None, self._position.tick):
-            self._position = None
+        if self.position is not None and timeline.at not in (None, self.position.tick):
+            self.position = None
         if not self.looks_back:
             if self.view and self.view.past and not self.busy:
                 self._back_to_now()
             return
-        if timeline.at is not None and self._position is None and self._panel_area.shown("debug"):
+        if timeline.at is not None and self.position is None and self._panel_area.shown("debug"):
             self._follow(Position(timeline.at))
 
     def to_now(self) -> None:
         """Return to the newest instant, also from earlier lines of its own tick."""
-        self._position, self._more_back = None, 0
-        if self._replay_debugger.busy:
+        self.position, self._more_back = None, 0
+        if self.replay.busy:
             # The result still being computed is no longer wanted.
-            self._replay_debugger.close()
+            self.replay.close()
             self._wanted = None
             self.show()
 
@@ -357,10 +350,10 @@ class DebugController:
 
     def _follow(self, position: Position) -> None:
         timeline = self._run_controller.timeline
-        if timeline.recording is None or timeline.playing or self._replay_debugger.busy or position == self._wanted:
+        if timeline.recording is None or timeline.playing or self.replay.busy or position == self._wanted:
             return
         self._wanted = position
-        self._replay_debugger.go(timeline.recording, position, self.inspect_request)
+        self.replay.go(timeline.recording, position, self.inspect_request)
         self.show()
 
     def _arrived(self, paused: Paused, inspected: Inspected) -> None:
@@ -369,7 +362,7 @@ class DebugController:
             if not self._is_past(here):
                 self._reached_now()
                 return
-            self._position = here
+            self.position = here
             timeline.go(paused.tick)
         elif timeline.at != self._wanted.tick:
             # The user has gone to another instant since.
@@ -388,7 +381,7 @@ class DebugController:
         return at.is_before(Position(now.tick, now.ordinal))
 
     def _reached_now(self) -> None:
-        self._to_now()
+        self._app.to_now()
         self._back_to_now()
 
     def _not_there(self, why: str) -> None:
@@ -406,15 +399,15 @@ class DebugController:
     def show(self) -> None:
         """Update the debug panel."""
         if panel := self._panel_area.debug:
-            panel.show_pause(self.state)
+            panel.show_pause(self.view, self.busy)
 
     # Steps
 
     def _here(self) -> Position | None:
         """Return the instant in view, exact to the line as far as that is known."""
         timeline = self._run_controller.timeline
-        if self._position is not None:
-            return self._position
+        if self.position is not None:
+            return self.position
         if timeline.at is not None:
             return Position(timeline.at)
         if self._paused is not None and self._paused.ordinal != UNKNOWN_ORDINAL:
@@ -439,7 +432,7 @@ class DebugController:
         if self.is_away:
             self._in_past(command)
         elif self._run_controller.in_run:
-            self._run_controller.debug(command)
+            self._run_controller.send(command)
         else:
             # A program started for this pauses at its first line anyway.
             first = None if isinstance(command, protocol.StepLine) else command
@@ -449,13 +442,13 @@ class DebugController:
 
     def _in_past(self, command: Message) -> None:
         timeline = self._run_controller.timeline
-        if timeline.recording is None or self._replay_debugger.busy:
+        if timeline.recording is None or self.replay.busy:
             return
         self._open_panels()
         here = self._here()
         assert here is not None
-        self._position, self._wanted = None, None
-        self._replay_debugger.go_on(timeline.recording, here, command, self.inspect_request)
+        self.position, self._wanted = None, None
+        self.replay.go_on(timeline.recording, here, command, self.inspect_request)
         self.show()
 
     def lines_back(self, count: int) -> None:
@@ -463,19 +456,19 @@ class DebugController:
         here, recording = self._here(), self._run_controller.timeline.recording
         if here is None or recording is None:
             self._app.say("No run yet: {run} runs the program")
-        elif self._replay_debugger.busy:
+        elif self.replay.busy:
             self._more_back += count
         else:
             self._run_controller.pause()
             self._open_panels()
-            self._position, self._wanted = None, None
+            self.position, self._wanted = None, None
             count, self._more_back = count + self._more_back, 0
-            self._replay_debugger.lines_back(recording, here, count, self.inspect_request)
+            self.replay.lines_back(recording, here, count, self.inspect_request)
             self.show()
 
     def close(self) -> None:
         """Stop the debugger's processes."""
-        self._replay_debugger.close()
+        self.replay.close()
 
 
 def _mark(one: Breakpoint) -> str:

@@ -20,7 +20,7 @@ from tuisim.runs.samples import samples_of
 
 if TYPE_CHECKING:
     from tuisim.app.panel_area import PanelArea
-    from tuisim.app.timeline import Timeline
+    from tuisim.app.run_controller import RunController
     from tuisim.runs.recorded_run import Recording
 
 Series = dict[str, tuple[list[float], list[float]]]
@@ -90,6 +90,8 @@ class Feed:
         self._traced += len(records)
         jumps = _jumps(records, self._last_xy_mm)
         self._last_xy_mm = float(records["x_mm"][-1]), float(records["y_mm"][-1])
+        if self._lifted and not (records["flags"] & FLAG_PEN_DOWN).any():
+            return [], []
         kept_at = _thinned(0, len(records), TRACE_POINTS_A_FEED)
         records, jumps = records[kept_at], jumps[kept_at]
         xs, ys, lifted = _pen_points(records, self.recording.spec.robot)
@@ -148,26 +150,63 @@ PAST_ROWS = 200
 """Number of output rows shown of a past instant."""
 
 
-class PastView:
-    """Keeps panels at the instant in view.
+class PanelFeed:
+    """Passes on what a run writes over time: rows to the output, traces to the chart and to the world.
 
     Args:
-        panel_area: The panel area.
-        timeline: Provides that instant.
+        panel_area: The panels.
+        runs: Has the run in view, and the instant of it.
     """
 
-    def __init__(self, panel_area: PanelArea, timeline: Timeline) -> None:
-        self._panel_area = panel_area
-        self._timeline = timeline
+    def __init__(self, panel_area: PanelArea, runs: RunController) -> None:
+        self._panel_area, self._runs = panel_area, runs
+        self._feed: Feed | None = None
+        self._shows_past = False
         self._traced: object = None
         self._printed: object = None
 
+    def run_changed(self) -> None:
+        """Begin with another run, or with none."""
+        recording = self._runs.timeline.recording
+        self._feed = Feed(recording) if recording else None
+        self._panel_area.clear_log()
+
+    def add_rows(self, rows: list[OutputRow]) -> None:
+        """Pass on what the program has written."""
+        if output := self._panel_area.output:
+            output.add(rows)
+        self._append(sample_series(rows), logged=True)
+
+    def _append(self, series: Series, logged: bool) -> None:
+        if chart := self._panel_area.chart:
+            for name, (times, values) in series.items():
+                chart.append(name, times, values, logged)
+
+    @property
+    def is_behind(self) -> bool:
+        """Whether the chart is on the screen and has not got the whole run yet."""
+        return self._feed is not None and self._feed.is_behind and self._charted_mat(self._feed) is not None
+
+    def _charted_mat(self, feed: Feed) -> Field | None:
+        """Return the mat that the chart's readings are taken from; None if no chart or no mat."""
+        return self._runs.mat_for(feed.recording.spec) if self._panel_area.shown("chart") else None
+
     def show(self) -> None:
-        """Update the panels if they show another instant."""
-        panel_area, timeline = self._panel_area, self._timeline
-        recording, tick = timeline.recording, timeline.at
-        if world := panel_area.world:
-            world.time_bar.marks = timeline.marks
+        """Pass on the telemetry since the last call; keep trace and output at the instant in view."""
+        if self._feed is not None:
+            if world := self._panel_area.world:
+                xs, ys = self._feed.trace_points()
+                if xs:
+                    world.extend_trace(xs, ys, self._feed.recording.spec.robot.pen)
+            if (mat := self._charted_mat(self._feed)) is not None:
+                self._append(self._feed.chart_series(mat), logged=False)
+        is_past = self._runs.timeline.at is not None
+        if is_past or self._shows_past:
+            self._shows_past = is_past
+            self._show_past(self._runs.timeline.recording, self._runs.timeline.at)
+
+    def _show_past(self, recording: Recording | None, tick: int | None) -> None:
+        if world := self._panel_area.world:
             key = None if tick is None or recording is None else (recording, tick, world)
             if key != self._traced:
                 self._traced = key
@@ -175,7 +214,7 @@ class PastView:
                     world.show_past_trace(None)
                 else:
                     world.show_past_trace(trace_until(recording, tick), recording.spec.robot.pen)
-        if output := panel_area.output:
+        if output := self._panel_area.output:
             count = None if tick is None or recording is None else (recording, recording.rows.until(tick), output)
             if count != self._printed:
                 self._printed = count

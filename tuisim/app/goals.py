@@ -17,9 +17,9 @@ from tuisim.runs.store import load_run
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from tuisim.app.host import LabHost
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.run_controller import RunController
-    from tuisim.app.services import AppServices
     from tuisim.core.field import Field
     from tuisim.errors import TuisimError
     from tuisim.goals.files import GoalsFile
@@ -44,10 +44,11 @@ class GoalsController:
     """
 
     def __init__(
-        self, app: AppServices, run_controller: RunController, panel_area: PanelArea, file: GoalsFile | None
+        self, app: LabHost, run_controller: RunController, panel_area: PanelArea, file: GoalsFile | None
     ) -> None:
         self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
-        self._file = file
+        self.file = file
+        """The goals that runs are judged by; None if there are none."""
         self._recording: Recording | None = None
         """The run that `_judgements` are about."""
         self._earlier: Recording | None = None
@@ -63,7 +64,7 @@ class GoalsController:
     @property
     def path(self) -> Path | None:
         """The goals file that is open; None if there is none, or the goals are those of a lesson."""
-        return self._file.path if self._file and means_world(self._file.path.name) else None
+        return self.file.path if self.file and means_world(self.file.path.name) else None
 
     @property
     def judged(self) -> tuple[Recording | None, tuple[Judgement, ...]]:
@@ -91,7 +92,7 @@ class GoalsController:
 
     def change(self, file: GoalsFile | None) -> None:
         """Replace the goals by others of the same task; the run in view is judged again."""
-        self._file = file
+        self.file = file
         self._forget()
 
     def _forget(self) -> None:
@@ -105,7 +106,7 @@ class GoalsController:
             return
         from tuisim.app.render.goals import GoalsView
 
-        if self._file is None:
+        if self.file is None:
             panel.show_goals(GoalsView())
             return
         hint = ""
@@ -113,11 +114,11 @@ class GoalsController:
             hint = self._app.with_keys(
                 "{run} runs the program" if self._run_controller.program else "{open} opens a program"
             )
-        panel.show_goals(GoalsView(self._file.title, self._file.goals, self._judgements, hint))
+        panel.show_goals(GoalsView(self.file.title, self.file.goals, self._judgements, hint))
 
     def update(self) -> None:
         """Judge the run in view again, in the background, if it has gone on or has ended; never blocks."""
-        if self._file is None or not (self.judges_always or self._panel_area.shown("goals")):
+        if self.file is None or not (self.judges_always or self._panel_area.shown("goals")):
             return
         recording = self._run_controller.timeline.recording
         if recording is self._earlier:
@@ -128,18 +129,14 @@ class GoalsController:
         if recording is None or self._is_judging:
             return
         ended = self._run_controller.state is RunPhase.ENDED
-        written = recording, self._file, recording.telemetry.count, len(recording.rows), ended
+        written = recording, self.file, recording.telemetry.count, len(recording.rows), ended
         if written == self._judged or (not ended and time.monotonic() < self._next_s):
             return
         self._judged, self._is_judging = written, True
-        work = partial(_judged, self._file.goals, recording.folder, not ended, self._field())
+        mat = self._run_controller.mat_for(recording.spec)
+        work = partial(_judged, self.file.goals, recording.folder, not ended, mat)
         then, failed = partial(self._arrived, written), partial(self._failed, written)
         background.run(self._panel_area, work, then, failed, group="goals")
-
-    def _field(self) -> Field | None:
-        """Return the mat of the run in view if it is prepared already."""
-        mat = self._run_controller.mat
-        return mat.field if mat and self._recording and mat.serves(self._recording.spec) else None
 
     def _arrived(self, written: object, found: tuple[tuple[Judgement, ...], float] | None) -> None:
         self._is_judging = False

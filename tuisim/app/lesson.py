@@ -63,12 +63,12 @@ from tuisim.runs.store import load_run
 if TYPE_CHECKING:
     from tuisim.app.debugger import DebugController
     from tuisim.app.goals import GoalsController
+    from tuisim.app.host import LabHost
     from tuisim.app.loader import Loader
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.panels.lesson import LessonPanel
     from tuisim.app.render.lesson import LessonView
     from tuisim.app.run_controller import RunController
-    from tuisim.app.services import AppServices
     from tuisim.runs.recorded_run import Recording
 
 NOTES_PERIOD_S = 0.5
@@ -98,7 +98,7 @@ class LessonController:
 
     def __init__(
         self,
-        app: AppServices,
+        app: LabHost,
         run_controller: RunController,
         panel_area: PanelArea,
         goals: GoalsController,

@@ -19,17 +19,16 @@ from tuisim.config.folders import user_path
 from tuisim.config.options import START, Settings
 from tuisim.config.program_settings import Decided, free_paths
 from tuisim.errors import LogError, TuisimError
-from tuisim.runs.handle import program_again
+from tuisim.runs.run_folder import program_again
 from tuisim.runs.standstill import standstill_words
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
 
 if TYPE_CHECKING:
     from tuisim.app.goals import GoalsController
+    from tuisim.app.host import LabHost
     from tuisim.app.panel_area import PanelArea
-    from tuisim.app.render.mat import Pixels
     from tuisim.app.run_controller import RunController
-    from tuisim.app.services import AppServices
     from tuisim.config.program_file import ProgramSource
     from tuisim.core.spec import RunSpec
     from tuisim.goals.files import GoalsFile
@@ -46,23 +45,19 @@ class Loader:
         run_controller: Gets the next run, its program and its mat.
         panel_area: Gets the panels, rays and pen trace that files ask for.
         goals: Gets the goals of the worlds that are opened.
-        on_change: Called after the next run has changed.
-        on_mat: Called when a mat is ready, with its image unless that is shown already.
         world_file: The world file that was opened at the start.
     """
 
     def __init__(
         self,
-        app: AppServices,
+        app: LabHost,
         run_controller: RunController,
         panel_area: PanelArea,
         goals: GoalsController,
-        on_change: Callable[[], None],
-        on_mat: Callable[[Pixels | None], None],
         world_file: Path | None,
     ) -> None:
         self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
-        self._goals, self._on_change, self._on_mat = goals, on_change, on_mat
+        self._goals = goals
         self._watch = FileWatch()
         self.is_preparing = True
         """Whether the mat of the next run is being prepared, or will be: at first the app is drawn."""
@@ -101,7 +96,7 @@ class Loader:
         return mat is not None and mat.serves(self._run_controller.next_run.spec)
 
     def prepare_mat(self) -> None:
-        """Prepare the mat in the background; `on_mat` is called when done."""
+        """Prepare the mat in the background; the app shows it when that is done."""
         spec = self._run_controller.next_run.spec
         self.is_preparing = True
         work, failed = partial(prepare_mat, spec), partial(self._mat_failed, spec)
@@ -129,7 +124,7 @@ class Loader:
             same_picture = run_controller.mat is not None and run_controller.mat.key[:2] == mat.key[:2]
             run_controller.mat = mat
             self._good = run_controller.next_run, mat
-            self._on_mat(None if same_picture else mat.pixels)
+            self._app.mat_ready(None if same_picture else mat.pixels)
 
     def lay_out(self, plan: NextRun, program: Program | None, mat: Mat) -> None:
         """Set a plan and a program together with their mat, which must have been prepared already."""
@@ -137,7 +132,7 @@ class Loader:
         self._good = plan, mat
         self._note_program(program, _settings_in(program))
         self._load(plan, program)
-        self._on_mat(mat.pixels)
+        self._app.mat_ready(mat.pixels)
 
     # What the user chooses
 
@@ -265,7 +260,7 @@ class Loader:
             if mat is not None and mat.key[:2] != mat_key(self._run_controller.next_run.spec)[:2]:
                 self._run_controller.mat = None
             self.prepare_mat()
-        self._on_change()
+        self._app.next_run_changed()
 
     # Stored runs
 
@@ -561,7 +556,7 @@ def program_of(run: StoredRun) -> Program:
         same = False
     if same:
         return Program(name=stored.name, text=stored.text, prelude=stored.prelude, path=stored.path)
-    return replace(program_again(run), path="")
+    return replace(program_again(run.program, run.folder), path="")
 
 
 def _prepare_run(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | None]:

@@ -13,20 +13,21 @@ from textual.widget import Widget
 from textual.widgets._toast import ToastRack
 
 from tuisim.app.layout.arrangement import (
+    KeptLayout,
     Preset,
     arrange,
     core_panels,
+    drop_former,
     is_single,
+    load_layout,
+    save_layout,
     size_class,
     stacked,
     wanted_panels,
     with_room,
 )
-from tuisim.app.layout.kept import KeptLayout, drop_former, load_layout, save_layout
 from tuisim.app.layout.tree import PanelLayout
 from tuisim.app.panels import PANELS, NextRunPanel, Panel, TerminalSize
-from tuisim.app.setup.next_run import NextRun
-from tuisim.app.snapshot import Snapshot
 
 if TYPE_CHECKING:
     from tuisim.app.panels.brick import Brick
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
     from tuisim.app.panels.obstacles import Obstacles
     from tuisim.app.panels.output import Output
     from tuisim.app.panels.world import World
+    from tuisim.app.setup.next_run import NextRun
+    from tuisim.app.snapshot import Snapshot
 
 PanelWidget = TypeVar("PanelWidget", bound=Widget)
 _STACKED_ROWS = 18

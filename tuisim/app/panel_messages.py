@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, assert_never
 
-from textual import events, on
+from textual import on
 
-from tuisim.app.action import ActionHost
-from tuisim.app.actions import time_travel
-from tuisim.app.actions.keys import RUN_KEYS
+from tuisim.app.actions import ActionContext, time_travel
 from tuisim.app.dialogs.dialog import ClosesOnce
+from tuisim.app.host import LabHost
 from tuisim.app.setup.next_run import with_obstacles
-from tuisim.app.terminal.input_order import takes_letters
-from tuisim.app.terminal.terminal_app import TerminalApp
-from tuisim.app.workspace import Workspace
 from tuisim.errors import TuisimError
 
 if TYPE_CHECKING:
@@ -33,23 +30,30 @@ _LESSON_COLUMNS = 74
 """Columns that are enough while the text of a lesson is beside the code."""
 
 
-class PanelMessages(ActionHost, TerminalApp):
+_BUTTONS = re.compile(r"^[^#\n]*\bev3dev2(\.|\s+import\s.*\b)button\b", re.MULTILINE)
+
+
+def looks_at_buttons(program: str) -> bool:
+    """Return whether the text of a program uses the brick's buttons."""
+    return bool(_BUTTONS.search(program))
+
+
+class PanelMessages(LabHost):
     """Message handlers of the app for the panels; Textual finds the methods by name."""
 
-    workspace: Workspace
+    context: ActionContext
+    has_hinted = False
+    """Whether the panel of the brick was named."""
 
-    def situation_changed(self) -> None:
-        """Update the footer."""
-
-    def _waits(self, event: events.Event) -> bool:
-        """Let the keys of a run wait also for the mat, without which none can start."""
-        is_of_run = isinstance(event, events.Key) and event.key in RUN_KEYS and len(self.screen_stack) == 1
-        waits = is_of_run and self.workspace.loader.is_preparing
-        return super()._waits(event) or (waits and not (self.focused and takes_letters(self.focused)))
+    def hint_at_brick(self, does: str) -> None:
+        """Name the panel of the brick, if it is hidden, to whoever runs a program that needs it; once."""
+        if not self.has_hinted and not self.context.panels.shown("brick"):
+            self.say(f"The program {does}: {{panel-brick}} opens its panel")
+        self.has_hinted = True
 
     def on_code_typing_changed(self, message: Code.TypingChanged) -> None:
         self.situation_changed()
-        area = self.workspace.panel_area
+        area = self.context.panels
         if not message.typing:
             area.maximize("")
         else:
@@ -60,30 +64,30 @@ class PanelMessages(ActionHost, TerminalApp):
 
     def _end_former_text(self) -> None:
         """End a run of the text before the edit: the user wants the new one to run."""
-        controller, code = self.workspace.run_controller, self.workspace.panel_area.code
-        if code and code.differs and controller.in_run and not controller.in_past and self.workspace.document.apply():
+        controller, code = self.context.runs, self.context.panels.code
+        if code and code.differs and controller.in_run and not controller.in_past and self.context.document.apply():
             controller.close()
-            self.workspace.app.run_changed()
+            self.context.app.run_changed()
 
     def on_code_edited(self, message: Code.Edited) -> None:
-        self.workspace.document.edited(message.text)
-        self.workspace.debugger.edited(message.text)
+        self.context.document.edited(message.text)
+        self.context.debugger.edited(message.text)
 
     def on_code_wanted(self, message: Code.Wanted) -> None:
         from tuisim.app.panels.code import ProgramCommand
 
         match message.command:
             case ProgramCommand.SAVE:
-                self.workspace.document.save()
+                self.context.document.save()
             case ProgramCommand.RUN:
                 self._end_former_text()
                 self.action_act("run")
                 # Make the robot visible, or the place of the error in the text.
-                area = self.workspace.panel_area
+                area = self.context.panels
                 if area.alone and not (area.code and area.code.error_line):
                     area.maximize("")
                 # In a lesson, the next keys are for the lesson.
-                if self.workspace.lesson.step and area.code and not area.code.error_line:
+                if self.context.lesson.step and area.code and not area.code.error_line:
                     area.code.stop_typing()
             case ProgramCommand.NEW | ProgramCommand.OPEN:
                 self.action_act(message.command.value)
@@ -106,54 +110,54 @@ class PanelMessages(ActionHost, TerminalApp):
 
     def on_world_pose_dragged(self, message: World.PoseDragged) -> None:
         """Move the robot with the mouse; in the past, ask about a branch at the end of the drag."""
-        if message.done or not self.workspace.run_controller.in_past:
-            self.workspace.run_controller.place(message.pose)
+        if message.done or not self.context.runs.in_past:
+            self.context.runs.place(message.pose)
 
     def on_chart_cursor_moved(self, message: Chart.CursorMoved) -> None:
-        time_travel.to_time(self.workspace, message.time_s)
+        time_travel.to_time(self.context, message.time_s)
 
     def on_time_bar_scrubbed(self, message: TimeBar.Scrubbed) -> None:
-        time_travel.to_tick(self.workspace, message.tick)
+        time_travel.to_tick(self.context, message.tick)
 
     def on_positioning_applied(self, message: Positioning.Applied) -> None:
-        self.workspace.run_controller.place(message.pose)
+        self.context.runs.place(message.pose)
 
     def on_settings_edited(self, message: Settings.Edited) -> None:
         """Apply a field of the settings; the field shows an error."""
         try:
-            self.workspace.loader.set_next_run(self.workspace.loader.change(message.apply))
+            self.context.loader.set_next_run(self.context.loader.change(message.apply))
         except TuisimError as error:
             message.row.refuse(error)
 
     def on_obstacles_edited(self, message: Obstacles.Edited) -> None:
-        self.workspace.loader.attempt(lambda plan: with_obstacles(plan, message.change(plan.spec.world.obstacles)))
+        self.context.loader.attempt(lambda plan: with_obstacles(plan, message.change(plan.spec.world.obstacles)))
 
     def on_obstacles_marked(self) -> None:
         self.mark_box()
 
     def mark_box(self) -> None:
         """Show in the world which obstacle is selected, and whether the mouse draws obstacles."""
-        area = self.workspace.panel_area
+        area = self.context.panels
         on = area.shown("obstacles")
         if area.world:
             area.world.edit_boxes(on, area.obstacles.at if on and area.obstacles else None)
 
     def on_world_boxes_dragged(self, message: World.BoxesDragged) -> None:
-        panel = self.workspace.panel_area.obstacles
-        if self.workspace.loader.attempt(lambda plan: with_obstacles(plan, message.obstacles)) and panel:
+        panel = self.context.panels.obstacles
+        if self.context.loader.attempt(lambda plan: with_obstacles(plan, message.obstacles)) and panel:
             panel.mark(message.index)
 
     def on_code_breakpoint_toggled(self, message: Code.BreakpointToggled) -> None:
-        self.workspace.debugger.toggle_line(message.line)
+        self.context.debugger.toggle_line(message.line)
 
     def on_debug_frame_wanted(self, message: Debug.FrameWanted) -> None:
-        self.workspace.debugger.choose_frame(message.by)
+        self.context.debugger.choose_frame(message.by)
 
     def on_debug_thread_wanted(self) -> None:
-        self.workspace.debugger.choose_thread()
+        self.context.debugger.choose_thread()
 
     def on_brick_pressed(self, message: Brick.Pressed) -> None:
-        runs = self.workspace.run_controller
+        runs = self.context.runs
         if message.buttons <= runs.pressed or (runs.in_run and not runs.in_past):
             runs.press(message.buttons)
         elif runs.in_run:
@@ -162,7 +166,7 @@ class PanelMessages(ActionHost, TerminalApp):
             self.say("The brick's buttons work only while a program runs: {run} runs it")
 
     def on_noise_changed(self, message: Noise.Changed) -> None:
-        self.workspace.run_controller.set_noise(message.noise)
+        self.context.runs.set_noise(message.noise)
 
     def on_noise_seeded(self, message: Noise.Seeded) -> None:
-        self.workspace.run_controller.set_seed(message.seed)
+        self.context.runs.set_seed(message.seed)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from tuisim import protocol
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
-from tuisim.app.snapshot import RunPhase, Snapshot, snapshot_of
+from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.timeline import Timeline
 from tuisim.core.end_stops import flags_at_start
 from tuisim.core.field import Field
@@ -32,6 +32,13 @@ if TYPE_CHECKING:
     from tuisim.runs.run_folder import StoredRun
     from tuisim.runs.views import TickRecord
     from tuisim.source import Program
+
+
+FIRST_LINE = (0, 1)
+"""Tick and ordinal at which the first line of a program is about to run."""
+
+ROWS_A_POLL = 4000
+"""Most output rows that one poll reads, so that a flood of prints does not block the app."""
 
 
 @dataclass(slots=True)
@@ -78,8 +85,8 @@ def _key(record: TickRecord) -> tuple[int, int]:
     return record.tick, record.actions
 
 
-class RunView:
-    """The reading side of the run controller: nothing here changes a run.
+class RunController:
+    """The current run, or the robot before a run.
 
     Args:
         program: The program that runs next; None for none yet.
@@ -96,6 +103,8 @@ class RunView:
         self.mat: Mat | None = None
         self.run: RunHandle | None = None
         """The live run or the last one; None before the first one, and while a stored run is shown."""
+        self._served: tuple[Mat, RunSpec, bool] | None = None
+        """Whether a mat serves a run, as last asked."""
         self.timeline = Timeline()
         self.pressed: frozenset[str] = frozenset()
         """The brick's buttons that the user holds down."""
@@ -107,6 +116,8 @@ class RunView:
         self._moved = True
         """Whether the robot was placed since the last run, so that the run's last record no longer applies."""
         self._pending = Pending()
+        self.propose: Callable[[protocol.Message], None] = lambda _: None
+        """Called instead of a user action while a past instant is in view: the action is only possible in a branch."""
         self.paused_line: tuple[int, int] | None = None
         """Tick and line at which the program is paused: more exact than the record of that tick."""
 
@@ -159,31 +170,32 @@ class RunView:
 
     def snapshot(self) -> Snapshot:
         """Return the snapshot of the instant in view."""
-        record, recording = self._record(), self.timeline.recording
+        timeline, recording, spec = self.timeline, self.timeline.recording, self.spec
+        newest = recording.telemetry.last() if recording else None
+        past, now_tick = timeline.at is not None, newest.tick if newest else 0
+        record = timeline.record() if past else None if self._moved else newest
         instant, line, pen_down = self._moment(record)
-        newest = recording.telemetry.last() if recording and self.in_past else None
-        face = self.timeline.face()
+        state, face = self.state, timeline.face(now_tick if timeline.at is None else timeline.at)
         # After the robot was placed following the run, all its motors are reset.
-        turns = face.turns_at(instant.tick / self.spec.profile.tick_hz, self.spec.profile.tick_hz) if record else ()
-        return replace(
-            snapshot_of(
-                instant,
-                self.spec,
-                self._field(record),
-                state=self.state,
-                end=self._end if self.state == RunPhase.ENDED else None,
-                line=line,
-                speed=self.speed,
-                pen_down=pen_down,
-                stalled=recording.stalled(record) if record and recording and self._is_of_run else (False, False),
-                next_spec=self.next_run.spec,
-            ),
+        has_turned = record is not None and face.turns
+        turns = face.turns_at(instant.tick / spec.profile.tick_hz, spec.profile.tick_hz) if has_turned else ()
+        return Snapshot(
+            state=state,
+            end=self._end if state == RunPhase.ENDED else None,
+            spec=spec,
+            field=self._field(record),
+            instant=instant,
+            line=line,
+            speed=self.speed,
+            pen_down=pen_down,
+            stalled=recording.stalled(record) if record and recording and self._is_of_run else (False, False),
+            next_spec=self.next_run.spec,
             face=face,
-            turns=turns or ((0.0, 0.0),) * len(self.spec.robot.extra_motors),
+            turns=turns or ((0.0, 0.0),) * len(spec.robot.extra_motors),
             pressed=self._pressed_at(record),
-            past=self.in_past,
-            now_tick=max(0, self.timeline.newest),
-            now_pose=newest.pose if newest else None,
+            past=past,
+            now_tick=now_tick,
+            now_pose=newest.pose if newest and past else None,
         )
 
     def _at_rest(self, pose: Pose) -> Instant:
@@ -226,28 +238,17 @@ class RunView:
 
     def _field(self, record: TickRecord | None) -> Field | None:
         """Return the mat as the sensors saw it then, None until it is prepared for them."""
-        if self.mat is None or self.mat.field is None or not self.mat.serves(self.spec):
+        mat, recording = self.mat_for(self.spec), self.timeline.recording
+        return mat if mat is None or record is None or recording is None else recording.field_at(record.tick, mat)
+
+    def mat_for(self, spec: RunSpec) -> Field | None:
+        """Return the mat if it is that of a run, prepared for its sensors; else None."""
+        mat = self.mat
+        if mat is None:
             return None
-        recording = self.timeline.recording
-        return (
-            self.mat.field if record is None or recording is None else recording.field_at(record.tick, self.mat.field)
-        )
-
-
-FIRST_LINE = (0, 1)
-"""Tick and ordinal at which the first line of a program is about to run."""
-
-ROWS_A_POLL = 4000
-"""Most output rows that one poll reads, so that a flood of prints does not block the app."""
-
-
-class RunController(RunView):
-    """The current run, or the robot before a run; its arguments are those of `RunView`."""
-
-    def __init__(self, program: Program | None, next_run: NextRun, speed: float) -> None:
-        super().__init__(program, next_run, speed)
-        self.propose: Callable[[protocol.Message], None] = lambda _: None
-        """Called instead of a user action while a past instant is in view: the action is only possible in a branch."""
+        if self._served is None or self._served[0] is not mat or self._served[1] is not spec:
+            self._served = mat, spec, mat.serves(spec)
+        return mat.field if self._served[2] else None
 
     # What the user does
 
@@ -305,14 +306,14 @@ class RunController(RunView):
         branch, self._branch = self._branch, None
         if branch is not None and paused is not None:
             early = paused.tick < branch.tick
-            self._send(protocol.SetSpeed(self.speed))
+            self.send(protocol.SetSpeed(self.speed))
             if branch.of.pressed_at(branch.tick + 1) and not early:
                 # Buttons that were held then have been released since.
-                self._send(protocol.SetButtons(()))
+                self.send(protocol.SetButtons(()))
             if branch.then is not None and not early:
-                self._send(branch.then)
+                self.send(branch.then)
             if early or (branch.goes_on and not self.in_past):
-                self._send(protocol.Resume())
+                self.send(protocol.Resume())
         return branch
 
     def replay(self, run: StoredRun) -> None:
@@ -322,6 +323,8 @@ class RunController(RunView):
         self._show_recording(Recording(run))
 
     def _show_recording(self, recording: Recording) -> None:
+        # What is drawn of a frame is of one instant.
+        recording.hold()
         self.timeline.switch_to(recording)
         self._pending.forget()
         self.pressed = frozenset()
@@ -340,28 +343,12 @@ class RunController(RunView):
     def pause(self) -> None:
         """Pause the run, unless there is none or it is paused already."""
         if self.in_run and self.state is not RunPhase.PAUSED:
-            self._send(protocol.Pause())
-
-    def resume(self) -> None:
-        """Resume the run."""
-        self._send(protocol.Resume())
-
-    def step(self) -> None:
-        """Run one tick."""
-        self._send(protocol.StepTicks(1))
-
-    def debug(self, command: protocol.Message) -> None:
-        """Send a debug command."""
-        self._send(command)
+            self.send(protocol.Pause())
 
     def set_speed(self, speed: float) -> None:
         """Change the speed: 1.0 is real time, 0 as fast as possible."""
         self.speed = speed
-        self._send(protocol.SetSpeed(speed))
-
-    def answer(self, text: str | None) -> None:
-        """Answer `input()`; None is end of file."""
-        self._send(protocol.Answer(text))
+        self.send(protocol.SetSpeed(speed))
 
     def set_pen(self, down: bool) -> None:
         """Put the pen down or up, for this run and the next."""
@@ -376,7 +363,7 @@ class RunController(RunView):
         if buttons == self.pressed:
             return
         self.pressed = buttons
-        self._send(protocol.SetButtons(tuple(name for name in protocol.BUTTONS if name in buttons)))
+        self.send(protocol.SetButtons(tuple(name for name in protocol.BUTTONS if name in buttons)))
 
     def set_noise(self, noise: NoiseSpec) -> None:
         """Change the noise, at once and for the next run."""
@@ -444,13 +431,14 @@ class RunController(RunView):
         record = self._record()
         if record is not None and self._branch is None and self._is_paused:
             self._pending.note(record, action)
-        self._send(action)
+        self.send(action)
 
     @property
     def _is_paused(self) -> bool:
         return self.run is not None and self.run.paused
 
-    def _send(self, command: protocol.Message) -> None:
+    def send(self, command: protocol.Message) -> None:
+        """Send a command to the run, if there is one."""
         # On the way to its instant, a branch must repeat the run exactly.
         if self.run is not None and (self._branch is None or isinstance(command, protocol.Answer)):
             self.run.send(command)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
 from typing import assert_never
 
-from tuisim.app.setup.next_run import NextRun
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.sensors import color, gyro, readings, ultrasonic
@@ -17,7 +16,6 @@ from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
 from tuisim.protocol import End, Ended, Inspected, Paused, RunState, Unended
 from tuisim.runs.brick_state import BrickState
-from tuisim.source import Program
 
 
 class RunPhase(StrEnum):
@@ -46,9 +44,9 @@ GOOD_ENDS: frozenset[RunState | None] = frozenset({End.FINISHED, End.STOPPED})
 _DARK = BrickState()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Snapshot:
-    """One moment as every panel sees it. Sensor values are those of `instant`."""
+    """The run at the instant in view, as every panel sees it. A sensor is measured when a panel first asks for it."""
 
     state: RunPhase
     end: RunState | None
@@ -57,21 +55,11 @@ class Snapshot:
     field: Field | None
     """None until the mat has been prepared."""
     instant: Instant
-    time_s: float
     line: int
     """Line of the program during which time passes, 0 for none."""
     speed: float
     """1.0 real time, 0 as fast as possible."""
-    colors: Mapping[str, ColorReading]
-    """By sensor name, such as `left`."""
-    ultrasonic_mm: int | None
-    rays: tuple[tuple[float, float], ...]
-    """Ultrasonic rays as (world angle in degrees, length in mm)."""
-    gyro_deg: int
-    gyro_rate_dps: int
     pen_down: bool
-    further: Mapping[str, float] = dataclasses.field(default_factory=dict)
-    """Measurements of sensors that not every robot has, by telemetry column, such as `bumper_pressed`."""
     stalled: tuple[bool, bool] = (False, False)
     """Whether the left and the right motor are commanded to run but cannot turn."""
     next_spec: RunSpec | None = None
@@ -90,6 +78,47 @@ class Snapshot:
     """The newest tick of the run."""
     now_pose: Pose | None = None
     """The current pose of the robot, while another instant is viewed."""
+
+    @cached_property
+    def time_s(self) -> float:
+        """Simulated time."""
+        return self.instant.tick / self.spec.profile.tick_hz
+
+    @cached_property
+    def colors(self) -> Mapping[str, ColorReading]:
+        """By sensor name, such as `left`."""
+        if self.field is None:
+            return {}
+        return {s.name: color.reading(s, self.instant, self.field) for s in self.spec.robot.color_sensors}
+
+    @cached_property
+    def ultrasonic_mm(self) -> int | None:
+        """The distance; None without such a sensor."""
+        sensor = self.spec.robot.ultrasonic
+        return ultrasonic.reading_mm(sensor, self.instant, self.spec.world) if sensor else None
+
+    @cached_property
+    def rays(self) -> tuple[tuple[float, float], ...]:
+        """Ultrasonic rays as (world angle in degrees, length in mm)."""
+        sensor = self.spec.robot.ultrasonic
+        return tuple(ultrasonic.rays_mm(self.instant.pose, sensor, self.spec.world)) if sensor else ()
+
+    @cached_property
+    def gyro_deg(self) -> int:
+        """The angle; 0 without a gyro."""
+        return gyro.angle_deg(self.instant) if self.spec.robot.gyro is not None else 0
+
+    @cached_property
+    def gyro_rate_dps(self) -> int:
+        """The rate of turn; 0 without a gyro."""
+        return gyro.rate_dps(self.instant) if self.spec.robot.gyro is not None else 0
+
+    @cached_property
+    def further(self) -> Mapping[str, float]:
+        """Measurements of sensors that not every robot has, by telemetry column, such as `bumper_pressed`."""
+        if self.field is None:
+            return {}
+        return readings(self.spec.robot.further_sensors, self.instant, self.spec, self.field)
 
     def has_stopped_since(self, before: Snapshot | None) -> bool:
         """Whether the run stands still now, and did not at an earlier moment."""
@@ -117,18 +146,6 @@ class PauseView:
 
 
 @dataclass(frozen=True, slots=True)
-class DebugState:
-    """What the debugger knows at one moment."""
-
-    view: PauseView | None = None
-    """None while the program runs, or before it is first paused."""
-    looks_back: bool = False
-    """Whether a past instant is viewed, even one within the newest tick."""
-    busy: bool = False
-    """Whether a past instant is still being computed."""
-
-
-@dataclass(frozen=True, slots=True)
 class Situation:
     """The state that decides whether a key is available."""
 
@@ -148,68 +165,29 @@ class Situation:
 
 @dataclass(frozen=True, slots=True)
 class AppState:
-    """The app at one moment: everything that panels and footer show. Made once a frame."""
+    """Everything that panels and footer show. Made once a frame."""
 
-    program: Program | None
-    next_run: NextRun
-    view: Snapshot
+    run: Snapshot
     """The run at the instant in view."""
-    debug: DebugState
     situation: Situation
+    looks_back: bool
+    """Whether a past instant is viewed, even one within the newest tick."""
     playing: bool
     """Whether the recording is being played."""
 
     @property
     def status(self) -> str:
         """State and speed of the run, in words."""
-        view = self.view
-        status = end_label(view.end) if view.state is RunPhase.ENDED else view.state.value
-        if self.debug.looks_back:
-            status = "playing" if self.playing else f"past {view.time_s:.2f} s"
-        return f"{status} {speed_label(view.speed)}" if view.state in IN_RUN or view.speed != 1 else status
+        run = self.run
+        status = end_label(run.end) if run.state is RunPhase.ENDED else run.state.value
+        if self.looks_back:
+            status = "playing" if self.playing else f"past {run.time_s:.2f} s"
+        return f"{status} {speed_label(run.speed)}" if run.state in IN_RUN or run.speed != 1 else status
 
     @property
     def failed(self) -> bool:
         """Whether the end of a failed run is in view."""
-        return self.view.failed and not self.debug.looks_back
-
-
-def snapshot_of(
-    instant: Instant,
-    spec: RunSpec,
-    field: Field | None,
-    *,
-    state: RunPhase,
-    end: RunState | None,
-    line: int,
-    speed: float,
-    pen_down: bool,
-    stalled: tuple[bool, bool] = (False, False),
-    next_spec: RunSpec | None = None,
-) -> Snapshot:
-    """Return the snapshot of one moment, with every sensor measured."""
-    ultrasonic_spec = spec.robot.ultrasonic
-    rays = tuple(ultrasonic.rays_mm(instant.pose, ultrasonic_spec, spec.world)) if ultrasonic_spec else ()
-    has_gyro = spec.robot.gyro is not None
-    return Snapshot(
-        state=state,
-        end=end,
-        spec=spec,
-        field=field,
-        instant=instant,
-        time_s=instant.tick / spec.profile.tick_hz,
-        line=line,
-        speed=speed,
-        colors={s.name: color.reading(s, instant, field) for s in spec.robot.color_sensors} if field else {},
-        ultrasonic_mm=ultrasonic.reading_mm(ultrasonic_spec, instant, spec.world) if ultrasonic_spec else None,
-        rays=rays,
-        gyro_deg=gyro.angle_deg(instant) if has_gyro else 0,
-        gyro_rate_dps=gyro.rate_dps(instant) if has_gyro else 0,
-        further=readings(spec.robot.further_sensors, instant, spec, field) if field else {},
-        pen_down=pen_down,
-        stalled=stalled,
-        next_spec=next_spec,
-    )
+        return self.run.failed and not self.looks_back
 
 
 def speed_label(speed: float) -> str:

@@ -83,11 +83,11 @@ class Timeline:
             return None
         return self.recording.telemetry.record(self.at)
 
-    def face(self) -> BrickState:
-        """Return what the brick shows at the instant in view."""
+    def face(self, tick: int) -> BrickState:
+        """Return what the brick shows at a tick."""
         if self.recording is None:
             return BrickState()
-        numbers = self.recording.rows.face_numbers(self.tick)
+        numbers = self.recording.rows.face_numbers(tick)
         if numbers != self._face_numbers:
             self._face_numbers = numbers
             self._face = face_after(BrickState(), [self.recording.rows.row(number) for number in numbers])
@@ -97,7 +97,7 @@ class Timeline:
         """Return the marked ticks, with the kind of each marker."""
         if self.recording is None:
             return []
-        done = [(action.tick, Mark.ACTION) for action in self.recording.actions()]
+        done = [(action.tick, Mark.ACTION) for action in self.recording.known_actions]
         return [*self.recording.rows.marks, *done, *((tick, Mark.BREAK) for tick in self.breaks)]
 
     # Navigation

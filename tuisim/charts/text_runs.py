@@ -34,3 +34,8 @@ def cut_line(line: Sequence[Run], width: int) -> Sequence[Run]:
             kept[-1] = (text[:-1] + "…", style)
             return kept
     return kept
+
+
+def first_shown(chosen: int, count: int, room: int) -> int:
+    """Return the first row shown, so that the selected one is near the middle."""
+    return min(max(chosen - room // 2, 0), max(count - room, 0))

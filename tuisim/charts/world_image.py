@@ -324,7 +324,7 @@ class PenLines:
 
 def pen_points_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
     """Return x and y of the pen in the world at each record of telemetry, up or down, each of shape (n,)."""
-    return world_points_mm(telemetry, *outline_of(robot).pen_mm)
+    return world_points_mm(telemetry, robot.pen.x_mm, robot.pen.y_mm)
 
 
 def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> PenLines:

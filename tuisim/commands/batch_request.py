@@ -18,8 +18,7 @@ from tuisim.commands.batch_options import jobs_option, keep_option, workers_opti
 from tuisim.commands.listings import names_of
 from tuisim.commands.notebooks import NotRun
 from tuisim.commands.resolve import check_arguments, prepare_runs
-from tuisim.commands.run import parse_press, press_actions
-from tuisim.commands.run_options import input_option, timeout_option
+from tuisim.commands.run_options import input_option, parse_press, press_actions, timeout_option
 from tuisim.config.command_line import Arguments, WordType, argument, option
 from tuisim.config.files import read_file
 from tuisim.config.folders import user_path

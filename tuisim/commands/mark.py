@@ -33,8 +33,7 @@ from tuisim.marks.feedback import write_feedback
 from tuisim.marks.frame import export_marks
 from tuisim.marks.journal import Journal, journal_of
 from tuisim.marks.outcome import Outcome
-from tuisim.marks.page import page_of
-from tuisim.marks.reports import folder_of, write_reports
+from tuisim.marks.page import page_of, reports_folder
 from tuisim.marks.runs import STALL_LIMIT_S, MarkPlan, RunEntry, outcomes_of
 from tuisim.marks.sheet import Sheet, SheetColumn, lines_of, sheet_of, summary_of
 from tuisim.marks.students import Student, StudentsFound, file_outside, find_students
@@ -227,7 +226,7 @@ def _excluded(arguments: Arguments, task: GoalsFile) -> frozenset[Path]:
     """Return what may lie among the students' files without being one: the goals, and results."""
     found = [task.path]
     for target in map(Path, arguments.export):
-        found += [target, target.with_name(target.name + ".json"), folder_of(target)]
+        found += [target, target.with_name(target.name + ".json"), reports_folder(target)]
     if arguments.feedback:
         found.append(Path(arguments.feedback))
     return frozenset(Path(os.path.realpath(path)) for path in found)
@@ -280,6 +279,9 @@ def _write(
             tell(f"writing {target}")
             export_marks(sheet, target)
             continue
+        # Their charts are slow to import, and a table needs none.
+        from tuisim.marks.reports import write_reports
+
         kept = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
         links = {}
         for name, seed, path in write_reports(sheet, goals, target):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from tuisim.breakpoints import parse_breakpoints, parse_watch
@@ -14,17 +13,16 @@ from tuisim.commands.listings import COLUMN, names_of
 from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
 from tuisim.commands.relay import Follower, RelayInterrupts
 from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
-from tuisim.commands.run_options import input_option, timeout_option
+from tuisim.commands.run_options import input_option, parse_press, press_actions, timeout_option
 from tuisim.config.command_line import Arguments, WordType, argument, choice, command, option
 from tuisim.config.options import APP, PANEL
 from tuisim.config.shared_options import shared_options
 from tuisim.config.user_config import FILE, Section, load_config
 from tuisim.core.geometry import pose_in_words
 from tuisim.core.profile import NS_PER_S
-from tuisim.core.values import Number, parse
-from tuisim.errors import SIGNALLED, ConfigError, ExportError, LogError, TuisimError, counted, nearest, shortened
+from tuisim.errors import SIGNALLED, ConfigError, ExportError, LogError, TuisimError, counted, shortened
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
-from tuisim.protocol import BUTTONS, Inspect, Inspected, Message, Paused, Resume, SetButtons, UserAction
+from tuisim.protocol import Inspect, Inspected, Message, Paused, Resume
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
@@ -32,58 +30,6 @@ from tuisim.source import source_lines
 
 MOST_CHARACTERS = 200
 GO, STOP = "go", "stop"
-PRESS = "--press"
-DEFAULT_PRESS_S = 0.1
-MAX_PRESS_S = 1e6
-
-
-@dataclass(frozen=True, slots=True)
-class ButtonPress:
-    """One button, held for a while; times in simulated seconds."""
-
-    button: str
-    """One of `BUTTONS`."""
-    from_s: float
-    until_s: float
-
-
-def parse_press(text: str) -> ButtonPress:
-    """Parse a press such as `enter@1.0-1.5` or `enter@1`.
-
-    Raises:
-        ConfigError: there is no such button, or the times are wrong.
-    """
-    name, at, times = text.partition("@")
-    if not at:
-        raise ConfigError(f"must be BUTTON@FROM or BUTTON@FROM-UNTIL, got {text!r}", "such as enter@1.5", key=PRESS)
-    if name not in BUTTONS:
-        raise ConfigError(f"the brick has no button {name!r}", nearest(name, BUTTONS), key=PRESS)
-    seconds = Number(0.0, MAX_PRESS_S)
-    # A leading minus is a sign: negative times are refused.
-    begin, to, end = (times, "", "") if times.startswith("-") else times.partition("-")
-    from_s = parse(seconds, begin, PRESS)
-    until_s = parse(seconds, end, PRESS) if to else from_s + DEFAULT_PRESS_S
-    if until_s <= from_s:
-        raise ConfigError(f"{text!r} ends before it begins", "BUTTON@FROM-UNTIL, in simulated seconds", key=PRESS)
-    return ButtonPress(name, from_s, until_s)
-
-
-def press_actions(presses: Sequence[ButtonPress], tick_hz: int) -> tuple[UserAction, ...]:
-    """Return the changes of the button states, ordered by tick; presses may overlap, and last at least one tick."""
-    held = []
-    for press in presses:
-        first = round(press.from_s * tick_hz)
-        held.append((press.button, first, max(first + 1, round(press.until_s * tick_hz))))
-    changes: list[UserAction] = []
-    before: tuple[str, ...] = ()
-    for tick in sorted({tick for _, first, last in held for tick in (first, last)}):
-        down = {button for button, first, last in held if first <= tick < last}
-        pressed = tuple(button for button in BUTTONS if button in down)
-        if pressed != before:
-            changes.append(UserAction(tick, SetButtons(pressed)))
-            before = pressed
-    return tuple(changes)
-
 
 _REPORTS, _BREAKPOINTS = "Data and limits", "Breakpoints"
 _OPTIONS = (

@@ -10,19 +10,19 @@ from __future__ import annotations
 import shlex
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tuisim.config.options import Settings, settings_of
 from tuisim.config.program_file import ProgramSource
-from tuisim.config.program_robot.assembly import BuiltRobot, build_robot
 from tuisim.config.program_robot.course import uses_course_names
-from tuisim.config.program_robot.mentions import mentions_in
-from tuisim.config.program_robot.report import USUAL, in_words
 from tuisim.config.program_robot.source import data_files, imports_library, read_modules
 from tuisim.config.robots import RobotChoice
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.source import Program
+
+if TYPE_CHECKING:
+    from tuisim.config.program_robot.assembly import BuiltRobot
 
 BRICK_PROFILE = "ev3"
 """The profile of programs that are for a real brick."""
@@ -81,6 +81,11 @@ def facts_of(program: Program) -> SourceFacts:
         modules = read_modules(program)
         if not modules or not imports_library(modules):
             return SourceFacts()
+        # Most programs are the course's, and need no reading of their own.
+        from tuisim.config.program_robot.assembly import build_robot
+        from tuisim.config.program_robot.mentions import mentions_in
+        from tuisim.config.program_robot.report import USUAL
+
         robot = build_robot(mentions_in(modules, data_files(program)), program.name, USUAL)
         return SourceFacts(True, uses_course_names(modules, program.text), robot)
     except RecursionError:
@@ -172,6 +177,8 @@ def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) ->
     """Return what the source of a program decided, and how to change it; both empty for nothing."""
     rules = f"by the rules of a brick (profile {BRICK_PROFILE})" if "profile" in layer else ""
     if facts.robot and "robot" in layer:
+        from tuisim.config.program_robot.report import in_words
+
         parts = [f"{program.name} runs on a robot built from it: {in_words(facts.robot)}", *facts.robot.doubts]
         options = "-r or --profile" if rules else "-r"
         shown = f"; `tuisim robots --from {shlex.quote(program.path)}` shows the robot" if program.path else ""

@@ -22,11 +22,6 @@ def end_flag(robot: RobotSpec, port: str, end: str) -> int:
     return FLAG_FIRST_END << len(MOTOR_ENDS) * number + MOTOR_ENDS.index(end)
 
 
-def end_flags(flags: int) -> int:
-    """Return those flags of a tick record that `end_flag` returns."""
-    return flags & -FLAG_FIRST_END
-
-
 def flags_at_start(robot: RobotSpec) -> int:
     """Return the flags of all motors at the start of a run."""
     return sum(EndStops(robot, motor).flags for motor in robot.extra_motors)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from tuisim.core.spec import RobotSpec, TouchSpec, UltrasonicSpec
 
@@ -39,17 +39,17 @@ class RobotOutline:
     """x, y and half the width of each touch sensor."""
     other_sensors_mm: tuple[Point, ...]
     """All others but the ultrasonic ones."""
+    reach_mm: float = field(init=False)
+    """The largest distance of the body from the point about which it turns."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "reach_mm", max(math.hypot(x, y) for x, y in self.corners_mm))
 
     @property
     def corners_mm(self) -> tuple[Point, Point, Point, Point]:
         """The corners of the body, counter-clockwise from the left rear."""
         side = self.half_width_mm
         return (-side, self.back_mm), (side, self.back_mm), (side, self.front_mm), (-side, self.front_mm)
-
-    @property
-    def reach_mm(self) -> float:
-        """The largest distance of the body from the point about which it turns."""
-        return max(math.hypot(x, y) for x, y in self.corners_mm)
 
 
 def outline_of(robot: RobotSpec) -> RobotOutline:

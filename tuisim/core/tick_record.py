@@ -25,6 +25,8 @@ FLAG_RIGHT_RUNNING = 2
 FLAG_PEN_DOWN = 4
 FLAG_FIRST_END = 8
 """The lowest of the flags of `core.end_stops`."""
+END_FLAGS = -FLAG_FIRST_END
+"""All of those flags."""
 
 Buffer: TypeAlias = mmap | bytearray
 """A mutable buffer: a mapped file, or memory."""

@@ -14,7 +14,6 @@ from tuisim.core.field import Field
 from tuisim.core.profile import NS_PER_S
 from tuisim.protocol import End, Ended, Unended
 from tuisim.runs.frames import column_values, held, tick_times_s
-from tuisim.runs.handle import RunHandle
 from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun, open_mat
 from tuisim.runs.samples import Sample, rows_when, samples_of
@@ -23,12 +22,14 @@ from tuisim.runs.side_files import read_actions
 if TYPE_CHECKING:
     import numpy as np
 
+    from tuisim.runs.handle import RunHandle
+
     Array = np.ndarray[Any, Any]
 
 MAX_ROWS = 200_000
 """Later rows of output are not judged: a program that floods could fill the memory."""
 
-JudgedRun: TypeAlias = StoredRun | RunHandle
+JudgedRun: TypeAlias = "StoredRun | RunHandle"
 """A run to judge: a stored one, or one that may still be running."""
 
 
@@ -78,15 +79,15 @@ class Evidence:
         self._run, self._field = run, field
         self.spec, self.program = run.spec, run.program
         # Before the recording is read: what an ended run has recorded is complete.
-        if isinstance(run, RunHandle):
-            self.end: Ended | None = run.ended
+        if isinstance(run, StoredRun):
+            self.end: Ended | None = run.end
+            self.ended = run.end is not None or run.state is not Unended.RUNNING
+            self.answers = tuple(run.options.get("answers", ()))
+        else:
+            self.end = run.ended
             self.ended = run.ended is not None
             # Those that are known: what the user typed is only in the rows.
             self.answers = run.answers
-        else:
-            self.end = run.end
-            self.ended = run.end is not None or run.state is not Unended.RUNNING
-            self.answers = tuple(run.options.get("answers", ()))
         self.falsified = self.end.summary if self.end is not None and self.end.end is End.FALSIFIED else ""
         """What the program has falsified; empty if its recording can be trusted."""
         self.records: Array = run.telemetry.array()
@@ -145,7 +146,7 @@ class Evidence:
         """
         if self._field is not None:
             return self._field
-        return open_field(self._run.field) if isinstance(self._run, RunHandle) else open_mat(self._run)
+        return open_mat(self._run) if isinstance(self._run, StoredRun) else open_field(self._run.field)
 
     @cached_property
     def end_s(self) -> float:

@@ -7,16 +7,18 @@ from dataclasses import dataclass
 from functools import cache
 from math import sqrt
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tuisim.core.css_colors import css_names
 from tuisim.errors import counted
 from tuisim.logs.columns import numeric_columns
-from tuisim.logs.log import Log, Series
 from tuisim.logs.plateaus import Plateau, plateaus
 from tuisim.runs.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from tuisim.logs.log import Log, Series
 
 NEAR_PERCENT = 2.0
 """Largest distance from a named grey."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from types import MappingProxyType
 from urllib.parse import quote
 
@@ -108,3 +109,8 @@ def _ranges(seeds: Sequence[int]) -> str:
         else:
             found.append([seed])
     return ", ".join(f"{one[0]}–{one[-1]}" if len(one) > 1 else str(one[0]) for one in found)
+
+
+def reports_folder(file: Path) -> Path:
+    """Return the folder of the reports that the page in a file links to."""
+    return file.with_name(f"{file.stem}-runs")

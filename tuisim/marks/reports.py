@@ -15,6 +15,7 @@ from tuisim.charts.files import write_whole
 from tuisim.errors import ExportError, LogError
 from tuisim.goals.spec import Goal
 from tuisim.marks.feedback import file_stems
+from tuisim.marks.page import reports_folder
 from tuisim.marks.results import portable
 from tuisim.marks.sheet import Sheet
 from tuisim.marks.verdicts import verdicts
@@ -23,11 +24,6 @@ from tuisim.runs.store import RunStore
 
 MOST_OUTPUT_BYTES = 4 << 20
 """Runs that printed more get no report: a browser could hardly show it."""
-
-
-def folder_of(page: Path) -> Path:
-    """Return the folder of the reports that a page links to."""
-    return page.with_name(f"{page.stem}-runs")
 
 
 def write_reports(sheet: Sheet, goals: Sequence[Goal], page: Path) -> Iterator[tuple[str, int, str]]:
@@ -42,7 +38,7 @@ def write_reports(sheet: Sheet, goals: Sequence[Goal], page: Path) -> Iterator[t
     Raises:
         ExportError: a report cannot be written.
     """
-    folder, store = folder_of(page), RunStore()
+    folder, store = reports_folder(page), RunStore()
     shutil.rmtree(folder, ignore_errors=True)
     for stem, row in zip(file_stems(one.name for one in sheet.rows), sheet.rows, strict=True):
         written: dict[str, str] = {}

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from tuisim.analysis.pins import Pin
 from tuisim.analysis.report import section, table
 from tuisim.errors import LogError
-from tuisim.goals.judge import judge
 from tuisim.goals.judgement import Change
 from tuisim.goals.spec import ConditionKind, Goal
 from tuisim.marks.outcome import GoalOutcome, Outcome
@@ -48,6 +47,9 @@ def _judged(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str
     """Return when and where goals were met or missed, of those that were at a time and a place."""
     if outcome.end == End.FALSIFIED:
         return {}
+    # Judging is slow to import, and most runs have been judged.
+    from tuisim.goals.judge import judge
+
     try:
         judgements = judge(goals, run)
     except LogError:

@@ -120,11 +120,6 @@ class RunOptions:
         return {**asdict(self), "actions": [action.to_plain() for action in self.actions]}
 
 
-def program_again(run: StoredRun | RunHandle) -> Program:
-    """Return the program of a run with its arguments, working directory and own modules, to be run again."""
-    return replace(run.program, modules_from=run.folder)
-
-
 class RunFolders(Protocol):
     """Where a handle stores its run: a `RunStore`, or a `TemporaryRun`."""
 
@@ -290,12 +285,9 @@ class RunHandle:
         """Kill a child that has sent or recorded what the simulation does not."""
         # In a folder that was deleted there is nothing to look at: such a run is stopped.
         if not self._falsified and self.folder.is_dir():
+            damages = self.telemetry.read_on(), self.output.read_on()
             self._falsified = (
-                self._events.falsified
-                or self.telemetry.damage
-                or self.output.damage
-                or self._flooded_log()
-                or self._endless()
+                self._events.falsified or next(filter(None, damages), "") or self._flooded_log() or self._endless()
             )
             if self._falsified:
                 end_group(self._process.pid)

@@ -17,9 +17,8 @@ from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING, TICK_RECORD
 from tuisim.errors import LogError
 from tuisim.protocol import SetButtons, UserAction
-from tuisim.runs.handle import program_again
 from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow, Stream
-from tuisim.runs.run_folder import StoredRun, noise_at
+from tuisim.runs.run_folder import StoredRun, noise_at, program_again
 from tuisim.runs.samples import parse_sample
 from tuisim.runs.side_files import read_actions
 
@@ -46,9 +45,12 @@ class Recording:
         self.spec: RunSpec = source.spec
         self.folder: Path = source.folder
         self.telemetry: TelemetryView = source.telemetry
+        self._output = source.output
         self.rows = RowIndex(source.output)
-        self.program = program_again(source)
-        self._actions: tuple[UserAction, ...] = source.actions if isinstance(source, StoredRun) else ()
+        self.program = program_again(source.program, source.folder)
+        self.known_actions: tuple[UserAction, ...] = source.actions if isinstance(source, StoredRun) else ()
+        """The user's actions, as far as `actions` has last found them."""
+        self._stall_ticks = stall_ticks(self.spec.profile.tick_hz)
         self._marks: _TimedMarks | None = None
         self.answers = tuple(source.options.get("answers", ())) if isinstance(source, StoredRun) else answers
         """Scripted answers to `input()`."""
@@ -57,6 +59,12 @@ class Recording:
     def name(self) -> str:
         """Display name: the number, or the id if it has none."""
         return f"run {self.number}" if self.number else self.run_id
+
+    def hold(self) -> None:
+        """Stay as written up to now, until the next `RunHandle.pump` of a running run."""
+        for view in (self.telemetry, self._output):
+            view.read_on()
+            view.holds = True
 
     @property
     def newest(self) -> int:
@@ -67,15 +75,16 @@ class Recording:
         """Return the user's actions, as far as their file is not damaged."""
         last = self.telemetry.last()
         # The record counts the actions modulo 65536, and may be slightly ahead of their file.
-        if last is not None and 0 < (last.actions - len(self._actions)) & 0xFFFF < 0x8000:
+        if last is not None and 0 < (last.actions - len(self.known_actions)) & 0xFFFF < 0x8000:
             # What is damaged makes the end of the run, or is a note of a stored one.
             with suppress(LogError):
-                self._actions = read_actions(self.folder)[0]
-        return self._actions
+                self.known_actions = read_actions(self.folder)[0]
+        return self.known_actions
 
     def noise_at(self, record: TickRecord) -> NoiseSpec:
         """Return the noise at the tick of a record."""
-        return noise_at(self.spec, self.actions(), record)
+        actions = self.actions()
+        return noise_at(self.spec, actions, record) if actions else self.spec.world.noise
 
     def pressed_at(self, tick: int) -> frozenset[str]:
         """Return the brick's buttons that were pressed when a tick was complete."""
@@ -94,7 +103,7 @@ class Recording:
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
         """Return whether the left and the right motor were running but did not turn."""
-        ticks = stall_ticks(self.spec.profile.tick_hz)
+        ticks = self._stall_ticks
         if record.tick < ticks:
             return False, False
         before = self.telemetry.record(record.tick - ticks)

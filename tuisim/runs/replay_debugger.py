@@ -59,7 +59,8 @@ class ReplayDebugger:
 
     def __init__(self, arrived: Arrived, failed: Failed, passed: Passed) -> None:
         self._arrived, self._failed, self._passed = arrived, failed, passed
-        self._run: RunHandle | None = None
+        self.run: RunHandle | None = None
+        """The re-run; None while there is none."""
         self._folder: Path | None = None
         self._of: Recording | None = None
         self._actions = 0
@@ -86,17 +87,17 @@ class ReplayDebugger:
     def look(self, look: protocol.Inspect) -> None:
         """Inspect again, with another request."""
         self._request = look
-        if self._run is not None and self._paused is not None:
+        if self.run is not None and self._paused is not None:
             self.busy = True
-            self._run.send(look)
+            self.run.send(look)
 
     def go_on(self, recording: Recording, at: Position, command: protocol.Message, look: protocol.Inspect) -> None:
         """Pause at an instant, resume with a command, and inspect where that ends."""
         self._request, self._back, self._resumes = look, 0, True
         here = self._paused and Position(self._paused.tick, self._paused.ordinal)
-        if self._run is not None and self._of is recording and here == at:
+        if self.run is not None and self._of is recording and here == at:
             self.busy, self._paused = True, None
-            self._run.send(command)
+            self.run.send(command)
         else:
             self._next_command = command
             self._go(recording, at, -1)
@@ -113,13 +114,13 @@ class ReplayDebugger:
 
         self.busy, self._aim = True, at
         actions = recording.actions()
-        known = self._of is recording and self._actions == len(actions) and self._run is not None
+        known = self._of is recording and self._actions == len(actions) and self.run is not None
         if known and self._paused is not None and traced_from < 0:
             here = Position(self._paused.tick, self._paused.ordinal)
             if here == at or here.is_before(at):
                 self._paused = None
-                assert self._run is not None
-                self._run.send(protocol.RunToInstant(at.tick, at.ordinal))
+                assert self.run is not None
+                self.run.send(protocol.RunToInstant(at.tick, at.ordinal))
                 return
         self.close()
         self.busy = True
@@ -130,14 +131,14 @@ class ReplayDebugger:
         )  # fmt: skip
         try:
             self._folder = owned_folder()
-            self._run = start_run(recording.program, recording.spec, options, _scratch(self._folder))
+            self.run = start_run(recording.program, recording.spec, options, _scratch(self._folder))
         except (TuisimError, OSError) as error:
             self.busy = False
             self._failed(str(error))
 
     def poll(self) -> None:
         """Process events; never blocks."""
-        run = self._run
+        run = self.run
         if run is None:
             return
         for event in run.pump():
@@ -158,13 +159,13 @@ class ReplayDebugger:
                     return
 
     def _on_paused(self, paused: Paused) -> None:
-        assert self._run is not None
+        assert self.run is not None
         if self._next_command is not None:
             command, self._next_command = self._next_command, None
-            self._run.send(command)
+            self.run.send(command)
             return
         self._paused = paused
-        self._run.send(protocol.RequestHistory(HISTORY) if self._back else self._request)
+        self.run.send(protocol.RequestHistory(HISTORY) if self._back else self._request)
 
     def _choose_line(self, history: LineHistory) -> None:
         """Go to the wanted line of the history; if it is farther back, search a larger window."""
@@ -182,8 +183,8 @@ class ReplayDebugger:
             found = before[0]
         else:
             self._back = 0
-            assert self._run is not None
-            self._run.send(self._request)
+            assert self.run is not None
+            self.run.send(self._request)
             return
         self._back = 0
         # Traced from the same tick on, the same lines have the same ordinals.
@@ -191,12 +192,12 @@ class ReplayDebugger:
 
     def close(self) -> None:
         """Close the process and delete its files."""
-        if self._run is not None:
-            self._run.kill()
-            self._run.close()
+        if self.run is not None:
+            self.run.kill()
+            self.run.close()
         if self._folder is not None:
             remove_tree(self._folder)
-        self._run = self._folder = self._paused = self._of = None
+        self.run = self._folder = self._paused = self._of = None
         self.busy = False
 
 

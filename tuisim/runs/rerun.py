@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 from tuisim.errors import LogError, shortened
 from tuisim.protocol import End, RunState, Stop, Unended, UserAction
 from tuisim.runs.diff import RunDiff, diff_runs
-from tuisim.runs.handle import RunHandle, RunOptions, program_again, start_run
+from tuisim.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.runs.run_folder import program_again
 from tuisim.runs.side_files import MOST_PATH, read_reads, read_stop_tick, state_of
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
         BackgroundError: the mat no longer exists.
         LogError: the run has no recording, or its options are invalid.
     """
-    return start_run(program_again(run), run.spec, replace(_options(run), **options), store)
+    return start_run(program_again(run.program, run.folder), run.spec, replace(_options(run), **options), store)
 
 
 def same(run: StoredRun, again: StoredRun) -> RunDiff:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -89,6 +89,16 @@ class StoredRun:
 def state_without_end(folder: Path) -> Unended:
     """Return whether the run in a folder without a stored end is running or was interrupted."""
     return Unended.RUNNING if is_held(folder) else Unended.INTERRUPTED
+
+
+def program_again(program: Program, folder: Path) -> Program:
+    """Return the program of a run with its arguments, working directory and own modules, to be run again.
+
+    Args:
+        program: The program.
+        folder: The folder of the run.
+    """
+    return replace(program, modules_from=folder)
 
 
 def noise_at(spec: RunSpec, actions: Sequence[UserAction], record: TickRecord) -> NoiseSpec:

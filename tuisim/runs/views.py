@@ -21,11 +21,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from weakref import finalize
 
 from tuisim.core.drive import turn_rate_dps
-from tuisim.core.end_stops import end_flags
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import Instant
-from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
+from tuisim.core.tick_record import END_FLAGS, TICK_FIELDS, TICK_RECORD
 from tuisim.errors import LogError, counted
 from tuisim.regular_file import of_the_machine, open_regular
 from tuisim.runs.brick_state import DRAWN_STREAMS, is_sound
@@ -94,7 +93,7 @@ def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
         right_speed_dps=record.right_speed_dps,
         turn_rate_dps=turn_rate_dps(record.left_speed_dps, record.right_speed_dps, spec.robot),
         gyro_zero_deg=record.gyro_zero_deg,
-        end_flags=end_flags(record.flags),
+        end_flags=record.flags & END_FLAGS,
         noise=noise,
         seed=spec.seed,
     )
@@ -127,6 +126,8 @@ class _View(ABC):
         self._path = folder / self._name
         self._is_checked = is_checked
         self._damage = ""
+        self.holds = False
+        """Whether it stays as it is until the next `read_on`, so that all who look at it see the same."""
         self._copy: bytearray | mmap = bytearray()
         """Starts like the file, with spare capacity; without the first `_dropped` records."""
         self._dropped = 0
@@ -142,8 +143,7 @@ class _View(ABC):
     @property
     def damage(self) -> str:
         """Why the file, or the rest of it, is not a recording; empty as long as it is one."""
-        self._extent()
-        return self._damage
+        return self._damage if self.holds else self.read_on()
 
     @property
     def is_missing(self) -> bool:
@@ -185,10 +185,16 @@ class _View(ABC):
         return memoryview(self._copy).toreadonly(), there
 
     def _extent(self) -> int:
-        """Return the length that exists, after a look at what has been published since."""
+        """Return the length that exists, unless it holds after a look at what has been published since."""
+        if not self.holds:
+            self.read_on()
+        return self._there
+
+    def read_on(self) -> str:
+        """Look at what has been published since. Return why it is not a recording; empty as long as it is one."""
         if self._packed is None and not self._unpacked and not self._damage:
             self._read_on()
-        return self._there
+        return self._damage
 
     def _known(self, count: int) -> memoryview | None:
         """Return the recording if `count` records that can no longer change have been read, else None."""

@@ -20,7 +20,7 @@ from tuisim.app.setup.next_run import with_obstacles
 from tuisim.app.snapshot import RunPhase
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, Obstacle
-from tuisim.protocol import SetNoise
+from tuisim.protocol import Answer, Resume, SetNoise
 from tuisim.runs.rerun import rerun, same
 from tuisim.runs.store import RunStore
 
@@ -98,7 +98,7 @@ async def noisy_past(pilot: Pilot[Any]) -> LabApp:
         pilot,
         lambda: app.run_controller.snapshot().instant.noise.light == 10 and app.run_controller.timeline.newest > 60,
     )
-    to_tick(app.workspace, 10)
+    to_tick(app.context, 10)
     await until(pilot, lambda: light(app) == 0)
     return app
 
@@ -129,11 +129,11 @@ async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:
         assert len(app.screen_stack) == 2
         await pilot.press("n")
         await until(pilot, lambda: light(app) == 0)
-        to_now(app.workspace)
+        to_now(app.context)
         await until(pilot, lambda: light(app) == 10)
         assert noises(app) == [10]
         # A branch with other noise sets it once.
-        to_tick(app.workspace, 10)
+        to_tick(app.context, 10)
         await until(pilot, lambda: light(app) == 0)
         field = app.query_one("#light-number", Input)
         field.focus()
@@ -155,7 +155,7 @@ async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:
         await pilot.pause()
         assert (light(app), app.run_controller.next_run.spec.world.noise.light) == (30, 30)
         newest = app.run_controller.timeline.newest
-        app.run_controller.resume()
+        app.run_controller.send(Resume())
         await until(pilot, lambda: app.run_controller.timeline.newest > newest + 5)
         assert noises(app) == [30]
 
@@ -170,7 +170,7 @@ async def test_a_run_paused_while_it_asks_goes_on() -> None:
         await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
         await pilot.press("space")
         await until(pilot, lambda: app.run_controller.state == RunPhase.WAITING)
-        app.run_controller.answer("Ann")
+        app.run_controller.send(Answer("Ann"))
         await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
 
 
@@ -207,7 +207,7 @@ async def test_what_is_changed_for_the_next_run_is_seen_also_from_the_past() -> 
         app = await ready(pilot)
         await pilot.press("R")
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
-        to_tick(app.workspace, 10)
+        to_tick(app.context, 10)
         assert app.run_controller.in_past
         assert app.loader.attempt(lambda plan: with_obstacles(plan, (Obstacle(100, 100, 50, 50),)))
         assert app.run_controller.snapshot().spec.world.obstacles == (Obstacle(100, 100, 50, 50),)

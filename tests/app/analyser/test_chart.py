@@ -13,9 +13,8 @@ from tests.app.wires import on_wire, until_quiet
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.analyser.chart import LogChart
-from tuisim.app.terminal.answers import TerminalAnswered
 from tuisim.app.terminal.plot_view import PlotView
-from tuisim.app.terminal.queries import facts_in
+from tuisim.app.terminal.queries import TerminalAnswered, facts_in
 from tuisim.charts.traces import TRACE_COLORS
 from tuisim.config.options import Protocol
 

@@ -11,8 +11,7 @@ from tuisim.app.app import LabApp
 from tuisim.app.dialogs.cells import CellsCard
 from tuisim.app.terminal import picture_mode as modes
 from tuisim.app.terminal.cell_view import PixelView
-from tuisim.app.terminal.picture_mode import PictureMode, picture_mode_for
-from tuisim.app.terminal.sharpness import Sharpness
+from tuisim.app.terminal.picture_mode import PictureMode, Sharpness, picture_mode_for
 from tuisim.charts.glyphs import GLYPHS
 from tuisim.config.options import CellSet
 

@@ -18,14 +18,13 @@ import tuisim.app
 from tests.app.app_help import LOGS, ready, settings, until
 from tests.app.monkey import at_once, key_event
 from tuisim.analysis.source import LogRequest
-from tuisim.app.action import Palette
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.dialogs.question import Question
-from tuisim.app.guide.screen import GuideScreen
-from tuisim.app.guide.topics import KeyPage, Topic
+from tuisim.app.guide.screen import GuideScreen, KeyPage, Topic
+from tuisim.app.terminal.terminal_app import Palette
 
 IN_THE_LAB = {
     "mat": "b enter enter",

@@ -236,7 +236,7 @@ async def test_opening_another_program_with_unsaved_changes_asks(tmp_path: Path)
     async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
         app, code = await begun(pilot)
         await typed(pilot, code, "x", "escape")
-        open_path(app.workspace, str(other))
+        open_path(app.context, str(other))
         await asked(pilot)
         await pilot.press("d")
         await until(pilot, lambda: "print('other')" in screen_text(app))

@@ -11,8 +11,7 @@ from textual.widgets import Tree
 from tests.app.app_help import lab, ready, screen_text, settings, until, until_shown
 from tests.guide.questions import QUESTIONS
 from tuisim.app.app import LabApp
-from tuisim.app.guide.screen import KEYS, GuideScreen
-from tuisim.app.guide.topics import TOPICS
+from tuisim.app.guide.screen import KEYS, TOPICS, GuideScreen
 from tuisim.app.panels import PANELS
 from tuisim.guide.catalogue import pages
 from tuisim.guide.text import headings_in

@@ -6,8 +6,7 @@ import pytest
 
 from tests.app.app_help import LOGS, notices, ready, settings
 from tuisim.app.app import LabApp
-from tuisim.app.layout.arrangement import Preset
-from tuisim.app.layout.kept import KeptLayout, drop_former, load_layout, save_layout
+from tuisim.app.layout.arrangement import KeptLayout, Preset, drop_former, load_layout, save_layout
 from tuisim.app.panels import TerminalSize
 from tuisim.config.preferences import keep, preference
 

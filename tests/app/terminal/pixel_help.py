@@ -10,10 +10,9 @@ from textual.pilot import Pilot
 from tests.app.app_help import ready, until
 from tests.app.graphics.decoder import PixelTerminal
 from tests.app.wires import until_quiet, wire_of
-from tuisim.app.terminal.answers import TerminalAnswered
 from tuisim.app.terminal.cell_view import PixelView
 from tuisim.app.terminal.plot_view import PlotView
-from tuisim.app.terminal.queries import facts_in
+from tuisim.app.terminal.queries import TerminalAnswered, facts_in
 from tuisim.config.options import Protocol
 
 CELL_PX = 8, 16

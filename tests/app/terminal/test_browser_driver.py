@@ -9,9 +9,10 @@ from threading import Lock
 import pytest
 from textual.driver import Driver
 
-from tuisim.app.terminal.browser import WEB_DRIVER
 from tuisim.app.terminal.browser_driver import BrowserDriver
-from tuisim.app.terminal.terminal_app import TerminalApp, TerminalDriver
+from tuisim.app.terminal.driver import TerminalDriver
+from tuisim.app.terminal.environment import WEB_DRIVER
+from tuisim.app.terminal.terminal_app import TerminalApp
 
 CHOSEN = {
     "a server": (WEB_DRIVER, BrowserDriver),

@@ -18,8 +18,8 @@ from tuisim.app.app import LabApp
 from tuisim.app.panels.arrays import Arrays
 from tuisim.app.panels.world import WorldView
 from tuisim.app.terminal.cell_view import PixelView
+from tuisim.app.terminal.picture_mode import Sharpness
 from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, KITTY_QUESTIONS
-from tuisim.app.terminal.sharpness import Sharpness
 from tuisim.config.options import AUTO, CellSet, Protocol
 
 

@@ -26,12 +26,11 @@ from textual.widgets import Static
 
 from tests.app.app_help import ready, settings
 from tests.running import PATIENCE_S
-from tuisim.app.action import Palette
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.entries import SavedPoses
 from tuisim.app.panel_area import PanelArea
-from tuisim.app.terminal.lost_terminal import ResilientOutput
-from tuisim.app.terminal.terminal_app import TerminalApp, TerminalDriver
+from tuisim.app.terminal.driver import ResilientOutput, TerminalDriver
+from tuisim.app.terminal.terminal_app import Palette, TerminalApp
 from tuisim.core.geometry import Pose
 
 ENTER = "import fcntl, os, sys, termios; fcntl.ioctl(0, termios.TIOCSCTTY, 0); os.execv(sys.executable, sys.argv[1:])"

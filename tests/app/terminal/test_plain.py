@@ -16,8 +16,8 @@ from tests.app.wires import on_wire, until_quiet, wire_of
 from tuisim.app.app import LabApp
 from tuisim.app.render.cells import MONO
 from tuisim.app.terminal import probe
+from tuisim.app.terminal.frame_buffer import as_ascii
 from tuisim.app.terminal.picture_mode import PictureMode, color_depth, picture_mode_for
-from tuisim.app.terminal.plain import as_ascii
 from tuisim.app.terminal.probe import colors_without_asking
 from tuisim.config.options import CellSet
 

@@ -13,11 +13,10 @@ from tests.app.terminal.pixel_help import ANSWERS, answered, drawn_by, on_canvas
 from tests.app.wires import on_wire, until_quiet, wire_of
 from tuisim.app.app import LabApp
 from tuisim.app.panels.chart import Chart
-from tuisim.app.terminal.answers import TerminalAnswered
+from tuisim.app.terminal.picture_mode import Sharpness
 from tuisim.app.terminal.plot_view import PlotView
-from tuisim.app.terminal.queries import facts_in
+from tuisim.app.terminal.queries import TerminalAnswered, facts_in
 from tuisim.app.terminal.screenshot import screen_cells
-from tuisim.app.terminal.sharpness import Sharpness
 from tuisim.config.options import AUTO, CellSet, Protocol
 
 

@@ -13,9 +13,8 @@ from textual.message import Message
 
 from tuisim.app.graphics.choice import graphics_of
 from tuisim.app.graphics.picture import Graphics
-from tuisim.app.terminal import answers
-from tuisim.app.terminal.answers import AnswerParser, TerminalAnswered
-from tuisim.app.terminal.queries import TerminalFacts, cell_size_px
+from tuisim.app.terminal import queries
+from tuisim.app.terminal.queries import AnswerParser, TerminalAnswered, TerminalFacts, cell_size_px
 from tuisim.config.options import AUTO, NO_PIXELS, Protocol
 
 XTERM = "\x1bP>|XTerm(379)\x1b\\\x1b[6;14;7t\x1b[?63;1;2;4;6;9;15;22c"
@@ -43,7 +42,7 @@ def _read(*reads: tuple[float, str]) -> list[Message]:
     parser, now = AnswerParser(), 0.0
     found: list[Message] = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(answers, "monotonic", lambda: now)
+        patch.setattr(queries, "monotonic", lambda: now)
         for until, text in reads:
             while now + 0.1 < until:
                 now += 0.1

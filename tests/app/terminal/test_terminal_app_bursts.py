@@ -16,7 +16,7 @@ from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.cells import CellsCard
-from tuisim.app.terminal.answers import AnswerParser
+from tuisim.app.terminal.queries import AnswerParser
 from tuisim.app.terminal.terminal_app import TerminalApp
 
 ENTER, TAB, BACK_TAB, BACKSPACE, DELETE = "\r", "\t", "\x1b[Z", "\x7f", "\x1b[3~"

@@ -17,8 +17,8 @@ from textual.theme import BUILTIN_THEMES
 import tuisim.app
 from tests.app.app_help import LOGS, ready, settings, until
 from tests.bench.cells import lab_of
-from tuisim.app.action import Palette
 from tuisim.app.app import LabApp
+from tuisim.app.terminal.terminal_app import Palette
 from tuisim.app.terminal.themes import HIGH_CONTRAST, LIGHT, OWN_COLORS, UNUSED_THEMES, ThemeColors, contrast
 from tuisim.charts.traces import TRACE_COLORS
 

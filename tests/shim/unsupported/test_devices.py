@@ -81,7 +81,7 @@ def test_a_sensor_of_no_kind_may_be_one_that_is_not_simulated(run: Run) -> None:
     assert done.errors[-1].endswith("If it is none of the sensors of ev3dev2.sensor.lego, it is not simulated.")
 
 
-@pytest.mark.parametrize("name", [*SIMULATED, "lego-ev3"])
+@pytest.mark.parametrize("name", [*sorted(SIMULATED), "lego-ev3"])
 def test_a_simulated_driver_is_not_refused(name: str) -> None:
     assert of_driver(name) is None
 

@@ -1,1 +1,28 @@
-"""Functions behind the keys: each group of the table of keys, `table.py`, in one file."""
+"""What the keys do, one file for each group, and the table of the keys."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tuisim.app.debugger import DebugController
+    from tuisim.app.editor.document import Document
+    from tuisim.app.host import LabHost
+    from tuisim.app.lesson import LessonController
+    from tuisim.app.loader import Loader
+    from tuisim.app.panel_area import PanelArea
+    from tuisim.app.run_controller import RunController
+
+
+@dataclass(frozen=True, slots=True)
+class ActionContext:
+    """What the functions behind the keys get."""
+
+    app: LabHost
+    runs: RunController
+    panels: PanelArea
+    document: Document
+    loader: Loader
+    debugger: DebugController
+    lesson: LessonController

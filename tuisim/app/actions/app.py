@@ -2,87 +2,53 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING
 
-from tuisim.app.action import key_groups, theme_list
-from tuisim.app.actions import files, lesson
+from tuisim.app.action import key_groups
 from tuisim.app.layout.arrangement import Preset
-from tuisim.config.folders import programs_folder
+from tuisim.app.terminal.terminal_app import theme_list
 from tuisim.config.options import AUTO
-from tuisim.config.preferences import keep, preference
 from tuisim.config.user_config import CELL_SET
 
 if TYPE_CHECKING:
-    from tuisim.app.workspace import Workspace
+    from tuisim.app.actions import ActionContext
 
 
-_WELCOMED = "welcomed"
-"""Name of the preference."""
-
-
-def toggle(workspace: Workspace, panel: str) -> None:
+def toggle(context: ActionContext, panel: str) -> None:
     """Show a panel and focus it, or hide it."""
-    workspace.panel_area.toggle(panel)
-    workspace.app.situation_changed()
-    workspace.app.call_after_refresh(workspace.panel_area.attend, panel)
+    context.panels.toggle(panel)
+    context.app.situation_changed()
+    context.app.call_after_refresh(context.panels.attend, panel)
 
 
-def enlarge(workspace: Workspace) -> None:
+def enlarge(context: ActionContext) -> None:
     """Maximize the panel with the focus, or restore the layout."""
-    area = workspace.panel_area
+    area = context.panels
     panel = area.focused_panel()
     if panel or area.alone:
         area.maximize("" if area.alone else panel)
     else:
-        workspace.app.say("No panel has the focus: press tab, or click a panel")
+        context.app.say("No panel has the focus: press tab, or click a panel")
 
 
-def choose_preset(workspace: Workspace, preset: Preset) -> None:
+def choose_preset(context: ActionContext, preset: Preset) -> None:
     """Show the panels of a preset; if it is shown already, the standard ones."""
-    area = workspace.panel_area
+    area = context.panels
     shown = area.choose_preset(preset)
     if not area.shown(area.focused_panel()):
-        workspace.app.call_after_refresh(area.attend, area.front)
-    key = workspace.app.ACTIONS[f"layout-{preset}"].key_label
+        context.app.call_after_refresh(area.attend, area.front)
+    key = context.app.ACTIONS[f"layout-{preset}"].key_label
     again = "" if shown == Preset.STANDARD else f" ({key} again: standard)"
-    workspace.app.say(f"Layout: {shown}{again}")
-    workspace.app.situation_changed()
+    context.app.say(f"Layout: {shown}{again}")
+    context.app.situation_changed()
 
 
-def next_panel(workspace: Workspace, by: int) -> None:
+def next_panel(context: ActionContext, by: int) -> None:
     """Focus the next panel; where there is room for one only, show it."""
-    if panel := workspace.panel_area.next_panel(by):
-        workspace.app.situation_changed()
-        workspace.app.call_after_refresh(workspace.panel_area.attend, panel)
-
-
-EXAMPLE = "log_greys.py"
-"""The program that the welcome offers."""
-
-
-def welcome(workspace: Workspace) -> None:
-    """Show the welcome unless it has been answered before, on this or an earlier start."""
-    from tuisim.app.dialogs.welcome import Begin, Welcome
-
-    if preference(_WELCOMED):
-        return
-
-    def chosen(what: Begin | None) -> None:
-        # Without a home folder it appears again, which is no reason to fail.
-        with suppress(OSError):
-            keep(_WELCOMED, True)
-        match what:
-            case Begin.EXAMPLE:
-                files.open_path(workspace, str(programs_folder() / EXAMPLE))
-                workspace.app.start_run()
-            case Begin.LEARN:
-                lesson.menu(workspace)
-            case Begin.OPEN:
-                files.open_program(workspace)
-
-    workspace.app.push_screen(Welcome(), chosen)
+    if panel := context.panels.next_panel(by):
+        context.app.situation_changed()
+        context.app.call_after_refresh(context.panels.attend, panel)
 
 
 _START = (
@@ -99,24 +65,23 @@ _NUDGES = (
 """The ten keys that move or turn the robot, in three rows."""
 
 
-def show_help(workspace: Workspace) -> None:
+def show_help(context: ActionContext) -> None:
     """Open the guide: the page of the focused panel, or every key of the app and of the editor."""
     from tuisim.app.editor.area import EDITOR_KEYS
     from tuisim.app.guide.key_tables import EVERYWHERE
-    from tuisim.app.guide.screen import GuideScreen
-    from tuisim.app.guide.topics import TOPICS, KeyPage, Topic
+    from tuisim.app.guide.screen import TOPICS, GuideScreen, KeyPage, Topic
 
-    groups = key_groups(action for action in workspace.app.ACTIONS.values() if not action.id.startswith("nudge-"))
+    groups = key_groups(action for action in context.app.ACTIONS.values() if not action.id.startswith("nudge-"))
     groups["Robot"] += _NUDGES
-    keys = KeyPage("All keys", workspace.app.with_keys(_START), {**groups, "In the code": EDITOR_KEYS, "": EVERYWHERE})
-    workspace.app.push_screen(GuideScreen(keys, TOPICS.get(workspace.panel_area.focused_panel(), Topic())))
+    keys = KeyPage("All keys", context.app.with_keys(_START), {**groups, "In the code": EDITOR_KEYS, "": EVERYWHERE})
+    context.app.push_screen(GuideScreen(keys, TOPICS.get(context.panels.focused_panel(), Topic())))
 
 
-def choose_cells(workspace: Workspace) -> None:
+def choose_cells(context: ActionContext) -> None:
     """Show the test card, and draw the world with the glyphs that are chosen."""
     from tuisim.app.dialogs.cells import CellsCard
 
-    app = workspace.app
+    app = context.app
 
     def chosen(name: str | None) -> None:
         if name is not None:
@@ -126,49 +91,29 @@ def choose_cells(workspace: Workspace) -> None:
     app.push_screen(CellsCard(app.picture_mode.chosen, app.picture_mode.best), chosen)
 
 
-def open_settings(workspace: Workspace) -> None:
+def open_settings(context: ActionContext) -> None:
     """Open the settings screen."""
     from tuisim.app.dialogs.settings import SettingsScreen
     from tuisim.app.setup.user_settings import change
     from tuisim.app.terminal.themes import theme_names
 
-    workspace.app.push_screen(SettingsScreen(partial(change, workspace), theme_names()))
+    context.app.push_screen(SettingsScreen(partial(change, context), theme_names()))
 
 
-def choose_theme(workspace: Workspace) -> None:
+def choose_theme(context: ActionContext) -> None:
     """Show the themes."""
-    workspace.app.push_screen(theme_list())
+    context.app.push_screen(theme_list())
 
 
-def switch_pixels(workspace: Workspace) -> None:
-    """Draw pictures with characters in place of pixels, or again with pixels."""
-    workspace.app.action_switch_pixels()
-
-
-def redraw(workspace: Workspace) -> None:
-    """Redraw the whole screen."""
-    workspace.app.action_redraw()
-
-
-def screenshot(workspace: Workspace) -> None:
-    """Save the whole screen as SVG and PNG."""
-    workspace.app.action_save_screen()
-
-
-def suspend(workspace: Workspace) -> None:
-    """Suspend the app as a shell job; a live run is paused first."""
-    workspace.app.action_suspend_process()
-
-
-def leave(workspace: Workspace) -> None:
+def leave(context: ActionContext) -> None:
     """Quit; with unsaved changes or a running program, ask first."""
-    workspace.document.when_safe(lambda: _leave(workspace))
+    context.document.when_safe(lambda: _leave(context))
 
 
-def _leave(workspace: Workspace) -> None:
-    if not workspace.run_controller.in_run:
-        workspace.app.exit()
+def _leave(context: ActionContext) -> None:
+    if not context.runs.in_run:
+        context.app.exit()
         return
     from tuisim.app.dialogs.question import LeaveQuestion
 
-    workspace.app.push_screen(LeaveQuestion(), lambda yes: workspace.app.exit() if yes else None)
+    context.app.push_screen(LeaveQuestion(), lambda yes: context.app.exit() if yes else None)

@@ -6,25 +6,25 @@ footer, help and command palette follow from the line.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import lru_cache, partial
 from typing import TypeAlias
 
 from tuisim.app.action import Action
-from tuisim.app.actions import app, files, lesson, program, robot, time_travel
+from tuisim.app.actions import ActionContext, app, files, lesson, program, robot, time_travel
 from tuisim.app.actions.files import analyse
+from tuisim.app.host import LabHost
 from tuisim.app.layout.arrangement import Preset
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import IN_RUN, RunPhase, Situation
-from tuisim.app.workspace import Workspace
 from tuisim.protocol import LineStep
 
 PROGRAM, DEBUG, TIME, ROBOT, PANEL = "Program", "Debugging", "Time", "Robot", "Panels"
 FILES, LESSON, APP = "Files", "Lesson", "App"
 
 
-LabAction: TypeAlias = Action[Workspace, Situation]
+LabAction: TypeAlias = Action[ActionContext, Situation]
 """One line of `ACTIONS`."""
 
 
@@ -74,6 +74,11 @@ def _can_export(now: Situation) -> str:
 
 def _can_draw_pixels(now: Situation) -> str:
     return "" if now.has_pixels else "This terminal draws no pixels, as far as it tells"
+
+
+def _app(do: Callable[[LabHost], None]) -> Callable[[ActionContext], None]:
+    """Return what runs a method of the app."""
+    return lambda lab: do(lab.app)
 
 
 def _nudge(key: str, words: str, forward: tuple[float, float]) -> LabAction:
@@ -128,14 +133,18 @@ def _can_debug(now: Situation) -> str:
     return "" if now.has_program or now.has_run else "No program yet: {open} opens one"
 
 
+_BREAK = "Breakpoint on the current line, or the cursor's"
+
+
 def _debugs() -> list[LabAction]:
     can = _can_debug
-    over, into, out = (partial(program.step, how=how) for how in (LineStep.OVER, LineStep.INTO, LineStep.OUT))
+    over, into, out = LineStep.OVER, LineStep.INTO, LineStep.OUT
+    line_back = "N", "Step back one line", DEBUG
     return [
-        Action("next-line", "n", "Step over: next line", DEBUG, over, can, "next"),
-        Action("step-into", "s", "Step into a function call", DEBUG, into, can, "into"),
-        Action("step-out", "u", "Step out of this function", DEBUG, out, can, "out"),
-        Action("line-back", "N", "Step back one line", DEBUG, program.line_back, _can_look_back, "line back"),
+        Action("next-line", "n", "Step over: next line", DEBUG, lambda lab: lab.debugger.step(over), can, "next"),
+        Action("step-into", "s", "Step into a function call", DEBUG, lambda lab: lab.debugger.step(into), can, "into"),
+        Action("step-out", "u", "Step out of this function", DEBUG, lambda lab: lab.debugger.step(out), can, "out"),
+        Action("line-back", *line_back, lambda lab: lab.debugger.lines_back(1), _can_look_back, "line back"),
         Action(
             "break", "t", "Breakpoint on the current line, or the cursor's", DEBUG, program.toggle_break, can, "break"
         ),
@@ -149,7 +158,7 @@ def _travels() -> list[LabAction]:
     back, on = _can_look_back, _can_look_on
     keys = "< >"
     go = time_travel
-    second_back, second_on = (partial(go.seconds, by=by) for by in (-1, 1))
+    second_back, second_on = (partial(go.by_seconds, by=by) for by in (-1, 1))
     sample_before, next_sample = (partial(go.to_sample, words=words) for words in ("sample back", "sample"))
     return [
         Action("ten-ticks", "colon", "Ten ticks forward, while paused", TIME, go.ten_ticks, _can_step),
@@ -159,8 +168,8 @@ def _travels() -> list[LabAction]:
         Action("sample-before", "left_parenthesis", "Previous sample", TIME, sample_before, back),
         Action("next-sample", "right_parenthesis", "Next sample", TIME, next_sample, on),
         Action("go-to", "g", "Go to a time, tick, line, sample or print", TIME, go.ask_where, back, "go to"),
-        Action("branch", "y", "Branch from this instant", TIME, go.branch_here, _can_branch, "branch"),
-        Action("start-of-run", "home", "Start of the run", TIME, go.to_start, back),
+        Action("branch", "y", "Branch from this instant", TIME, go.propose_branch, _can_branch, "branch"),
+        Action("start-of-run", "home", "Start of the run", TIME, partial(go.to_tick, tick=0), back),
     ]
 
 
@@ -169,6 +178,8 @@ def _scroll(name: str, key: str, where: str, by: int) -> LabAction:
 
 
 _SCREENSHOT = "Save a screenshot: SVG and PNG (also F12)"
+_PIXELS = _app(LabHost.action_switch_pixels)
+_TICK_BACK = partial(time_travel.by_ticks, ticks=-1)
 _SLOWER, _FASTER = (partial(program.change_speed, by=by) for by in (-1, 1))
 
 # The footer shows the actions in this order, as far as they fit; `help` and `quit` always.
@@ -176,10 +187,10 @@ ACTIONS: Mapping[str, LabAction] = {
     action.id: action
     for action in (
         Action("run", "R", "Run the program", PROGRAM, program.run, _can_run, "run"),
-        Action("stop", "S", "Stop the program", PROGRAM, program.stop, _can_stop, "stop"),
+        Action("stop", "S", "Stop the program", PROGRAM, lambda lab: lab.runs.stop(), _can_stop, "stop"),
         Action("pause", "space", "Pause or resume; play back the past", PROGRAM, program.pause, _can_pause, "pause"),
         Action("tick", "full_stop", "One tick forward, while paused", TIME, time_travel.tick_on, _can_step, "tick"),
-        Action("back", "comma", "One tick back", TIME, time_travel.tick_back, _can_look_back, "back"),
+        Action("back", "comma", "One tick back", TIME, _TICK_BACK, _can_look_back, "back"),
         *_debugs(),
         *_travels(),
         Action("open", "o", "Open a program, a world or goals", FILES, files.open_program, _can_change_world, "open"),
@@ -206,14 +217,14 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("save-obstacles", "ctrl+o", "Save the obstacles to a file", FILES, files.save_obstacles),
         Action("zoom", "v", "Zoom the world", ROBOT, robot.zoom, footer="zoom"),
         Action("rays", "U", "Show or hide the ultrasonic rays", ROBOT, robot.rays, footer="rays"),
-        Action("pixels", "number_sign", "Characters or pixels", APP, app.switch_pixels, _can_draw_pixels, "cells"),
+        Action("pixels", "number_sign", "Characters or pixels", APP, _PIXELS, _can_draw_pixels, "cells"),
         Action("clear", "C", "Clear the pen trace", ROBOT, robot.clear_trace, footer="clear"),
         Action("clear-log", "x", "Clear output and chart; the run keeps its log", FILES, files.clear_log),
         *_toggles(),
         *_layouts(),
         Action("lesson-menu", "M", "Lessons: open, go back, skip, start over", LESSON, lesson.menu, _can_change_world),
         Action("answer", "Q", "Answer the question of the lesson", LESSON, lesson.answer),
-        Action("hint", "Y", "Next hint of the lesson", LESSON, lesson.hint),
+        Action("hint", "Y", "Next hint of the lesson", LESSON, lambda lab: lab.lesson.hint()),
         _scroll("lesson-up", "pageup", "or the code: up", -8),
         _scroll("lesson-down", "pagedown", "or the code: down", 8),
         _scroll("lesson-back", "ctrl+up", "also while you type: up", -4),
@@ -224,9 +235,9 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("cells", "V", "Glyphs of the world: choose by eye", APP, app.choose_cells),
         Action("theme", "f10", "Theme: light, high contrast and others", APP, app.choose_theme),
         Action("settings", "asterisk", "Settings: your own defaults", APP, app.open_settings),
-        Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, app.redraw),
-        Action("screenshot", "I,f12", _SCREENSHOT, APP, app.screenshot, shown_key="I"),
-        Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, app.suspend),
+        Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, _app(LabHost.action_redraw)),
+        Action("screenshot", "I,f12", _SCREENSHOT, APP, _app(LabHost.action_save_screen), shown_key="I"),
+        Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, _app(LabHost.action_suspend_process)),
         Action("quit", "q", "Quit", APP, app.leave, footer="quit"),
     )
 }

@@ -11,78 +11,78 @@ from tuisim.core.geometry import Pose
 from tuisim.errors import TuisimError
 
 if TYPE_CHECKING:
+    from tuisim.app.actions import ActionContext
     from tuisim.app.panels.world import World
-    from tuisim.app.workspace import Workspace
 
 
-def pen(workspace: Workspace) -> None:
+def pen(context: ActionContext) -> None:
     """Put the pen up or down."""
-    runs = workspace.run_controller
+    runs = context.runs
     runs.set_pen(not runs.pen_down)
     if not runs.in_past:
         kind = runs.spec.robot.pen
-        workspace.app.say(f"Pen down: {kind.color}, {kind.width_mm:g} mm" if runs.pen_down else "Pen up")
+        context.app.say(f"Pen down: {kind.color}, {kind.width_mm:g} mm" if runs.pen_down else "Pen up")
 
 
-def home(workspace: Workspace) -> None:
+def home(context: ActionContext) -> None:
     """Put the robot back to the start pose of the mat or the command line."""
-    workspace.run_controller.place(workspace.run_controller.home)
+    context.runs.place(context.runs.home)
 
 
-def nudge(workspace: Workspace, right_mm: float, up_mm: float, turn_deg: float) -> None:
+def nudge(context: ActionContext, right_mm: float, up_mm: float, turn_deg: float) -> None:
     """Move the robot a little."""
-    pose = workspace.run_controller.pose
-    workspace.run_controller.place(Pose(pose.x_mm + right_mm, pose.y_mm + up_mm, pose.heading_deg + turn_deg))
+    pose = context.runs.pose
+    context.runs.place(Pose(pose.x_mm + right_mm, pose.y_mm + up_mm, pose.heading_deg + turn_deg))
 
 
-def clear_trace(workspace: Workspace) -> None:
+def clear_trace(context: ActionContext) -> None:
     """Clear the pen trace."""
-    if world := world_panel(workspace):
+    if world := world_panel(context):
         world.clear_trace()
-        workspace.app.draw(force=True)
+        context.app.draw(force=True)
 
 
-def random_place(workspace: Workspace) -> None:
+def random_place(context: ActionContext) -> None:
     """Put the robot at a random place on the field."""
 
     from tuisim.app.setup.poses import random_pose
 
-    if pose := random_pose(workspace.run_controller.spec, Random()):
-        workspace.run_controller.place(pose)
+    if pose := random_pose(context.runs.spec, Random()):
+        context.runs.place(pose)
     else:
-        workspace.app.say("No free position found: there are too many obstacles, or the robot is too large")
+        context.app.say("No free position found: there are too many obstacles, or the robot is too large")
 
 
-def saved_poses(workspace: Workspace) -> None:
+def saved_poses(context: ActionContext) -> None:
     """Show the dialog of the saved poses."""
     from tuisim.app.dialogs.entries import SavedPoses
 
     def go(pose: Pose | None) -> None:
         if pose:
-            workspace.run_controller.place(pose)
+            context.runs.place(pose)
 
-    workspace.app.push_screen(SavedPoses(workspace.run_controller.pose), go)
+    context.app.push_screen(SavedPoses(context.runs.pose), go)
 
 
-def choose_mat(workspace: Workspace) -> None:
+def choose_mat(context: ActionContext) -> None:
     """Ask for a mat and set it."""
     from tuisim.app.dialogs.chooser import MatPicker
 
-    folder = workspace.run_controller.next_run.settings["mats"]
+    folder = context.runs.next_run.settings["mats"]
     try:
         known = mats(folder)
     except TuisimError as error:
-        workspace.app.complain(error)
+        context.app.complain(error)
         return
 
     def lay(name: str | None) -> None:
         if name:
-            workspace.loader.change_mat(name)
+            context.loader.change_mat(name)
 
-    workspace.app.push_screen(MatPicker(workspace.run_controller.spec.world.background, known, folder), lay)
+    context.app.push_screen(MatPicker(context.runs.spec.world.background, known, folder), lay)
 
 
-def choose(workspace: Workspace, what: str) -> None:
+def choose(context: ActionContext, what: str) -> None:
     """Ask for a robot, a profile or a set of obstacles, and apply the choice to the plan."""
     from tuisim.app.dialogs.chooser import OF_PROGRAM, obstacle_chooser, profile_chooser, robot_chooser
 
@@ -94,38 +94,38 @@ def choose(workspace: Workspace, what: str) -> None:
 
     def chosen(word: str | None) -> None:
         if word == OF_PROGRAM:
-            workspace.loader.attempt(plans.with_program_robot)
+            context.loader.attempt(plans.with_program_robot)
         elif word:
-            workspace.loader.attempt(lambda plan: change(plan, word))
+            context.loader.attempt(lambda plan: change(plan, word))
 
-    workspace.app.push_screen(chooser(workspace.run_controller.next_run), chosen)
+    context.app.push_screen(chooser(context.runs.next_run), chosen)
 
 
-def reset_robot(workspace: Workspace) -> None:
+def reset_robot(context: ActionContext) -> None:
     """Undo the edits of the robot."""
-    if workspace.run_controller.next_run.robot_is_edited:
-        workspace.loader.attempt(plans.with_robot_as_chosen)
+    if context.runs.next_run.robot_is_edited:
+        context.loader.attempt(plans.with_robot_as_chosen)
     else:
-        workspace.app.say("The robot has no changes to undo")
+        context.app.say("The robot has no changes to undo")
 
 
-def zoom(workspace: Workspace) -> None:
+def zoom(context: ActionContext) -> None:
     """Switch the world to the next zoom."""
-    if world := world_panel(workspace):
+    if world := world_panel(context):
         world.cycle_zoom()
-        workspace.app.draw(force=True)
+        context.app.draw(force=True)
 
 
-def world_panel(workspace: Workspace) -> World | None:
+def world_panel(context: ActionContext) -> World | None:
     """Return the world panel; None, with a notice, if it is hidden."""
-    if workspace.panel_area.shown("world"):
-        return workspace.panel_area.world
-    workspace.app.say("The world is hidden: {panel-world} shows it")
+    if context.panels.shown("world"):
+        return context.panels.world
+    context.app.say("The world is hidden: {panel-world} shows it")
     return None
 
 
-def rays(workspace: Workspace) -> None:
+def rays(context: ActionContext) -> None:
     """Switch the ultrasonic rays on or off."""
-    if world := world_panel(workspace):
+    if world := world_panel(context):
         world.show_rays = not world.show_rays
-        workspace.app.draw(force=True)
+        context.app.draw(force=True)

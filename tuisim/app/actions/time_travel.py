@@ -14,152 +14,143 @@ from tuisim.core.sensors import column_names
 from tuisim.errors import TuisimError
 
 if TYPE_CHECKING:
-    from tuisim.app.workspace import Workspace
+    from tuisim.app.actions import ActionContext
     from tuisim.runs.recorded_run import Recording
 
 MANY_TICKS = 10
 """Ticks that `:` runs."""
 
 
-def to_tick(workspace: Workspace, tick: int | None) -> None:
+def to_tick(context: ActionContext, tick: int | None) -> None:
     """Go to a tick of the run; None and ticks beyond the newest mean now. A running program is paused first."""
-    recording = workspace.run_controller.timeline.recording
-    if recording is None or (tick is not None and not _is_laid_out(workspace, recording)):
+    recording = context.runs.timeline.recording
+    if recording is None or (tick is not None and not _is_laid_out(context, recording)):
         return
     if tick is not None:
-        workspace.run_controller.pause()
+        context.runs.pause()
     else:
-        workspace.debugger.to_now()
-    workspace.run_controller.timeline.go(tick)
-    refresh(workspace)
+        context.debugger.to_now()
+    context.runs.timeline.go(tick)
+    refresh(context)
 
 
-def _is_laid_out(workspace: Workspace, recording: Recording) -> bool:
+def _is_laid_out(context: ActionContext, recording: Recording) -> bool:
     """Return whether the current mat is that of the run; if not, say so."""
-    mat = workspace.run_controller.mat
+    mat = context.runs.mat
     if mat is not None and mat.key[:2] == mat_key(recording.spec)[:2]:
         return True
-    workspace.app.say(f"The mat has changed since this run: {{runs}} opens {recording.name} with its mat")
+    context.app.say(f"The mat has changed since this run: {{runs}} opens {recording.name} with its mat")
     return False
 
 
-def refresh(workspace: Workspace) -> None:
+def refresh(context: ActionContext) -> None:
     """Show another instant: redraw the panels and the footer."""
-    workspace.app.situation_changed()
-    workspace.app.draw(force=True)
+    context.app.situation_changed()
+    context.app.draw(force=True)
 
 
-def to_time(workspace: Workspace, time_s: float | None) -> None:
+def to_time(context: ActionContext, time_s: float | None) -> None:
     """Go to a time of the run, None for now."""
-    to_tick(workspace, None if time_s is None else round(time_s * workspace.run_controller.timeline.tick_hz))
+    to_tick(context, None if time_s is None else round(time_s * context.runs.timeline.tick_hz))
 
 
-def _by(workspace: Workspace, ticks: int) -> None:
-    timeline = workspace.run_controller.timeline
+def by_ticks(context: ActionContext, ticks: int) -> None:
+    """Go forward by a number of ticks of the recording; negative goes back."""
+    timeline = context.runs.timeline
     at = timeline.tick
     if ticks < 0 and at <= 0:
-        workspace.app.say("This is the start of the run")
+        context.app.say("This is the start of the run")
         return
-    to_tick(workspace, at + ticks if at + ticks < timeline.newest else None)
+    to_tick(context, at + ticks if at + ticks < timeline.newest else None)
 
 
-def tick_back(workspace: Workspace) -> None:
-    """Go back one tick."""
-    _by(workspace, -1)
-
-
-def tick_on(workspace: Workspace) -> None:
+def tick_on(context: ActionContext) -> None:
     """Go forward one tick: as recorded in the past, else live; from an earlier line of the newest tick, go to now."""
-    if workspace.run_controller.in_past:
-        _by(workspace, 1)
-    elif workspace.debugger.is_away:
-        to_now(workspace)
+    if context.runs.in_past:
+        by_ticks(context, 1)
+    elif context.debugger.is_away:
+        to_now(context)
     else:
-        workspace.run_controller.step()
+        context.runs.send(protocol.StepTicks(1))
 
 
-def ten_ticks(workspace: Workspace) -> None:
+def ten_ticks(context: ActionContext) -> None:
     """Run ten ticks."""
-    timeline = workspace.run_controller.timeline
-    if workspace.run_controller.in_past:
+    timeline = context.runs.timeline
+    if context.runs.in_past:
         at = timeline.at or 0
-        to_tick(workspace, at + MANY_TICKS if at + MANY_TICKS < timeline.newest else None)
-    elif workspace.debugger.is_away:
-        to_now(workspace)
+        to_tick(context, at + MANY_TICKS if at + MANY_TICKS < timeline.newest else None)
+    elif context.debugger.is_away:
+        to_now(context)
     else:
-        workspace.run_controller.debug(protocol.StepTicks(MANY_TICKS))
+        context.runs.send(protocol.StepTicks(MANY_TICKS))
 
 
-def seconds(workspace: Workspace, by: int) -> None:
+def by_seconds(context: ActionContext, by: int) -> None:
     """Go forward by a number of seconds of the recording; negative goes back."""
-    _by(workspace, by * workspace.run_controller.timeline.tick_hz)
+    by_ticks(context, by * context.runs.timeline.tick_hz)
 
 
-def to_start(workspace: Workspace) -> None:
-    """Go to the first instant of the run."""
-    to_tick(workspace, 0)
-
-
-def to_now(workspace: Workspace) -> None:
+def to_now(context: ActionContext) -> None:
     """Go to the newest instant."""
-    to_tick(workspace, None)
+    to_tick(context, None)
 
 
-def stop_time(workspace: Workspace) -> None:
+def stop_time(context: ActionContext) -> None:
     """Stop playback, and pause a running program."""
-    workspace.run_controller.timeline.stop_playback()
-    workspace.run_controller.pause()
+    context.runs.timeline.stop_playback()
+    context.runs.pause()
 
 
-def advance_playback(workspace: Workspace) -> None:
+def advance_playback(context: ActionContext) -> None:
     """Continue playback; a paused run that has been played to its newest instant resumes automatically."""
-    if workspace.run_controller.timeline.advance_playback(time.monotonic(), workspace.run_controller.speed):
-        if workspace.run_controller.state == RunPhase.PAUSED:
-            workspace.run_controller.resume()
-        elif workspace.run_controller.state == RunPhase.ENDED:
-            workspace.app.say("Playback has reached the end of the recording")
-        refresh(workspace)
+    if context.runs.timeline.advance_playback(time.monotonic(), context.runs.speed):
+        if context.runs.state == RunPhase.PAUSED:
+            context.runs.send(protocol.Resume())
+        elif context.runs.state == RunPhase.ENDED:
+            context.app.say("Playback has reached the end of the recording")
+        refresh(context)
 
 
-def ask_where(workspace: Workspace) -> None:
+def ask_where(context: ActionContext) -> None:
     """Ask for an instant and go there."""
     from tuisim.app.dialogs.question import LinePrompt
 
-    timeline = workspace.run_controller.timeline
+    timeline = context.runs.timeline
 
     def go(text: str) -> None:
-        mat = workspace.run_controller.mat
-        to_tick(workspace, find(text, timeline, mat.field if mat is not None else None))
+        mat = context.runs.mat
+        to_tick(context, find(text, timeline, mat.field if mat is not None else None))
 
-    words = column_names(workspace.run_controller.spec.robot)
+    words = column_names(context.runs.spec.robot)
     now = f"now at {timeline.time_s:.2f} s"
-    workspace.app.push_screen(LinePrompt("Go to", go, forms=forms(timeline), words=words, placeholder=now))
+    context.app.push_screen(LinePrompt("Go to", go, forms=forms(timeline), words=words, placeholder=now))
 
 
-def to_sample(workspace: Workspace, words: str) -> None:
+def to_sample(context: ActionContext, words: str) -> None:
     """Go to a sample: words that `find` understands."""
     try:
-        to_tick(workspace, find(words, workspace.run_controller.timeline))
+        to_tick(context, find(words, context.runs.timeline))
     except TuisimError as error:
-        workspace.app.say(error.message)
+        context.app.say(error.message)
 
 
-def propose_branch(workspace: Workspace, then: protocol.Message | None, restart: bool = False) -> None:
+def propose_branch(context: ActionContext, then: protocol.Message | None = None, restart: bool = False) -> None:
     """Ask whether to branch from the instant in view.
 
     Args:
-        workspace: The parts of the app.
-        then: The user's action there.
+        context: The parts of the app.
+        then: The user's action there; None to change nothing but perhaps the program.
         restart: Whether the dialog also offers to run the program from its start.
     """
     from tuisim.app.dialogs.question import BRANCH, RESTART, BranchQuestion
 
-    run_controller = workspace.run_controller
+    run_controller = context.runs
     timeline = run_controller.timeline
     recording, tick = timeline.recording, timeline.at
-    if isinstance(workspace.panel_area.app.screen, BranchQuestion):
+    if isinstance(context.panels.app.screen, BranchQuestion):
         return
-    if recording is None or tick is None or not workspace.document.apply():
+    if recording is None or tick is None or not context.document.apply():
         return
     if (program := run_controller.program) is None:
         return
@@ -168,28 +159,23 @@ def propose_branch(workspace: Workspace, then: protocol.Message | None, restart:
 
     def answered(answer: str | None) -> None:
         if answer == BRANCH:
-            _branch(workspace, branch)
+            _branch(context, branch)
         elif answer == RESTART:
             run_controller.stop_now()
-            workspace.app.start_run()
+            context.app.start_run()
         else:
             # Panels that showed the requested change show the past again.
-            workspace.app.draw(force=True)
+            context.app.draw(force=True)
 
     question = BranchQuestion(branch, action_words(then), run_controller.in_run, restart)
-    workspace.app.push_screen(question, answered)
+    context.app.push_screen(question, answered)
 
 
-def _branch(workspace: Workspace, branch: Branch) -> None:
+def _branch(context: ActionContext, branch: Branch) -> None:
     try:
-        workspace.run_controller.branch(branch)
+        context.runs.branch(branch)
     except TuisimError as error:
-        workspace.app.complain(error)
+        context.app.complain(error)
         return
-    workspace.app.run_changed()
-    workspace.app.draw(force=True)
-
-
-def branch_here(workspace: Workspace) -> None:
-    """Branch from the instant in view, changing nothing but perhaps the program."""
-    propose_branch(workspace, None)
+    context.app.run_changed()
+    context.app.draw(force=True)

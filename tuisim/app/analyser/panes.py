@@ -21,7 +21,7 @@ from tuisim.analysis.table import AT_ONCE
 from tuisim.app import background
 from tuisim.app.snapshot import end_label
 from tuisim.app.terminal.cell_view import LinesPanel
-from tuisim.charts.text_runs import Line, cut
+from tuisim.charts.text_runs import Line, cut, first_shown
 from tuisim.errors import TuisimError, counted
 from tuisim.logs.bands import Band
 from tuisim.logs.plateaus import plateaus_in_subprocess
@@ -266,11 +266,6 @@ def _fitting_whole(columns: Sequence[int], widths: Sequence[int], width: int) ->
         left -= widths[at] + 2
         seen.append(at)
     return seen
-
-
-def first_shown(chosen: int, count: int, room: int) -> int:
-    """Return the first row shown, so that the selected one is near the middle."""
-    return min(max(chosen - room // 2, 0), max(count - room, 0))
 
 
 def _row(texts: Sequence[str], widths: Sequence[int], style: Style) -> Line:

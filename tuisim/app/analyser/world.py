@@ -14,14 +14,13 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 
 from tuisim.app import background
-from tuisim.app.analyser.panes import first_shown
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.arrays import Arrays
 from tuisim.app.panels.world import WorldView
 from tuisim.app.setup.mat import Mat, blank_mat, prepare_mat, prepare_mat_of
-from tuisim.app.snapshot import RunPhase, Snapshot, snapshot_of
+from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesView
-from tuisim.charts.text_runs import Run
+from tuisim.charts.text_runs import Run, first_shown
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
@@ -95,8 +94,7 @@ class WorldAt:
         return self._snapshot(instant, self.mat.field, int(line or 0), False)
 
     def _snapshot(self, instant: Instant, field: Field | None, line: int, pen_down: bool) -> Snapshot:
-        ended = RunPhase.ENDED
-        return snapshot_of(instant, self.spec, field, state=ended, end=None, line=line, speed=1.0, pen_down=pen_down)
+        return Snapshot(RunPhase.ENDED, None, self.spec, field, instant, line, speed=1.0, pen_down=pen_down)
 
 
 def has_poses(opened: OpenedLog) -> bool:

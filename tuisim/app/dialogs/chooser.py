@@ -19,7 +19,6 @@ from tuisim.app import background
 from tuisim.app.dialogs.dialog import Dialog, name_and_title
 from tuisim.app.dialogs.save import typed_path
 from tuisim.app.render.mat import Pixels, shrink, whole_field
-from tuisim.app.setup.next_run import NextRun
 from tuisim.app.terminal.cell_view import PixelView
 from tuisim.config.mat_image import decode, read_file
 from tuisim.config.mats import find_mat, spec_name
@@ -32,6 +31,7 @@ from tuisim.errors import TuisimError
 from tuisim.logs.export import is_companion
 
 if TYPE_CHECKING:
+    from tuisim.app.setup.next_run import NextRun
     from tuisim.config.mats import Background
 
 MAX_FILES = 200

@@ -23,7 +23,7 @@ from textual.widgets import Static
 
 from tuisim.app import background
 from tuisim.app.background import Made
-from tuisim.app.terminal.strips import JoinedStrip, LazyStrip
+from tuisim.app.terminal.cell_view import JoinedStrip, LazyStrip
 from tuisim.errors import TuisimError
 
 Result = TypeVar("Result")

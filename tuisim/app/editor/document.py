@@ -23,10 +23,10 @@ from tuisim.source import source_lines
 
 if TYPE_CHECKING:
     from tuisim.app.editor.syntax import Mistake
+    from tuisim.app.host import LabHost
     from tuisim.app.loader import Loader
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.run_controller import RunController
-    from tuisim.app.services import AppServices
     from tuisim.runs.recorded_run import Recording
     from tuisim.source import Program
 
@@ -52,7 +52,7 @@ class Document:
         loader: Gets the edited text.
     """
 
-    def __init__(self, app: AppServices, run_controller: RunController, panel_area: PanelArea, loader: Loader) -> None:
+    def __init__(self, app: LabHost, run_controller: RunController, panel_area: PanelArea, loader: Loader) -> None:
         self._app, self._run_controller, self._panel_area, self._loader = app, run_controller, panel_area, loader
         self._program: Program | None = None
         """The next program to run unless the text was edited."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar, TypeAlias
 
@@ -15,13 +16,55 @@ from textual.widgets import Input, Static, Tree
 from textual.widgets.tree import TreeNode
 
 from tuisim.app import background
-from tuisim.app.action import key_table
+from tuisim.app.action import KeyWord, key_table
 from tuisim.app.dialogs.dialog import Dialog
-from tuisim.app.guide.topics import KeyPage, Topic
 from tuisim.charts.text_runs import Line
 from tuisim.guide.catalogue import CONTENTS, pages
 from tuisim.guide.search import SearchResult, search
 from tuisim.guide.text import NO_WORDS, headings_in, linked_names, page_lines
+
+
+@dataclass(frozen=True, slots=True)
+class KeyPage:
+    """The first page of the guide: how to start, and every key."""
+
+    title: str
+    start: str
+    groups: Mapping[str, Iterable[KeyWord]]
+    """The keys by the name of their group."""
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """What belongs to a panel."""
+
+    page: str = ""
+    """Empty for the page with every key."""
+    groups: tuple[str, ...] = ()
+    """The groups of keys that stand above the page."""
+
+
+_TIME = ("Program", "Time")
+
+TOPICS: Mapping[str, Topic] = {
+    "world": Topic(),
+    "lesson": Topic("lessons", ("Lesson",)),
+    "instrumentation": Topic("how-sensors-see"),
+    "output": Topic("writing-programs", ("Program",)),
+    "arrays": Topic("how-sensors-see"),
+    "code": Topic("writing-programs", ("In the code", "Program")),
+    "chart": Topic("measuring-bands", _TIME),
+    "controls": Topic("virtual-time", ("Program",)),
+    "positioning": Topic("motion-and-drift", ("Robot",)),
+    "noise": Topic("how-sensors-see"),
+    "debug": Topic("stepping", ("Debugging",)),
+    "brick": Topic("the-brick"),
+    "obstacles": Topic("world-files", ("Robot",)),
+    "goals": Topic("goal-files"),
+    "settings": Topic("options"),
+}
+"""The topics by id of the panel."""
+
 
 _SIDE_BY_SIDE, _PREVIEW = 100, 66
 """Columns from which the contents stay beside a page that is being read, and from which a page is shown beside them."""

@@ -12,10 +12,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from importlib import import_module
-from typing import Protocol, cast, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
 
-from tuisim.app.setup.next_run import NextRun
-from tuisim.app.snapshot import Snapshot
+if TYPE_CHECKING:
+    from tuisim.app.setup.next_run import NextRun
+    from tuisim.app.snapshot import Snapshot
 
 
 class TerminalSize(StrEnum):

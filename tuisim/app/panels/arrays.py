@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from rich.style import Style
 from textual.app import ComposeResult
 from textual.widget import Widget
 
 from tuisim.app.render.mat import CORNER_16_RGB, FULL_PX, DiscLayout, draw_discs, lay_out
-from tuisim.app.snapshot import Snapshot
 from tuisim.app.terminal.cell_view import LinesView, PixelView
 from tuisim.app.terminal.pacer import Throttle
 from tuisim.charts.text_runs import cut
 from tuisim.charts.world_image import CORNER_RGB
 from tuisim.core.sensors.color import pixel_array
+
+if TYPE_CHECKING:
+    from tuisim.app.snapshot import Snapshot
 
 _PERIOD_S = 0.25
 """All pixels of both discs may change at once: a shorter period would saturate a slow link."""

@@ -97,7 +97,8 @@ class Chart(LinesPanel, can_focus=True):
 
     def _changed(self) -> None:
         self._dirty = True
-        self._throttle.ask()
+        if self.display:
+            self._throttle.ask()
 
     def _draw(self) -> None:
         if not self.display or not self._text.size or not self._dirty:

@@ -11,7 +11,7 @@ from textual.message import Message
 
 from tuisim.app.panels import PANELS
 from tuisim.app.render.debug import DebugView, debug_lines
-from tuisim.app.snapshot import DebugState, RunPhase, Snapshot
+from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
 from tuisim.app.terminal.cell_view import LinesPanel
 from tuisim.charts.text_runs import Line
 
@@ -67,14 +67,18 @@ class Debug(LinesPanel, can_focus=True):
             self._redraw()
         self._now = now
 
-    def show_pause(self, state: DebugState) -> None:
-        """Show where the program is paused."""
-        view = state.view
+    def show_pause(self, view: PauseView | None, is_busy: bool) -> None:
+        """Show where the program is paused; None while it runs, or before it is first paused.
+
+        Args:
+            view: The place.
+            is_busy: Whether a past instant is still being computed.
+        """
         if view is None:
-            self._content = DebugView(busy=state.busy)
+            self._content = DebugView(busy=is_busy)
         else:
             source = _line_of(view.paused)
-            self._content = DebugView(self._state, view.paused, view.inspected, view.past, state.busy, source)
+            self._content = DebugView(self._state, view.paused, view.inspected, view.past, is_busy, source)
         self._redraw()
 
     def _redraw(self) -> None:

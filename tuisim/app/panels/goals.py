@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from textual import events
 from textual.binding import Binding, BindingType
 
 from tuisim.app.panels import PANELS
 from tuisim.app.render.goals import GoalsPicture, GoalsView, current_goal, draw_goals
-from tuisim.app.snapshot import Snapshot
 from tuisim.app.terminal.cell_view import LinesPanel
+
+if TYPE_CHECKING:
+    from tuisim.app.snapshot import Snapshot
 
 _TITLE = PANELS["goals"].title
 

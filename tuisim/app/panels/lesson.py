@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from textual.binding import Binding, BindingType
 
 from tuisim.app.action import with_keys_of
 from tuisim.app.panels import PANELS
 from tuisim.app.render.lesson import Away, LessonPicture, LessonView, draw_lesson
-from tuisim.app.snapshot import Snapshot
 from tuisim.app.terminal.cell_view import LinesPanel
+
+if TYPE_CHECKING:
+    from tuisim.app.snapshot import Snapshot
 
 _TITLE = PANELS["lesson"].title
 

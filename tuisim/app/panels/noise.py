@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from textual import on
 from textual.app import ComposeResult
@@ -11,9 +12,11 @@ from textual.message import Message
 from textual.widgets import Input, Label, Static
 
 from tuisim.app.form import EntryPanel, NumberInput, Slider
-from tuisim.app.snapshot import Snapshot
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.values import Whole, WrongValue, values_of
+
+if TYPE_CHECKING:
+    from tuisim.app.snapshot import Snapshot
 
 _KINDS = values_of(NoiseSpec)
 _SEED = values_of(RunSpec)["seed"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import ClassVar, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from textual import on
 from textual.app import ComposeResult
@@ -16,10 +16,12 @@ from textual.widgets import Input, Label, OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim.app.form import EntryPanel, reason, typed_number
-from tuisim.app.setup.next_run import NextRun
-from tuisim.app.snapshot import Snapshot
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle
 from tuisim.errors import ConfigError, ObstacleError
+
+if TYPE_CHECKING:
+    from tuisim.app.setup.next_run import NextRun
+    from tuisim.app.snapshot import Snapshot
 
 Boxes: TypeAlias = tuple[Obstacle, ...]
 

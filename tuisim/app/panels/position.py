@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from textual import on
 from textual.app import ComposeResult
@@ -12,10 +13,12 @@ from textual.widgets import Input, Label, Static
 
 from tuisim.app.action import action_link
 from tuisim.app.form import NumberInput
-from tuisim.app.snapshot import Snapshot
 from tuisim.core.geometry import Pose, shown_heading_deg
 from tuisim.core.spec import START_VALUES
 from tuisim.core.values import WrongValue
+
+if TYPE_CHECKING:
+    from tuisim.app.snapshot import Snapshot
 
 _FIELDS = dict(zip(("x", "y", "angle"), START_VALUES.values(), strict=True))
 """By id."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 
 import numpy as np
 from rich.style import Style
@@ -178,6 +179,8 @@ class WorldView(PixelView):
         """Shown instead of `trace` while a past instant is in view."""
         self._trace_drawn = 0
         self._painter: ScenePainter | None = None
+        self._has_signs = False
+        """Whether the robots are drawn as signs above the picture."""
         self._port: Viewport | None = None
         self._snapshot: Snapshot | None = None
         self._scene: SceneState | None = None
@@ -234,6 +237,8 @@ class WorldView(PixelView):
             few = {CellSet.ASCII} if mono else {CellSet.ASCII, CellSet.BRAILLE}
             coarse = graphics is None and self.cell_set in few
             whole = graphics is None and self.cell_set not in BLOCKS
+            self._has_signs = mono and self.cell_set is CellSet.ASCII
+            self.set_signs({})
             self._painter = ScenePainter(self._mat, outside_rgb, self.trace, mode.grey, mono, coarse, whole)
         trace = self.trace if self.past_trace is None else self.past_trace
         # What stands still is drawn finely at once, and not a moment later by itself.
@@ -244,8 +249,8 @@ class WorldView(PixelView):
         self._scene, self._port, self._trace_drawn = scene, port, trace.count
         self._painter.trace = trace
         self.set_fine_picture(self._painter.paint(port, scene), graphics, stands=stands)
-        has_signs = self.cell_set is CellSet.ASCII and self.color_mode.depth == MONO
-        self.set_signs(_pointers(port, scene) if has_signs else {})
+        if self._has_signs:
+            self.set_signs(_pointers(port, scene))
 
     def redraw(self) -> None:
         """Draw the image again: the app's glyphs or colours have changed."""
@@ -412,8 +417,8 @@ _MARKS: Mapping[Mark, tuple[str, Style]] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Moment:
+@dataclass(frozen=True)
+class BarTimes:
     """The times that the bar shows."""
 
     tick: int
@@ -424,11 +429,11 @@ class Moment:
     over: bool
     """Whether the run has ended, so that the bar ends at the run's end."""
 
-    @property
+    @cached_property
     def end_s(self) -> float:
         """Time at the right end: the end of a finished run, else a round time."""
         now_s = self.newest / self.tick_hz
-        return max(now_s, 1 / self.tick_hz) if self.over else time_limits(now_s)[1]
+        return max(now_s, 1 / self.tick_hz) if self.over else _round_end_s(math.ceil(now_s))
 
     def column(self, tick: int, columns: int) -> int:
         """Return the column of a tick in a bar of that length."""
@@ -440,10 +445,16 @@ class Moment:
         return min(self.newest, round(share * self.end_s * self.tick_hz))
 
 
-def words(moment: Moment, width: int) -> str:
+@lru_cache(maxsize=1)
+def _round_end_s(now_s: int) -> float:
+    """Return where the bar of a run at work ends, which changes at whole seconds only."""
+    return time_limits(now_s)[1]
+
+
+def words(times: BarTimes, width: int) -> str:
     """Return the text beside the bar, as much as fits."""
-    at_s, now_s = moment.tick / moment.tick_hz, moment.newest / moment.tick_hz
-    if not moment.past:
+    at_s, now_s = times.tick / times.tick_hz, times.newest / times.tick_hz
+    if not times.past:
         return f"{now_s:.2f} s"
     short = f"past {at_s:.2f} of {now_s:.2f} s"
     long = f"past {at_s:.2f} s of {now_s:.2f} s  −{now_s - at_s:.2f} s"
@@ -452,25 +463,25 @@ def words(moment: Moment, width: int) -> str:
     return next(fits, f"{at_s:.2f} s")
 
 
-def mark_cells(moment: Moment, marks: Iterable[tuple[int, Mark]], columns: int) -> dict[int, Run]:
+def mark_cells(times: BarTimes, marks: Iterable[tuple[int, Mark]], columns: int) -> dict[int, Run]:
     """Return the markers by column."""
     order = list(_MARKS)
     found: dict[int, int] = {}
     for tick, kind in marks:
-        at = moment.column(tick, columns)
+        at = times.column(tick, columns)
         found[at] = min(found.get(at, len(order)), order.index(kind))
     return {at: _MARKS[order[kind_at]] for at, kind_at in found.items()}
 
 
-def bar_cells(moment: Moment, marks: Mapping[int, Run], columns: int) -> list[Run]:
+def bar_cells(times: BarTimes, marks: Mapping[int, Run], columns: int) -> list[Run]:
     """Return the cells of the bar."""
-    here, now = moment.column(moment.tick, columns), moment.column(moment.newest, columns)
+    here, now = times.column(times.tick, columns), times.column(times.newest, columns)
     cells: list[Run] = [
         ("━", _PAST) if at <= here else ("─", _LATER) if at <= now else ("·", _BEYOND) for at in range(columns)
     ]
     for at, mark in marks.items():
         cells[at] = mark
-    if moment.past:
+    if times.past:
         cells[here] = "▮", _CURSOR
     return cells
 
@@ -490,7 +501,7 @@ class TimeBar(LinesView):
         super().__init__()
         self.marks: Callable[[], Sequence[tuple[int, Mark]]] = tuple
         """Returns the marked ticks, with the kind of each marker."""
-        self._moment: Moment | None = None
+        self._times: BarTimes | None = None
         self._columns = 0
         self._marked: tuple[object, dict[int, Run]] = None, {}
         """The markers as drawn, and the data they were made from."""
@@ -499,39 +510,39 @@ class TimeBar(LinesView):
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment of a run; before the first run the row is empty, so that the world keeps its size."""
         if snapshot.state == RunPhase.IDLE or not (snapshot.now_tick > 0 or snapshot.past):
-            self._moment = None
+            self._times = None
             self.set_lines([])
             return
         tick = snapshot.instant.tick if snapshot.past else snapshot.now_tick
         hz = snapshot.spec.profile.tick_hz
-        self._moment = Moment(tick, snapshot.now_tick, hz, snapshot.past, snapshot.state == RunPhase.ENDED)
+        self._times = BarTimes(tick, snapshot.now_tick, hz, snapshot.past, snapshot.state == RunPhase.ENDED)
         self._draw()
 
     def on_resize(self) -> None:
         self._draw()
 
     def _draw(self) -> None:
-        if self._moment is None or not self.size:
+        if self._times is None or not self.size:
             return
-        moment = self._moment
-        text = words(moment, self.size.width)
+        times = self._times
+        text = words(times, self.size.width)
         self._columns = columns = max(1, self.size.width - len(text) - 1)
         marks = self.marks()
-        key = (len(marks), marks[0] if marks else None, columns, moment.end_s)
+        key = (len(marks), marks[0] if marks else None, columns, times.end_s)
         if key != self._marked[0]:
-            self._marked = key, mark_cells(moment, marks, columns)
-        style = _STRONG if moment.past else _WORDS
-        self.set_lines([[*bar_cells(moment, self._marked[1], columns), (" ", _WORDS), (text, style)]])
+            self._marked = key, mark_cells(times, marks, columns)
+        style = _STRONG if times.past else _WORDS
+        self.set_lines([[*bar_cells(times, self._marked[1], columns), (" ", _WORDS), (text, style)]])
 
     def _choose(self, event: events.MouseEvent) -> None:
         event.stop()
-        if self._moment is not None:
-            tick = self._moment.tick_at(int(event.screen_x) - self.region.x, self._columns)
-            self.post_message(self.Scrubbed(None if tick >= self._moment.newest else tick))
+        if self._times is not None:
+            tick = self._times.tick_at(int(event.screen_x) - self.region.x, self._columns)
+            self.post_message(self.Scrubbed(None if tick >= self._times.newest else tick))
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
         """Go to the instant at the mouse, and follow it; the text beside the bar returns to now."""
-        if event.button != 1 or self._moment is None:
+        if event.button != 1 or self._times is None:
             return
         if event.x >= self._columns:
             event.stop()

@@ -85,11 +85,16 @@ class ScenePainter:
         self._ground: Pixels | None = None
         self._ground_key: object = None
         self._pieces_drawn = 0
+        self._robot: RobotSpec | None = None
+        self._outline: RobotOutline | None = None
+        """The outline of `_robot`."""
 
     def paint(self, view: Viewport, scene: SceneState) -> Pixels:
         """Return the picture, shape (view.height_px, view.width_px, 3)."""
         picture = self._ground_picture(view, scene).copy()
-        outline = outline_of(scene.robot)
+        if self._outline is None or scene.robot is not self._robot:
+            self._robot, self._outline = scene.robot, outline_of(scene.robot)
+        outline = self._outline
         if scene.rays and scene.robot.ultrasonic is not None:
             ultrasonic = scene.robot.ultrasonic
             x_mm, y_mm = world_point(scene.rays_from or scene.pose, ultrasonic.x_mm, ultrasonic.y_mm)

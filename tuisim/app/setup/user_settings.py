@@ -10,29 +10,29 @@ from tuisim.config.user_config import CELL_SET, THEME, Setting, load_config
 from tuisim.config.user_config_file import save_setting
 
 if TYPE_CHECKING:
-    from tuisim.app.workspace import Workspace
+    from tuisim.app.actions import ActionContext
 
 
-def _theme(workspace: Workspace, value: str) -> None:
-    workspace.app.theme = value
+def _theme(context: ActionContext, value: str) -> None:
+    context.app.theme = value
 
 
-def _rays(workspace: Workspace, value: bool) -> None:
-    if world := workspace.panel_area.world:
+def _rays(context: ActionContext, value: bool) -> None:
+    if world := context.panels.world:
         world.show_rays = value
 
 
-_APPLY: Mapping[str, Callable[[Workspace, Any], None]] = {
-    "app.speed": lambda workspace, value: workspace.run_controller.set_speed(value),
+_APPLY: Mapping[str, Callable[[ActionContext, Any], None]] = {
+    "app.speed": lambda context, value: context.runs.set_speed(value),
     "app.ultrasound": _rays,
-    CELL_SET: lambda workspace, value: workspace.app.choose_cells(value),
-    "app.pixels": lambda workspace, value: workspace.app.choose_pixels(value),
+    CELL_SET: lambda context, value: context.app.choose_cells(value),
+    "app.pixels": lambda context, value: context.app.choose_pixels(value),
     THEME: _theme,
 }
 """What applies a setting to the app that is open, by its path."""
 
 
-def change(workspace: Workspace, one: Setting, value: Scalar | None) -> None:
+def change(context: ActionContext, one: Setting, value: Scalar | None) -> None:
     """Write a setting to `config.toml`, and apply it at once where the app can.
 
     Raises:
@@ -40,6 +40,6 @@ def change(workspace: Workspace, one: Setting, value: Scalar | None) -> None:
     """
     save_setting(one, value)
     if apply := _APPLY.get(one.path):
-        apply(workspace, load_config().values.get(one.path, one.default))
-        workspace.app.situation_changed()
-        workspace.app.draw(force=True)
+        apply(context, load_config().values.get(one.path, one.default))
+        context.app.situation_changed()
+        context.app.draw(force=True)

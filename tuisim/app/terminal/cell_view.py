@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,9 @@ from rich.color import Color
 from rich.segment import Segment
 from rich.style import Style
 from textual.app import ComposeResult
+from textual.color import Color as TextualColor
 from textual.events import MouseEvent
+from textual.filter import LineFilter
 from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
@@ -20,9 +23,7 @@ from textual.widget import Widget
 from tuisim.app.graphics.picture import Graphics, PictureCell, TilePicture
 from tuisim.app.render.cells import MONO, ColorMode, changed_cells, changed_runs, reduce_cells, reduce_pixels
 from tuisim.app.render.mono import mono_cells
-from tuisim.app.terminal.picture_mode import BLOCKS, color_depth, picture_mode_of
-from tuisim.app.terminal.sharpness import Sharpness
-from tuisim.app.terminal.strips import LazyStrip
+from tuisim.app.terminal.picture_mode import BLOCKS, PictureMode, Sharpness, color_depth, picture_mode_of
 from tuisim.charts.fitted_cells import CellIndex, Cells, all_cells, fit_cells
 from tuisim.charts.glyphs import GLYPHS, GlyphSet, glyph_set, half_block_of
 from tuisim.charts.text_runs import Run, cut_line
@@ -41,10 +42,15 @@ class RowsView(Widget):
 
     ALLOW_SELECT = False
 
+    @cached_property
+    def picture_mode(self) -> PictureMode:
+        """How the app draws pictures."""
+        return picture_mode_of(self.app)
+
     @property
     def ground_rgb(self) -> tuple[int, int, int]:
         """Background colour of the widget."""
-        own, theme = self.background_colors[1].rgb, picture_mode_of(self.app).theme
+        own, theme = self.background_colors[1].rgb, self.picture_mode.theme
         return theme.rgb(own) if theme else own
 
     def redraw(self) -> None:
@@ -90,12 +96,12 @@ class PixelView(RowsView):
     @property
     def cell_set(self) -> CellSet:
         """The glyphs of the app."""
-        return picture_mode_of(self.app).cells
+        return self.picture_mode.cells
 
     @property
     def graphics(self) -> Graphics | None:
         """How pixels are drawn; None for cells."""
-        return picture_mode_of(self.app).graphics
+        return self.picture_mode.graphics
 
     def cell_for(self, graphics: Graphics | None) -> CellPoints:
         """Return the points of an image in a cell; `graphics` is None for the app's glyphs."""
@@ -140,7 +146,7 @@ class PixelView(RowsView):
         if self._tiles is None or self._tiles.graphics != graphics:
             self._tiles = TilePicture(graphics)
             self._forget_cells()
-        runs = self._tiles.put(picture, picture_mode_of(self.app).is_slow())
+        runs = self._tiles.put(picture, self.picture_mode.is_slow())
         rows, _ = self._tiles.size
         self._sharpness.changed(is_coarse=self._tiles.is_coarse)
         if len(self._strips) != rows:
@@ -167,8 +173,8 @@ class PixelView(RowsView):
             self._tiles = None
             self._forget_cells()
         old, was = self._shown, self._cells
-        fine = glyph_set(cell_set)
-        self._reduce(picture)
+        fine, mode = glyph_set(cell_set), self.color_mode
+        self._reduce(picture, mode)
         shape = len(picture) // fine.rows, picture.shape[1] // fine.cols
         as_before = was.shape == shape and old.shape == picture.shape and fine is self._glyphs
         at = changed_cells(old, self._shown, fine) if as_before else all_cells(*shape)
@@ -179,18 +185,17 @@ class PixelView(RowsView):
             at = rows, cols
         self._glyphs = fine
         has_finer = cell_set in BLOCKS and cell_set != CellSet.HALF
-        is_coarse = has_finer and not stands and picture_mode_of(self.app).is_slow()
+        is_coarse = has_finer and not stands and self.picture_mode.is_slow()
         if not as_before:
             self._coarse = np.zeros(shape, bool)
         self._coarse[at] = is_coarse
         cells = was.copy() if as_before else np.empty(shape, np.int64)
         glyphs = half_block_of(cell_set) if is_coarse else fine
-        cells[at] = self._fitted(glyphs, at, was[at] if as_before else None)
+        cells[at] = self._fitted(glyphs, mode, at, was[at] if as_before else None)
         self._put(cells)
         self._sharpness.changed(is_coarse=self.is_coarse)
 
-    def _fitted(self, glyphs: GlyphSet, at: CellIndex, before: Cells | None) -> Cells:
-        mode = self.color_mode
+    def _fitted(self, glyphs: GlyphSet, mode: ColorMode, at: CellIndex, before: Cells | None) -> Cells:
         if mode.depth == MONO:
             return mono_cells(self._shown, glyphs, at, self.cell_set)
         return reduce_cells(fit_cells(self._shown, glyphs, at, before), mode)
@@ -206,7 +211,7 @@ class PixelView(RowsView):
 
     def _refine_some(self) -> bool:
         """Draw some of the coarse cells fine; return whether more are coarse."""
-        count = REFINED_CELLS if picture_mode_of(self.app).is_slow() else QUICKLY_REFINED_CELLS
+        count = REFINED_CELLS if self.picture_mode.is_slow() else QUICKLY_REFINED_CELLS
         if self._tiles is not None:
             self._refresh_runs(self._tiles.refine(count))
             return self._tiles.is_coarse
@@ -218,7 +223,7 @@ class PixelView(RowsView):
         at = rows[:count], cols[:count]
         self._coarse[at] = False
         cells = self._cells.copy()
-        cells[at] = self._fitted(self._glyphs, at, None)
+        cells[at] = self._fitted(self._glyphs, self.color_mode, at, None)
         self._put(cells)
 
     def redraw(self) -> None:
@@ -234,9 +239,8 @@ class PixelView(RowsView):
             self._forget_cells()
             self.refresh()
 
-    def _reduce(self, picture: Pixels) -> None:
+    def _reduce(self, picture: Pixels, mode: ColorMode) -> None:
         """Dither an image where the terminal has few colours, if it differs from the last one."""
-        mode = self.color_mode
         if not mode.dithers:
             self._raw = self._shown = picture
             return
@@ -396,6 +400,102 @@ def _segment(cell: int) -> Segment:
 
 def _channels(rgb: int) -> tuple[int, int, int]:
     return rgb >> 16, rgb >> 8 & 255, rgb & 255
+
+
+class LazyStrip(Strip):
+    """A row whose segments are created only on demand."""
+
+    __slots__ = ["_made"]
+
+    # The base class's caches are omitted: every method that uses one is overridden here.
+    def _begin(self, count: int) -> None:
+        self._made: list[Segment] | None = None
+        self._cell_length = self._cell_count = count
+        self._link_ids = set()
+        self._render_cache = None
+
+    @property
+    def _segments(self) -> list[Segment]:  # type: ignore[override]  # a slot of the base class
+        if self._made is None:
+            self._made = self._make()
+        return self._made
+
+    @abstractmethod
+    def _make(self) -> list[Segment]:
+        """Return its segments."""
+
+    def _plain(self) -> Strip:
+        return Strip(self._segments, self.cell_length)
+
+    def __bool__(self) -> bool:
+        return bool(self._cell_length)
+
+    def crop(self, start: int, end: int | None = None) -> Strip:
+        """Return the part from `start` up to `end`."""
+        length = self.cell_length
+        start, end = max(0, start), length if end is None else min(length, end)
+        return self if start == 0 and end == length else self._part(start, max(start, end))
+
+    @abstractmethod
+    def _part(self, start: int, end: int) -> LazyStrip:
+        """Return the part from `start` up to `end`, both inside it."""
+
+    def divide(self, cuts: Iterable[int]) -> Sequence[Strip]:
+        """Return the strips between the cuts, the first one from column 0."""
+        pieces, at = [], 0
+        for cut in cuts:
+            if cut <= self.cell_length:
+                pieces.append(self.crop(at, cut))
+                at = cut
+        return pieces
+
+    def adjust_cell_length(self, cell_length: int, style: Style | None = None) -> Strip:
+        """Return the strip cropped or padded to a length."""
+        return self if cell_length == self.cell_length else self._plain().adjust_cell_length(cell_length, style)
+
+    def crop_extend(self, start: int, end: int, style: Style | None) -> Strip:
+        """Return the strip between two columns, padded where it is too short."""
+        return self.crop(start, end) if end <= self.cell_length else self._plain().crop_extend(start, end, style)
+
+    def apply_filter(self, filter: LineFilter, background: TextualColor) -> Strip:  # noqa: A002  # the base class's name
+        """Return the strip with a filter of Textual applied."""
+        return self._plain().apply_filter(filter, background)
+
+    def apply_style(self, style: Style) -> Strip:
+        """Return the strip with a style laid over it."""
+        return self._plain().apply_style(style)
+
+    def apply_offsets(self, x: int, y: int) -> Strip:
+        """Return the strip unchanged: a picture cannot be selected as text."""
+        return self
+
+
+class JoinedStrip(LazyStrip):
+    """A row of several strips, each of which stays what it is.
+
+    Args:
+        parts: From left to right.
+    """
+
+    __slots__ = ["parts"]
+
+    def __init__(self, parts: Sequence[Strip]) -> None:
+        self.parts = [part for part in parts if part.cell_length]
+        self._begin(sum(part.cell_length for part in self.parts))
+
+    def _make(self) -> list[Segment]:
+        return [segment for part in self.parts for segment in part]
+
+    def _part(self, start: int, end: int) -> JoinedStrip:
+        return JoinedStrip(self._cut(start, end))
+
+    def _cut(self, start: int, end: int) -> list[Strip]:
+        """Return the parts between two columns."""
+        cut, at = [], 0
+        for part in self.parts:
+            cut.append(part.crop(max(start - at, 0), max(min(end - at, part.cell_length), 0)))
+            at += part.cell_length
+        return cut
 
 
 class CellStrip(LazyStrip):

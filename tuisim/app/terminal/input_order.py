@@ -54,6 +54,7 @@ class Turn:
         self.steps = 0
         """How much of it has been done."""
         _live.add(self)
+        _follow_turns()
 
     @contextmanager
     def step(self, pump: MessagePump) -> Iterator[None]:
@@ -83,6 +84,8 @@ class Turn:
         if not self.is_over:
             self.is_over = True
             self._left.clear()
+            _live.discard(self)
+            _follow_turns()
             self._ended()
 
     def later(self, pump: MessagePump, callback: Callable[[], Any]) -> Callable[[], Awaitable[Any]]:
@@ -111,7 +114,7 @@ def _turn() -> Turn | None:
     return turn if turn is not None and turn.is_here else None
 
 
-_post, _dispatch, _process = MessagePump.post_message, MessagePump._dispatch_message, MessagePump._process_messages
+_post, _dispatch, _end = MessagePump.post_message, MessagePump._dispatch_message, Widget._message_loop_exit
 _call_next, _call_after_refresh = MessagePump.call_next, MessagePump.call_after_refresh
 
 
@@ -128,30 +131,34 @@ def post_message(pump: MessagePump, message: Message) -> bool:
     return posted
 
 
-async def dispatch_message(pump: MessagePump, message: Message) -> None:
+def dispatch_message(pump: MessagePump, message: Message) -> Awaitable[None]:
     """Handle a message, within the turn that it belongs to."""
     turn: Turn | None = getattr(message, _TURN, None)
+    # Nobody posts the events of a new widget: they belong to the turn in which it was made.
+    if turn is None and (_current.get() is None or isinstance(message, (events.Compose, events.Mount))):
+        return _dispatch(pump, message)
+    return _dispatch_in(turn, pump, message)
+
+
+async def _dispatch_in(turn: Turn | None, pump: MessagePump, message: Message) -> None:
     if turn is not None:
         with turn.step(pump):
             await _dispatch(pump, message)
-    elif isinstance(message, (events.Compose, events.Mount)):
-        # Nobody posts these: they belong to the turn in which the widget was made.
-        await _dispatch(pump, message)
-    else:
-        token = _current.set(None)
-        try:
-            await _dispatch(pump, message)
-        finally:
-            _current.reset(token)
-
-
-async def process_messages(pump: MessagePump) -> None:
-    """Handle messages until the end; those that are left then belong to no turn any more."""
+        return
+    token = _current.set(None)
     try:
-        await _process(pump)
+        await _dispatch(pump, message)
+    finally:
+        _current.reset(token)
+
+
+async def end_messages(widget: Widget) -> None:
+    """Clean up after the last message; those that are left then belong to no turn any more."""
+    try:
+        await _end(widget)
     finally:
         for turn in [*_live]:
-            turn.drop(pump)
+            turn.drop(widget)
 
 
 def call_next(pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> None:
@@ -171,6 +178,16 @@ def call_after_refresh(pump: MessagePump, callback: Callable[..., Any], *args: A
     if not is_posted:
         turn.drop(pump, 1)
     return is_posted
+
+
+def _follow_turns() -> None:
+    """Let Textual call these functions while there is a turn, and else its own: most messages are about drawing."""
+    own = _post, _dispatch, _call_next, _call_after_refresh
+    post, dispatch, call, later = (post_message, dispatch_message, call_next, call_after_refresh) if _live else own
+    MessagePump.post_message = post  # type: ignore[method-assign, assignment]
+    MessagePump._dispatch_message = dispatch  # type: ignore[method-assign, assignment]
+    MessagePump.call_next = call  # type: ignore[method-assign, assignment]
+    MessagePump.call_after_refresh = later  # type: ignore[method-assign, assignment]
 
 
 def takes_letters(widget: Widget) -> bool:

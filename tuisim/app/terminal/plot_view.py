@@ -13,10 +13,8 @@ from textual.geometry import Region
 from textual.strip import Strip
 
 from tuisim.app.graphics.picture import Graphics, TilePicture
-from tuisim.app.terminal.cell_view import LinesView, PictureStrip
-from tuisim.app.terminal.picture_mode import picture_mode_of
-from tuisim.app.terminal.sharpness import Sharpness
-from tuisim.app.terminal.strips import JoinedStrip
+from tuisim.app.terminal.cell_view import JoinedStrip, LinesView, PictureStrip
+from tuisim.app.terminal.picture_mode import Sharpness, picture_mode_of
 from tuisim.charts.canvas import AXIS
 from tuisim.charts.plot_image import Plot, PlotInks, plot_image
 from tuisim.charts.text_chart import ChartPicture

@@ -19,7 +19,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from tuisim.app.terminal.multiplexer import has_all_colors, is_multiplexer
+from tuisim.app.terminal.environment import has_all_colors, is_multiplexer
 from tuisim.app.terminal.queries import (
     ANSWER,
     ATTRIBUTES_QUERY,

@@ -7,12 +7,10 @@ import os
 import re
 import signal
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from functools import partial
-from io import TextIOWrapper
 from pathlib import Path
 from textwrap import wrap
-from typing import Any, ClassVar, TextIO, cast
+from typing import Any, ClassVar, cast
 
 from rich.cells import cell_len
 from rich.console import Console, ConsoleRenderable, RichCast
@@ -24,52 +22,45 @@ from textual._compositor import CompositorUpdate
 from textual._styles_cache import StylesCache
 from textual.app import App, ScreenStackError
 from textual.color import Color
-from textual.command import Provider
+from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
 from textual.css.query import NoMatches
 from textual.driver import Driver
-from textual.drivers import linux_driver
-from textual.drivers.linux_driver import LinuxDriver
 from textual.filter import LineFilter
 from textual.geometry import Size
-from textual.message_pump import MessagePump
 from textual.screen import Screen
 from textual.selection import Selection
-from textual.theme import Theme
+from textual.theme import Theme, ThemeProvider
 from textual.widget import Widget, WidgetError
 from textual.widgets import OptionList
-from textual.worker import WorkerFailed
+from textual.worker import Worker, WorkerFailed
 
 from tuisim.app import background
-from tuisim.app.action import ActionProvider, Palette, with_keys_of
+from tuisim.app.action import ActionHost, with_keys_of
 from tuisim.app.background import is_leaving
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
-from tuisim.app.graphics import kitty
 from tuisim.app.graphics.choice import graphics_of
 from tuisim.app.render.cells import PALETTE_256
-from tuisim.app.terminal import input_order, option_list
-from tuisim.app.terminal.answers import AnswerParser, TerminalAnswered
-from tuisim.app.terminal.browser import in_browser, offer
+from tuisim.app.terminal import input_order, textual_mends
 from tuisim.app.terminal.cell_view import RowsView
-from tuisim.app.terminal.compositor import ThoroughCompositor
-from tuisim.app.terminal.foreground import run_in_foreground
+from tuisim.app.terminal.driver import TerminalDriver, run_in_foreground
+from tuisim.app.terminal.environment import in_browser, is_multiplexer, offer
 from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
-from tuisim.app.terminal.lost_terminal import InputDecoder, ResilientOutput
-from tuisim.app.terminal.multiplexer import is_multiplexer
-from tuisim.app.terminal.picture_mode import PictureMode, color_depth, picture_mode_of
-from tuisim.app.terminal.probe import SILENT, take_typed
+from tuisim.app.terminal.picture_mode import PictureMode, color_depth
 from tuisim.app.terminal.queries import (
     ATTRIBUTES_QUERY,
     CELL_SIZE_QUERY,
     KITTY_QUESTIONS,
-    QUESTIONS,
+    AnswerParser,
+    TerminalAnswered,
     TerminalFacts,
     cell_size_px,
 )
 from tuisim.app.terminal.screenshot import save_screenshot, screen_cells
+from tuisim.app.terminal.textual_mends import ThoroughCompositor
 from tuisim.app.terminal.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors
 from tuisim.charts.traces import TRACE_COLORS
 from tuisim.config.files import Scalar
-from tuisim.config.options import AUTO, NO_PIXELS, CellSet, Protocol
+from tuisim.config.options import AUTO, NO_PIXELS, CellSet
 from tuisim.config.user_config import SETTINGS, THEME, load_config
 from tuisim.errors import SIGNALLED, ConfigError, TuisimError
 
@@ -93,8 +84,6 @@ def _blank(match: re.Match[str]) -> str:
     return " " * cell_len(match[0])
 
 
-_LOST = SIGNALLED + signal.SIGHUP
-"""The exit code of an app whose terminal is gone, as if the shell had told it."""
 MINIMUM = Size(40, 12)
 """Minimum size of the terminal: panels and dialogs are unreadable below it."""
 
@@ -135,7 +124,54 @@ def _message_codes(size: Size) -> str:
     return "\x1b[0m\x1b[2J" + "".join(rows)
 
 
-_HARMLESS = Sanitize()
+class Palette(CommandPalette, ClosesOnce[None]):
+    """Textual's command palette, as one of the app's screens that close once."""
+
+    def is_ready_for(self, event: events.Event) -> bool:
+        """Return whether what a key is meant for is there: the commands that were found, unless it is typed."""
+        types = isinstance(event, events.Key) and (event.is_printable or event.key in ("escape", "backspace"))
+        return super().is_ready_for(event) and (types or not any(map(self._is_search, self.workers)))
+
+    def _is_search(self, worker: Worker[Any]) -> bool:
+        return worker.node is self and worker.group == self._GATHER_COMMANDS_GROUP and not worker.is_finished
+
+    def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
+        """Let waiting keys go on once the commands are found."""
+        if event.worker.is_finished:
+            self.app.post_message(self.Changed())
+
+    def _on_click(self, event: events.Click) -> None:  # type: ignore[override]
+        # Where the terminal was until it became smaller there is nothing any more to be found.
+        if not self.region.contains(event.screen_x, event.screen_y):
+            event.prevent_default()
+
+
+def theme_list() -> Palette:
+    """Return Textual's list of themes."""
+    return Palette(providers=[ThemeProvider], placeholder="Search for themes…")
+
+
+class ActionProvider(Provider):
+    """Provides the actions of the screen that the palette opens above, else those of the app."""
+
+    def _offers(self) -> Iterator[tuple[str, Callable[[], None], str]]:
+        """Yield the title of each action, a call that runs it, and the text below the title."""
+        host = self.screen if isinstance(self.screen, ActionHost) else self.app
+        if isinstance(host, ActionHost):
+            for action in host.ACTIONS.values():
+                yield action.title, partial(host.action_act, action.id), f"{action.group} · key {action.key_label}"
+
+    async def discover(self) -> Hits:
+        """Yield every action, before anything is typed."""
+        for title, do, text in self._offers():
+            yield DiscoveryHit(title, do, help=text)
+
+    async def search(self, query: str) -> Hits:
+        """Yield the actions with a matching title."""
+        matcher = self.matcher(query)
+        for title, do, text in self._offers():
+            if (score := matcher.match(title)) > 0:
+                yield Hit(score, matcher.highlight(title), do, help=text)
 
 
 class TerminalApp(App[None]):
@@ -148,6 +184,9 @@ class TerminalApp(App[None]):
 
     def __init__(self, picture_mode: PictureMode | None = None) -> None:
         super().__init__(driver_class=_driver_class())
+        self._filters.append(Sanitize())
+        # They take the code for italics for that of reverse video.
+        self._has_italics = not is_multiplexer(os.environ.get("TERM", ""))
         self.frame_buffer = FrameBuffer()
         self.picture_mode = picture_mode or PictureMode()
         """How pictures are drawn."""
@@ -173,7 +212,10 @@ class TerminalApp(App[None]):
 
     def _take_theme(self) -> None:
         is_own = self.theme == OWN_THEME
-        self.picture_mode.theme = None if is_own else ThemeColors(self.current_theme, TRACE_COLORS)
+        self.picture_mode.theme = theme = None if is_own else ThemeColors(self.current_theme, TRACE_COLORS)
+        filters = [one for one in self._filters if not isinstance(one, ThemeColors)]
+        # Before the filter for terminals without colours, which leaves no colour to be replaced.
+        self._filters = [theme, *filters] if theme else filters
 
     def _theme_changed(self, theme: Theme) -> None:
         """Draw everything in the colours of another theme, and keep the choice."""
@@ -299,7 +341,7 @@ class TerminalApp(App[None]):
     def text_mode(self) -> TextMode:
         """What the terminal supports."""
         is_ascii = self.picture_mode.cells is CellSet.ASCII
-        return TextMode(color_depth(self), is_ascii, has_italics=not is_multiplexer(os.environ.get("TERM", "")))
+        return TextMode(color_depth(self), is_ascii, has_italics=self._has_italics)
 
     @property
     def _writes(self) -> bool:
@@ -319,12 +361,6 @@ class TerminalApp(App[None]):
             # Zoom changes the size of the terminal and of its cells.
             AnswerParser.is_asked = True
             self._driver.write(CELL_SIZE_QUERY + ATTRIBUTES_QUERY)
-
-    def get_line_filters(self) -> Sequence[LineFilter]:
-        """Return the filters for everything that is drawn."""
-        # Before the filter for terminals without colours, which leaves no colour to be replaced.
-        theme = [self.picture_mode.theme] if self.picture_mode.theme else []
-        return [*theme, *super().get_line_filters(), _HARMLESS]
 
     def on_ready(self) -> None:
         if self.is_headless:
@@ -445,109 +481,14 @@ def text_selection(widget: Widget) -> Selection | None:
     return screen.selections.get(widget) if "screen--selection" in screen._component_styles else None
 
 
-# A screen makes its compositor itself, the palette its list, and the driver its parser and its decoder.
+# A screen makes its compositor itself, and the palette its list.
 textual_screen.Compositor = ThoroughCompositor  # type: ignore[attr-defined]
-OptionList._on_click = option_list.click  # type: ignore[method-assign, assignment]
-OptionList._move_page = option_list.move_page  # type: ignore[method-assign, assignment]
-linux_driver.XTermParser = AnswerParser  # type: ignore[attr-defined]
-linux_driver.getincrementaldecoder = lambda _: InputDecoder  # type: ignore[attr-defined, assignment]
+OptionList._on_click = textual_mends.click  # type: ignore[method-assign, assignment]
+OptionList._move_page = textual_mends.move_page  # type: ignore[method-assign, assignment]
 Widget.text_selection = property(text_selection)  # type: ignore[assignment]
-# Otherwise letters overtake the other keys.
-MessagePump.post_message = input_order.post_message  # type: ignore[method-assign, assignment]
-MessagePump._dispatch_message = input_order.dispatch_message  # type: ignore[method-assign, assignment]
-MessagePump._process_messages = input_order.process_messages  # type: ignore[method-assign, assignment]
-MessagePump.call_next = input_order.call_next  # type: ignore[method-assign, assignment]
-MessagePump.call_after_refresh = input_order.call_after_refresh  # type: ignore[method-assign, assignment]
+Widget._message_loop_exit = input_order.end_messages  # type: ignore[method-assign, assignment]
 # Otherwise the cache of this method keeps what it is a method of: the drawn rows of a thousand widgets that are gone.
 StylesCache.get_inner_outer = classmethod(StylesCache.get_inner_outer)  # type: ignore[method-assign, arg-type, assignment]
-
-
-class TerminalDriver(LinuxDriver):
-    """Textual's driver with an output that survives the loss of its terminal, and asks what the terminal can do."""
-
-    def __init__(
-        self, app: App[object], *, debug: bool = False, mouse: bool = True, size: tuple[int, int] | None = None
-    ) -> None:
-        super().__init__(app, debug=debug, mouse=mouse, size=size)
-        self._file = cast(TextIOWrapper, ResilientOutput(cast(TextIO, self._file)))
-        self._is_lent = False
-        """Whether the terminal belongs to the shell or another program."""
-        self._was_continued = False
-        """Whether it has been continued since."""
-
-    def run_input_thread(self) -> None:
-        """Take in what is typed; end the app when the terminal is gone."""
-        try:
-            for message in AnswerParser().feed(take_typed()):
-                self.process_message(message)
-            super().run_input_thread()
-        except (EOFError, OSError):
-            # Not every shell tells its jobs.
-            self._app.call_later(self._app.exit, return_code=_LOST)
-
-    def start_application_mode(self) -> None:
-        """Take the terminal over, and ask what it can do."""
-        super().start_application_mode()  # type: ignore[no-untyped-call]
-        if os.environ.get("TERM", "") not in SILENT:
-            self.write(QUESTIONS)
-            self.flush()
-
-    def stop_application_mode(self) -> None:
-        """Leave the terminal, and nothing in its memory."""
-        graphics = picture_mode_of(self._app).graphics
-        if graphics is not None and graphics.protocol is Protocol.KITTY:
-            self.write(kitty.through_tmux(kitty.DELETE_ALL) if graphics.in_tmux else kitty.DELETE_ALL)
-        super().stop_application_mode()
-
-    @contextmanager
-    def lent(self) -> Iterator[None]:
-        """Give the terminal back for a while: to the shell while the app is stopped, or to another program."""
-        # Were the terminal taken over again by a stop from outside that ends meanwhile, it would be taken from them.
-        self._is_lent = True
-        self.suspend_application_mode()
-        handler = signal.signal(signal.SIGTSTP, signal.SIG_DFL)
-        try:
-            yield
-        finally:
-            signal.signal(signal.SIGTSTP, handler)
-            self._is_lent = False
-            if os.isatty(self.fileno):
-                self._must_signal_resume = True
-                self.resume_application_mode()
-            else:
-                # The terminal was lost meanwhile, and nobody reads from it who would notice.
-                self._app.exit(return_code=_LOST)
-
-    def stop_as_job(self) -> bool:
-        """Restore the terminal and stop the whole process group; resume when the shell says so.
-
-        Textual stops with a signal that cannot be ignored, even without a shell that could resume the app. The signal
-        for job control is dropped in that case.
-
-        Returns:
-            Whether the app was stopped, and has resumed.
-        """
-        with self.lent():
-            self._was_continued = False
-            os.kill(0, signal.SIGTSTP)
-            return self._was_continued
-
-    def _sigcont_application(self, *_: object) -> None:
-        if self._is_lent:
-            self._was_continued = True
-        elif self._auto_restart and not self._loop.is_closed():
-            # The signal may come while the app holds the lock of its output, which is not to be taken twice.
-            self._loop.call_soon_threadsafe(self._take_terminal_again)
-
-    def _take_terminal_again(self) -> None:
-        # The signal also arrives when the terminal is lost, so that nothing can resume, and after a stop without
-        # preparation, where the former reader and writer must end before they are started again.
-        if is_leaving(self._app) or not self._auto_restart or not os.isatty(self.fileno):
-            return
-        if self._writer_thread is not None and self._writer_thread.is_alive():
-            self.suspend_application_mode()
-            self._must_signal_resume = True
-        self.resume_application_mode()
 
 
 def _driver_class() -> type[Driver]:

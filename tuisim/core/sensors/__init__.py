@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any
 
 from tuisim.core.columns import MOTION, Column, column_name, measured_names, motion_of
@@ -49,12 +49,14 @@ class SensorKind:
         return measured_names(self.columns(sensor))
 
 
+_known = lru_cache(maxsize=64)
+"""The columns of a sensor are asked for at each frame."""
 SENSORS: Mapping[str, SensorKind] = {
-    "color": SensorKind("lego-ev3-color", ColorSensorSpec, color.columns, color.measure),
-    "ultrasonic": SensorKind("lego-ev3-us", UltrasonicSpec, ultrasonic.columns, ultrasonic.measure),
-    "gyro": SensorKind("lego-ev3-gyro", GyroSpec, gyro.columns, gyro.measure),
-    "touch": SensorKind("lego-ev3-touch", TouchSpec, touch.columns, touch.measure, "ev3-analog"),
-    "infrared": SensorKind("lego-ev3-ir", InfraredSpec, infrared.columns, infrared.measure),
+    "color": SensorKind("lego-ev3-color", ColorSensorSpec, _known(color.columns), color.measure),
+    "ultrasonic": SensorKind("lego-ev3-us", UltrasonicSpec, _known(ultrasonic.columns), ultrasonic.measure),
+    "gyro": SensorKind("lego-ev3-gyro", GyroSpec, _known(gyro.columns), gyro.measure),
+    "touch": SensorKind("lego-ev3-touch", TouchSpec, _known(touch.columns), touch.measure, "ev3-analog"),
+    "infrared": SensorKind("lego-ev3-ir", InfraredSpec, _known(infrared.columns), infrared.measure),
 }
 """All kinds of sensors, in the order of the telemetry columns."""
 
@@ -69,6 +71,7 @@ def owners(robot: RobotSpec) -> list[tuple[tuple[Column, ...], Measure]]:
     return [(MOTION, motion_of), *of_sensors]
 
 
+@lru_cache(maxsize=16)
 def columns_of(robot: RobotSpec) -> tuple[Column, ...]:
     """Return the columns that every run of a robot has."""
     return tuple(column for columns, _ in owners(robot) for column in columns)

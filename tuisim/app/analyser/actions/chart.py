@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tuisim.analysis.traces import TIME
 from tuisim.app.analyser.chart import FACETS_ROWS
-from tuisim.app.analyser.screen import LogScreen
 from tuisim.errors import LogError
+
+if TYPE_CHECKING:
+    from tuisim.app.analyser.screen import LogScreen
 
 _ALIGNMENTS = (
     ("time", "the start of each run"),

@@ -13,13 +13,14 @@ from tuisim.analysis.model import Model
 from tuisim.analysis.source import OpenedLog
 from tuisim.app import background
 from tuisim.app.analyser.panes import PANES, pane_frame
-from tuisim.app.analyser.screen import LogScreen
 from tuisim.app.dialogs.save import SaveDialog
-from tuisim.app.terminal.browser import offer
+from tuisim.app.terminal.environment import offer
 from tuisim.errors import counted
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from tuisim.app.analyser.screen import LogScreen
 
 MOST_COPIED = 10_000
 """Most rows to copy: terminals drop longer texts."""

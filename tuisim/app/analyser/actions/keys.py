@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 
-from tuisim.app.action import Action, key_groups, theme_list
+from tuisim.app.action import Action, key_groups
 from tuisim.app.analyser.actions import chart, files, log, panes
 from tuisim.app.analyser.screen import LogScreen
+from tuisim.app.terminal.terminal_app import theme_list
 
 CURSOR, PANE, CHART, TABLE, LOG = "Cursor", "Panes", "Chart", "Table", "Log"
 FILES, APP = "Files", "App"
@@ -36,8 +37,7 @@ _START = (
 
 
 def _help(screen: LogScreen) -> None:
-    from tuisim.app.guide.screen import GuideScreen
-    from tuisim.app.guide.topics import KeyPage, Topic
+    from tuisim.app.guide.screen import GuideScreen, KeyPage, Topic
 
     keys = KeyPage("All keys of the analyser", _START, key_groups(screen.ACTIONS.values()))
     screen.app.push_screen(GuideScreen(keys, Topic()))

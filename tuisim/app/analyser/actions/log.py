@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from typing import TYPE_CHECKING
 
 from tuisim.analysis.model import RECKONING, Model, apply_definition, derive, with_definition
 from tuisim.analysis.source import LogRequest
-from tuisim.app.analyser.screen import LogScreen
 from tuisim.app.dialogs.question import Form
 from tuisim.errors import LogError
 from tuisim.logs.derived import NEEDED
@@ -16,6 +16,9 @@ from tuisim.logs.log import Log
 from tuisim.runs.diff import RunDiff, diff_runs
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
+
+if TYPE_CHECKING:
+    from tuisim.app.analyser.screen import LogScreen
 
 _DERIVED: tuple[Form, ...] = (
     ("speed = slope(x_mm)", "derivative per second; `speed =` is optional"),

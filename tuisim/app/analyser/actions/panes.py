@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import re
 from functools import partial
+from typing import TYPE_CHECKING
 
 from tuisim.analysis.events import Event, Threshold, events_of, thresholds_of
-from tuisim.analysis.model import Model
 from tuisim.analysis.table import TableTask, TableView, conditions_of
-from tuisim.app.analyser.screen import LogScreen
 from tuisim.app.analyser.world import NO_POSES, has_poses
 from tuisim.core.conditions import spelled
 from tuisim.errors import LogError
 from tuisim.logs.log import Log
+
+if TYPE_CHECKING:
+    from tuisim.analysis.model import Model
+    from tuisim.app.analyser.screen import LogScreen
 
 _THRESHOLDS = (
     ("Colour < 50", "where it falls below 50"),

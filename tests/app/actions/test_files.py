@@ -10,8 +10,8 @@ import pytest
 from tests.app.app_help import LOGS, notices, ready, settings, until
 from tests.app.editor.test_document import own
 from tests.app.terminals import Terminal
+from tuisim.app.actions.files import own_editor
 from tuisim.app.app import LabApp
-from tuisim.app.editor.own_editor import own_editor
 from tuisim.errors import TuisimError
 
 pytestmark = pytest.mark.usefixtures("home")

@@ -1,16 +1,22 @@
-"""Every widget is told its size, whoever asks for it before."""
+"""Every widget is told its size; lists without room, and clicks on options that are gone."""
 
 from __future__ import annotations
 
 import pytest
+from rich.style import Style
 from textual import events
+from textual.app import ComposeResult
+from textual.command import CommandList
+from textual.events import Click
 from textual.geometry import Size
 from textual.message import Message
 from textual.screen import Screen
 from textual.widget import Widget
+from textual.widgets import OptionList
 
 from tests.app.app_help import LOGS, ready, settings, until
 from tuisim.app.app import LabApp
+from tuisim.app.terminal.terminal_app import TerminalApp
 
 
 @pytest.fixture
@@ -49,3 +55,37 @@ async def test_every_widget_is_told_its_size(size: tuple[int, int], last: str, t
         shown = {widget: laid_out[widget].region.size for widget in widgets if widget in laid_out}
         assert len(shown) > 5
         assert {widget: told.get(widget) for widget in shown} == shown
+
+
+class _Listed(TerminalApp):
+    def __init__(self, listed: OptionList) -> None:
+        super().__init__()
+        self._listed = listed
+
+    def compose(self) -> ComposeResult:
+        yield self._listed
+
+
+@pytest.mark.parametrize("key", ["pageup", "pagedown"])
+async def test_a_list_without_room_bears_the_keys_for_pages(key: str) -> None:
+    listed = OptionList("first", "second", "third")
+    async with _Listed(listed).run_test(size=(40, 12)) as pilot:
+        listed.highlighted = 1
+        listed.focus()
+        listed.styles.height = 2
+        await pilot.pause()
+        assert not listed.scrollable_content_region
+        await pilot.press(key)
+        assert listed.highlighted == 1
+
+
+@pytest.mark.parametrize("kind", [OptionList, CommandList])
+async def test_a_click_on_an_option_that_is_gone_does_nothing(kind: type[OptionList]) -> None:
+    listed = kind("first", "second")
+    async with _Listed(listed).run_test(size=(40, 12)) as pilot:
+        listed.highlighted = 0
+        for at, highlighted in ((2, 0), (1, 1)):
+            clicked = Style.from_meta({"option": at})
+            listed.post_message(Click(listed, 1, 1, 0, 0, 1, False, False, False, style=clicked))
+            await pilot.pause()
+            assert listed.highlighted == highlighted

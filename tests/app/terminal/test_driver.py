@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tuisim.app.terminal.foreground import run_in_foreground
+from tuisim.app.terminal.driver import run_in_foreground
 from tuisim.errors import TuisimError
 
 

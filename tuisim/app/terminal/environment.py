@@ -1,9 +1,15 @@
-"""The colours of GNU screen and tmux, which stand between an app and its terminal."""
+"""What stands between an app and its terminal: a browser, GNU screen or tmux."""
 
 from __future__ import annotations
 
+import os
 import subprocess
 from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from textual.app import App
 
 KIND = "screen"
 """What TERM begins with in GNU screen, and in tmux unless it is told otherwise."""
@@ -37,3 +43,19 @@ def has_all_colors(environment: Mapping[str, str]) -> bool:
     except (OSError, subprocess.TimeoutExpired):
         return False
     return _ALL_COLORS in done.stdout.strip().split(",")
+
+
+WEB_DRIVER = "textual.drivers.web_driver:WebDriver"
+"""The driver that a server such as textual-serve names in the environment of an app in a browser."""
+
+
+def in_browser() -> bool:
+    """Return whether a server has started this process to show its app in a browser."""
+    return os.environ.get("TEXTUAL_DRIVER") == WEB_DRIVER
+
+
+def offer(app: App[Any], *files: Path) -> None:
+    """Let the browser, if there is one, download files that have been written: it may be on another machine."""
+    if app.is_web:
+        for file in files:
+            app.deliver_binary(file)

@@ -1,10 +1,14 @@
-"""A compositor that tells every widget its size: Textual's leaves out some of those that are new."""
+"""What Textual's own screens and lists get wrong, mended."""
 
 from __future__ import annotations
 
+from typing import Literal
+
 from textual._compositor import Compositor, CompositorMap, ReflowResult
+from textual.events import Click
 from textual.geometry import Size
 from textual.widget import Widget
+from textual.widgets import OptionList
 
 
 class ThoroughCompositor(Compositor):
@@ -32,3 +36,19 @@ class ThoroughCompositor(Compositor):
                 if self._told[widget].region.size != told[widget].region.size
             }
         return ReflowResult(hidden, shown, resized)
+
+
+_click, _move_page = OptionList._on_click, OptionList._move_page
+
+
+async def click(listed: OptionList, event: Click) -> None:
+    """Choose the option that was clicked on; nothing if the list has become shorter since."""
+    at = event.style.meta.get("option", 0)
+    if at < listed.option_count:
+        await _click(listed, event)
+
+
+def move_page(listed: OptionList, direction: Literal[-1, 1]) -> None:
+    """Move by as many lines as are seen; not in a list without room, which has no lines."""
+    if listed.scrollable_content_region:
+        _move_page(listed, direction)

@@ -1,0 +1,48 @@
+"""What the parts of the app may ask of it."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING
+
+from tuisim.app.action import ActionHost
+from tuisim.app.terminal.terminal_app import TerminalApp
+
+if TYPE_CHECKING:
+    from tuisim.app.render.mat import Pixels
+
+
+class LabHost(ActionHost, TerminalApp):
+    """Notices, dialogs and timers of an app with keys; and what changes its screen as a whole."""
+
+    @abstractmethod
+    def situation_changed(self) -> None:
+        """Update the footer: other keys may be available."""
+
+    @abstractmethod
+    def draw(self, force: bool = False) -> bool:
+        """Show the instant in view in every panel. Return whether it differs from what they show already."""
+
+    @abstractmethod
+    def start_run(self, paused: bool = False) -> bool:
+        """Start the program, as soon as the mat is ready. Return whether it has started.
+
+        Args:
+            paused: Pause it at its first line.
+        """
+
+    @abstractmethod
+    def mat_ready(self, pixels: Pixels | None) -> None:
+        """Show the image of the mat that has been prepared; None if it is shown already."""
+
+    @abstractmethod
+    def next_run_changed(self) -> None:
+        """Update the panels after the plan of the next run has changed."""
+
+    @abstractmethod
+    def to_now(self) -> None:
+        """Return from the past to the newest instant."""
+
+    @abstractmethod
+    def run_changed(self, last_words: str = "", error_line: int = 0) -> None:
+        """Prepare the panels for another run, which may have ended already with some last words."""
