@@ -244,6 +244,8 @@ def spawn_isolated(
 def _command(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> list[str]:
     """Return the command of bubblewrap, up to its last options."""
     words = [BWRAP, "--unshare-all", "--as-pid-1", "--new-session", "--die-with-parent"]
+    # It leaves them to root, who could mount again for writing what is mounted for reading.
+    words += ["--cap-drop", "ALL"]
     words += ["--proc", "/proc", "--dev", "/dev", "--size", str(_TMP_BYTES), "--tmpfs", "/tmp"]
     for place in (*_SYSTEM, *_python(), *map(str, readable)):
         words += ["--ro-bind-try", place, place]
