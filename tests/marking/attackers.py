@@ -129,6 +129,15 @@ for _ in range(12):
     libc.shmdt(ctypes.c_void_p(place))
 assert False, '3 GiB'
 """,
+    "messages that nobody reads": OWN_RUN
+    + """
+message = ctypes.create_string_buffer(b'm' * 8200)
+while (queue := libc.msgget(0, 0o1600)) >= 0:
+    while not libc.msgsnd(queue, message, ctypes.c_size_t(8192), 0o4000):  # IPC_NOWAIT
+        held = True
+assert 'held' not in globals(), '0.5 GiB'
+raise PermissionError
+""",
     "memory in a file system of its own": OWN_RUN
     + """
 libc.unshare(0x10000000 | 0x20000)
