@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -110,14 +111,28 @@ def test_a_cluster_that_cannot_work_is_told_in_one_line(
 ) -> None:
     if first is not None:
         department.add(1, first)
-    (tmp_path / "p.py").write_text("print('a: 1')\n")
-    command = [sys.executable, "-m", "tuisim", "batch", "p.py", "--seeds", "0..9", "--scheduler", department.address]
+    _check_told(tmp_path, department.address, message)
+
+
+def _check_told(folder: Path, address: str, message: str) -> None:
+    """Check that a batch tells in one line that a cluster cannot work."""
+    (folder / "p.py").write_text("print('a: 1')\n")
+    command = [sys.executable, "-m", "tuisim", "batch", "p.py", "--seeds", "0..9", "--scheduler", address]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(
-        command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=PATIENCE_S, check=False
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=PATIENCE_S, check=False
     )
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1), done.stderr
     assert message in done.stderr
+
+
+def test_what_greets_otherwise_is_told_in_one_line(tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listens, ThreadPoolExecutor(1) as pool:
+        greeted = pool.submit(lambda: listens.accept()[0])
+        greeted.add_done_callback(lambda found: found.result().sendall(b"SSH-2.0-OpenSSH_9.6\r\n"))
+        address = f"tcp://127.0.0.1:{listens.getsockname()[1]}"
+        _check_told(tmp_path, address, f"no scheduler answers at {address}: what listens there is none")
+        greeted.result().close()
 
 
 def _kill_scheduler(department: Department) -> None:
