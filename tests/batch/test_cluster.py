@@ -9,7 +9,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
@@ -93,6 +93,16 @@ def test_a_worker_that_is_killed_loses_nothing(department: Department) -> None:
     assert by_index([*found, *results]) == expected
 
 
+@pytest.fixture
+def dask_here() -> Iterator[None]:
+    """A machine on which Dask's usual port is in use."""
+    with ExitStack() as stack:
+        with suppress(OSError):
+            stack.enter_context(socket.create_server(("", 8787)))
+        yield
+
+
+@pytest.mark.usefixtures("dask_here")
 def test_a_cluster_on_this_machine() -> None:
     tasks = [task(LOGS, index) for index in range(8)]
     assert by_index(list(run_on_cluster(tasks, workers=2))) == by_index(list(run_many(tasks, 1)))

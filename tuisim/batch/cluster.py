@@ -63,7 +63,12 @@ def run_on_cluster(tasks: Iterable[Task], scheduler: str = "", workers: int = 0)
             client = within(CONNECT_S + 1, _client_of, distributed, scheduler)
         else:
             cluster = distributed.LocalCluster(
-                n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                dashboard_address=None,
+                # Its server takes a fixed port otherwise, also without a dashboard, and warns if that is in use.
+                scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
             )
             client = distributed.Client(cluster, set_as_default=False)
     except Exception as error:  # What listens at an address may be anything, and raise anything.
