@@ -201,6 +201,7 @@ assert others
     "environment of others": OWN_RUN
     + _OTHERS
     + "for pid in others: print(open(f'/proc/{pid}/environ').read())\nassert others",
+    "settings of the system": "open('/proc/sys/kernel/core_pattern', 'r+').close()",
     "a root of others": OWN_RUN + "print(open('/proc/1/root' + 'FIELD/secret.txt').read())",
 }
 FILES: Mapping[str, str] = {

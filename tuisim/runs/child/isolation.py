@@ -251,8 +251,10 @@ def _command(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> l
         words += ["--ro-bind-try", place, place]
     for folder in writable:
         words += ["--bind", str(folder), str(folder)]
-    # These are in memory, too.
-    return [*words, "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", str(cwd)]
+    # /dev and / are in memory, too, and in /proc root could change the settings of the whole system.
+    for place in ("/proc", "/dev", "/"):
+        words += ["--remount-ro", place]
+    return [*words, "--chdir", str(cwd)]
 
 
 def _python() -> list[str]:
