@@ -17,6 +17,8 @@ import pytest
 from tests.runs.run_recorder import Recorder
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
+from tuisim.errors import LogError
+from tuisim.runs import records
 from tuisim.runs.recorded_run import RowIndex
 from tuisim.runs.records import (
     HEADER_BYTES,
@@ -293,6 +295,19 @@ def test_of_a_run_with_a_damaged_recording_the_other_one_is_read(
     run = store.load_run(file.parent.name)
     assert run.notes == (f"{name}: not a tuisim recording: nothing of it can be read",)
     assert (len(run.output.all_rows()), run.telemetry.count) == (rows, ticks)
+
+
+@pytest.mark.parametrize(("time_ns", "most"), [(0, 5), (2_000_000_000, 25)])
+def test_a_flood_of_short_rows_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, time_ns: int, most: int
+) -> None:
+    monkeypatch.setattr(records, "MAX_OUTPUT_ROWS", 5)
+    monkeypatch.setattr(records, "_NS_PER_ROW", 100_000_000)
+    writer = OutputWriter(tmp_path)
+    for _ in range(most):
+        writer.write(b"a", 0, time_ns, 0, Stream.STDOUT)
+    with pytest.raises(LogError, match="the program printed more than 5 lines and "):
+        writer.write(b"a", 0, time_ns, 0, Stream.STDOUT)
 
 
 def _as_new(file: Path) -> None:

@@ -158,6 +158,13 @@ def test_too_much_output_ends_the_run(run: Run, monkeypatch: pytest.MonkeyPatch)
     assert "256 MiB" in done.ended.summary
 
 
+@pytest.mark.slow
+def test_a_flood_of_lines_ends_the_run(run: Run) -> None:
+    done = run("import os\nwhile True: os.write(1, b'\\n' * 10_000)")
+    assert (done.ended.end, done.ended.error_line) == ("output_limit", 2)
+    assert done.ended.summary == "the program printed more than 1,000,000 lines and 1,000 a second"
+
+
 def test_answers_to_input(run: Run) -> None:
     done = run("name = input('Name? ')\nprint('hello ' + name)\ninput()", answers=("Ada",))
     assert done.lines == ["hello Ada"]
