@@ -285,6 +285,7 @@ class PanelArea(Container):
             left = box.width
         for rack in self.screen.query(ToastRack):
             rack.styles.margin = (0, 0, 1, left)
+            rack.styles.width = self.size.width - left
 
     def _panel(self, panel: str) -> Widget:
         if panel not in self.panels:
