@@ -78,6 +78,15 @@ async def test_keys_change_the_text(keys: Keys, after: str) -> None:
         assert area.program_text == after
 
 
+async def test_it_says_that_there_is_no_program_only_when_it_knows() -> None:
+    app = CodeApp()
+    async with app.run_test(size=(60, 12)) as pilot:
+        await pilot.pause()
+        assert "No program" not in "".join(screen_text(app))
+        app.query_one(Code).set_program("", "")
+        await until(pilot, lambda: "No program" in "".join(screen_text(app)))
+
+
 async def test_no_line_is_wrapped_and_the_rest_is_scrolled_to() -> None:
     app = CodeApp()
     async with app.run_test(size=(30, 12)) as pilot:
