@@ -1,15 +1,18 @@
-"""Every widget is told its size, whoever asks for it before."""
+"""Every widget is told its size, and one that is gone leaves the screen, whoever asks for sizes before."""
 
 from __future__ import annotations
 
+import pyte
 import pytest
 from textual import events
 from textual.geometry import Size
 from textual.message import Message
 from textual.screen import Screen
 from textual.widget import Widget
+from textual.widgets._toast import Toast
 
 from tests.app.app_help import LOGS, ready, settings, until
+from tests.app.wires import on_wire, until_quiet, wire_of
 from tuisim.app.app import LabApp
 
 
@@ -49,3 +52,23 @@ async def test_every_widget_is_told_its_size(size: tuple[int, int], last: str, t
         shown = {widget: laid_out[widget].region.size for widget in widgets if widget in laid_out}
         assert len(shown) > 5
         assert {widget: told.get(widget) for widget in shown} == shown
+
+
+async def test_a_notice_that_is_gone_leaves_the_screen(told: dict[Widget, Size]) -> None:
+    async with on_wire(LabApp(settings(LOGS)), notifications=True) as pilot:
+        app = await ready(pilot)
+        await until_quiet(pilot)
+        terminal = pyte.Screen(120, 40)
+        stream = pyte.Stream(terminal)
+        app.notify("A notice", timeout=60)
+        await until_quiet(pilot)
+        stream.feed("".join(wire_of(pilot).sent))
+        assert "A notice" in "\n".join(terminal.display)
+        wire_of(pilot).sent.clear()
+        for toast in app.screen.query(Toast):
+            # What is drawn meanwhile is not known in the map of all widgets: it is made anew for who asks.
+            app.screen._compositor._full_map_invalidated = True
+            toast._expire()
+        await until_quiet(pilot)
+        stream.feed("".join(wire_of(pilot).sent))
+        assert "A notice" not in "\n".join(terminal.display)
