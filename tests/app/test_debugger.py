@@ -164,6 +164,30 @@ async def test_a_breakpoint_holds_and_is_kept_with_the_program(home: object) -> 
         await until(pilot, lambda: [one.text for one in app.debugger.breaks] == ["5"])
 
 
+async def test_a_breakpoint_on_the_current_line_needs_no_code_in_sight(home: object) -> None:
+    async with LabApp(settings(COUNTS)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.run_controller.snapshot().line >= 3)
+        await press_and_stand(pilot, "space")
+        current = app.debugger.current_line
+        assert not app.panel_area.shown("code")
+        await pilot.press("t")
+        assert [one.text for one in app.debugger.breaks] == [str(current)]
+        assert f"Breakpoint on line {current}, the current one" in notices(app)
+        assert not app.panel_area.shown("code")
+
+
+async def test_the_footer_offers_what_is_needed_while_the_code_is_read(home: object) -> None:
+    async with LabApp(settings(COUNTS)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await press(pilot, app, "n", 1, 2)
+        assert app.panel_area.focused_panel() == "code"
+        shown = str(app.key_footer.render())
+        assert "N line back" in shown
+        assert "L to cursor" in shown
+
+
 @pytest.mark.slow
 async def test_breaks_and_watches_are_listed_added_switched_and_deleted(home: object) -> None:
     app = LabApp(settings(COUNTS))

@@ -28,15 +28,35 @@ NOTICES = {
 }
 
 
-async def test_a_notice_does_not_cover_the_axis_of_the_chart() -> None:
+async def test_a_notice_is_shown_whole_beside_the_axis_of_the_chart() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24), notifications=True) as pilot:
         app = await ready(pilot)
         await pilot.press("c")
         await until(pilot, lambda: app.panel_area.shown("chart") and bool(app.panel_area.panels["chart"].region))
         app.say(NOTICES["long"][0])
-        await until(pilot, lambda: any(toast.region for toast in app.screen.query(Toast)))
+        await until(pilot, lambda: app.screen.query(Toast).last()._notification.message == NOTICES["long"][0])
+        toasts = app.screen.query(Toast)
+        await until(pilot, lambda: all(toast.region for toast in toasts))
         chart = app.panel_area.panels["chart"].region
-        assert [toast for toast in app.screen.query(Toast) if toast.region.overlaps(chart)] == []
+        for toast in toasts:
+            assert not toast.region.overlaps(chart)
+            assert app.screen.region.contains_region(toast.region)
+
+
+async def test_notices_leave_the_axis_of_an_enlarged_chart_free() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(100, 30), notifications=True) as pilot:
+        app = await ready(pilot)
+        await pilot.press("c")
+        await until(pilot, lambda: app.panel_area.shown("chart") and bool(app.panel_area.panels["chart"].region))
+        await pilot.press("plus")
+        await until(pilot, lambda: app.panel_area.panels["chart"].region.width == 100)
+        for text in NOTICES["two"]:
+            app.say(text)
+        await until(pilot, lambda: len([t for t in app.screen.query(Toast) if t.region]) >= 2)
+        chart = app.panel_area.panels["chart"].region
+        # Its time axis, the times, and the border.
+        axis = Region(chart.x, chart.bottom - 3, chart.width, 3)
+        assert [toast for toast in app.screen.query(Toast) if toast.region.overlaps(axis)] == []
 
 
 @pytest.mark.quick_cases("two")

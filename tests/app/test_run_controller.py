@@ -86,6 +86,7 @@ async def test_export_asks_before_it_replaces_a_file(tmp_path: Path) -> None:
         assert target.read_text() == "mine"
         await pilot.press("enter")
         await until(pilot, lambda: len(app.screen_stack) == 1)
+        await until(pilot, lambda: any(text.endswith("its units: old.csv.json") for text in notices(app)))
     assert target.read_text() != "mine"
 
 
@@ -129,6 +130,19 @@ async def test_an_error_is_shown_with_its_line() -> None:
         await until(pilot, lambda: all(words in screen_text(app) for words in ("NameError", "✗ 2")))
         assert screen_text(app).count("Traceback") == 1
         await until(pilot, lambda: any("NameError" in notice for notice in notices(app)))
+
+
+async def test_an_error_is_readable_in_a_small_terminal_until_the_next_run() -> None:
+    async with LabApp(settings("print('A: 1')\nprint(nothing)\n")).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("O")
+        assert not app.panel_area.shown("output")
+        await pilot.press("R")
+        await until(pilot, lambda: "NameError: name 'nothing' is not defined" in screen_text(app))
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        app.clear_notifications()
+        await pilot.press("right", "comma", "end")
+        await until(pilot, lambda: "NameError: name 'nothing' is not defined" in screen_text(app))
 
 
 @pytest.mark.quick_cases("text")

@@ -44,11 +44,11 @@ def wire_of(pilot: Pilot[Any]) -> Wire:
 
 
 @asynccontextmanager
-async def on_wire(app: TerminalApp, colors: str = "256") -> AsyncIterator[Pilot[Any]]:
-    """An app in such a terminal of 120×40."""
+async def on_wire(app: TerminalApp, colors: str = "256", *, notifications: bool = False) -> AsyncIterator[Pilot[Any]]:
+    """An app in such a terminal of 120×40, with notices or without."""
     app.driver_class = Wire
     app.console._color_system = COLOR_SYSTEMS[colors]
-    async with app.run_test(headless=False, size=(120, 40)) as pilot:
+    async with app.run_test(headless=False, size=(120, 40), notifications=notifications) as pilot:
         yield pilot
 
 

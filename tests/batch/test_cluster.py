@@ -8,7 +8,8 @@ import socket
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
@@ -92,6 +93,16 @@ def test_a_worker_that_is_killed_loses_nothing(department: Department) -> None:
     assert by_index([*found, *results]) == expected
 
 
+@pytest.fixture
+def dask_here() -> Iterator[None]:
+    """A machine on which Dask's usual port is in use."""
+    with ExitStack() as stack:
+        with suppress(OSError):
+            stack.enter_context(socket.create_server(("", 8787)))
+        yield
+
+
+@pytest.mark.usefixtures("dask_here")
 def test_a_cluster_on_this_machine() -> None:
     tasks = [task(LOGS, index) for index in range(8)]
     assert by_index(list(run_on_cluster(tasks, workers=2))) == by_index(list(run_many(tasks, 1)))
@@ -110,14 +121,28 @@ def test_a_cluster_that_cannot_work_is_told_in_one_line(
 ) -> None:
     if first is not None:
         department.add(1, first)
-    (tmp_path / "p.py").write_text("print('a: 1')\n")
-    command = [sys.executable, "-m", "tuisim", "batch", "p.py", "--seeds", "0..9", "--scheduler", department.address]
+    _check_told(tmp_path, department.address, message)
+
+
+def _check_told(folder: Path, address: str, message: str) -> None:
+    """Check that a batch tells in one line that a cluster cannot work."""
+    (folder / "p.py").write_text("print('a: 1')\n")
+    command = [sys.executable, "-m", "tuisim", "batch", "p.py", "--seeds", "0..9", "--scheduler", address]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(
-        command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=PATIENCE_S, check=False
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=PATIENCE_S, check=False
     )
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1), done.stderr
     assert message in done.stderr
+
+
+def test_what_greets_otherwise_is_told_in_one_line(tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as listens, ThreadPoolExecutor(1) as pool:
+        greeted = pool.submit(lambda: listens.accept()[0])
+        greeted.add_done_callback(lambda found: found.result().sendall(b"SSH-2.0-OpenSSH_9.6\r\n"))
+        address = f"tcp://127.0.0.1:{listens.getsockname()[1]}"
+        _check_told(tmp_path, address, f"no scheduler answers at {address}: what listens there is none")
+        greeted.result().close()
 
 
 def _kill_scheduler(department: Department) -> None:

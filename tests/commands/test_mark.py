@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -297,6 +297,21 @@ def test_a_program_that_this_machine_cannot_read_is_missing_in_the_marks(
     said = capsys.readouterr()
     assert "ada      10      100%" in said.out
     assert "the marks are without eve: eve.py: cannot be read: Input/output error" in said.err
+
+
+def test_a_mat_that_cannot_be_read_is_the_students_own_fault(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "goals.toml").write_text('title = "Done"\n[[goal]]\nname = "finish"\nfinish = true\n')
+    harms: dict[str, Callable[[Path], object]] = {"eve": lambda mat: mat.write_bytes(b"no image"), "zoe": os.mkfifo}
+    for name, harm in harms.items():
+        (tmp_path / "class" / name).mkdir(parents=True)
+        (tmp_path / "class" / name / "main.py").write_text("# %%sim_magic -b ./mat.png\nprint(1)\n")
+        harm(tmp_path / "class" / name / "mat.png")
+    done = here("mark", "goals.toml", "class", "--seeds", "0", "--jobs", "1", "--no-isolate")
+    assert (done.returncode, done.stderr) == (0, "")
+    rows = [line.split(maxsplit=4) for line in done.stdout.splitlines()[1:3]]
+    assert [row[:4] for row in rows] == [["eve", "0", "0%", "0"], ["zoe", "0", "0%", "0"]]
+    assert rows[0][4].startswith("mat.png: is not a readable image")
+    assert rows[1][4].startswith("mat.png: is not a regular file")
 
 
 def test_a_run_that_could_not_be_started_is_missing_in_the_marks_until_it_is_resumed(

@@ -154,3 +154,14 @@ def test_a_terminal_shows_a_page_in_a_pager(tmp_path: Path) -> None:
         terminal.until(lambda screen: "EXIT 0" in screen)
     finally:
         terminal.end()
+
+
+@pytest.mark.tmux
+@pytest.mark.slow
+def test_a_search_that_fits_the_screen_opens_no_pager(tmp_path: Path) -> None:
+    terminal = Terminal(f"guide{tmp_path.name}", tmp_path)
+    terminal.start(["guide", "--search", "black outside the mat"], 80, 24)
+    try:
+        terminal.until(lambda screen: "How the sensors see" in screen and "EXIT 0" in screen)
+    finally:
+        terminal.end()

@@ -25,6 +25,17 @@ def test_words_need_not_be_exact(question: str, page: str) -> None:
     assert search(question)[0].name == page
 
 
+@pytest.mark.parametrize(
+    ("question", "section"),
+    [
+        ("run faster than real time", "Faster or slower than real time"),
+        ("black outside the mat", "Light and colour"),
+    ],
+)
+def test_the_section_that_answers_is_named(question: str, section: str) -> None:
+    assert search(question)[0].heading == section
+
+
 @pytest.mark.parametrize("question", ["", "how do I", "xyzzy", "%&"])
 def test_nothing_is_found_where_nothing_is_asked(question: str) -> None:
     assert search(question) == []

@@ -27,6 +27,11 @@ for fd in range(3, 20000):
     try: os.write(fd, b'hello\\n')
     except OSError: pass
 """
+_MAT = """
+# Another worker may have put its own file in the same place meanwhile.
+names = [os.readlink(link).removesuffix(' (deleted)') for link in links if os.path.exists(link)]
+mat = next(name for name in names if name.endswith('.sums'))
+"""
 _OTHERS = """
 others = [int(name) for name in os.listdir('/proc') if name.isdigit() and int(name) != os.getpid()]
 """
@@ -124,13 +129,22 @@ for _ in range(12):
     libc.shmdt(ctypes.c_void_p(place))
 assert False, '3 GiB'
 """,
+    "messages that nobody reads": OWN_RUN
+    + """
+message = ctypes.create_string_buffer(b'm' * 8200)
+while (queue := libc.msgget(0, 0o1600)) >= 0:
+    while not libc.msgsnd(queue, message, ctypes.c_size_t(8192), 0o4000):  # IPC_NOWAIT
+        held = True
+assert 'held' not in globals(), '0.5 GiB'
+raise PermissionError
+""",
     "memory in a file system of its own": OWN_RUN
     + """
-if libc.unshare(0x10000000 | 0x20000):
-    raise PermissionError
+libc.unshare(0x10000000 | 0x20000)
 os.mkdir('m')
-libc.mount(b'x', b'm', b'tmpfs', 0, None)
-assert False, 'a file system'
+if libc.mount(b'x', b'm', b'tmpfs', 0, None):
+    raise PermissionError
+assert False, '3 GiB'
 """,
 }
 """Ways to more memory; what is beyond the limit fails by an AssertionError."""
@@ -187,14 +201,17 @@ assert others
     "environment of others": OWN_RUN
     + _OTHERS
     + "for pid in others: print(open(f'/proc/{pid}/environ').read())\nassert others",
+    "settings of the system": "open('/proc/sys/kernel/core_pattern', 'r+').close()",
     "a root of others": OWN_RUN + "print(open('/proc/1/root' + 'FIELD/secret.txt').read())",
 }
 FILES: Mapping[str, str] = {
     "the goals file": "open('FIELD/goals.toml', 'r+').write('points = 1000')",
     "another's program": "open('FIELD/class/ada.py', 'w').write('')",
     "the home folder": "import shutil\nshutil.rmtree('FIELD/home')",
-    "its mat": OWN_RUN + "for name in {os.readlink(link) for link in links if os.path.exists(link)}:\n"
-    "    if name.endswith('.sums'): open(name, 'r+b').close()",
+    "its mat": OWN_RUN + _MAT + "open(mat, 'r+b').close()",
+    "its mat, mounted again": OWN_RUN
+    + _MAT
+    + "libc.mount(None, mat.encode(), None, 32 | 4096, None)  # MS_REMOUNT, MS_BIND\nopen(mat, 'r+b').close()",
     "a secret": "print(open('FIELD/secret.txt').read())",
 }
 

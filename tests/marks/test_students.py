@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.marks.the_class import CLASS, write_class
+from tuisim.config.program_settings import program_settings
 from tuisim.errors import ConfigError
 from tuisim.marks import students
 from tuisim.marks.journal import Journal
@@ -235,3 +236,34 @@ def test_a_magic_line_may_not_name_files_outside_the_folder(tmp_path: Path, opti
     (folder / "ben" / "main.py").write_text(f"# %%sim_magic {option} ./own.toml\n")
     ada, ben = find_students([str(folder)]).students
     assert (bool(file_outside(ada)), file_outside(ben)) == (True, "")
+
+
+@pytest.mark.parametrize(
+    ("words", "is_refused"),
+    [
+        ("-b ./mat.png", False),
+        ("-r ben/robot.toml", True),
+        ("-b ./zoe.py", True),
+        ("--mats .", True),
+        ("--mats ben", True),
+    ],
+)
+def test_a_magic_line_of_a_file_may_not_name_what_is_another_students(
+    tmp_path: Path, words: str, is_refused: bool
+) -> None:
+    folder = _folder(tmp_path, "ada.py", "ben/main.py", "zoe.py")
+    (folder / "ada.py").write_text(f"# %%sim_magic {words}\n")
+    ada = find_students([str(folder)]).students[0]
+    assert bool(file_outside(ada)) == is_refused
+
+
+def test_a_program_that_is_a_file_gets_nothing_from_the_programs_beside_it(tmp_path: Path) -> None:
+    folder = _folder(tmp_path, "ada.py", "ben.py")
+    (folder / "ada.py").write_text("try:\n    from ben import *\nexcept ImportError:\n    pass\nprint(1)\n")
+    before = find_students([str(folder)]).students[0].source
+    assert before
+    settings = program_settings(before)
+    (folder / "ben.py").write_text("from ev3dev2.motor import *\ntank_drive = MoveTank(OUTPUT_A, OUTPUT_D)\n")
+    after = find_students([str(folder)]).students[0].source
+    assert after and after.program.prelude == before.program.prelude
+    assert program_settings(after) == settings

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tracemalloc
-from dataclasses import replace
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -73,8 +73,8 @@ def test_a_flood_of_changes_leaves_few_marks(tmp_path: Path) -> None:
     assert len(index_of(tmp_path, rows).marks) < 4000
 
 
-def stored(text: str, **choices: Any) -> StoredRun:
-    spec = build_run_spec(replace(Settings({"background": "Grey_bands"}), **choices))
+def stored(text: str, choices: Mapping[str, Any] | None = None) -> StoredRun:
+    spec = build_run_spec(Settings({"background": "Grey_bands", **(choices or {})}))
     run = start_run(program(text), spec, RunOptions())
     assert run.wait(PATIENCE_S)
     return RunStore().load_run(run.run_id)
@@ -83,7 +83,7 @@ def stored(text: str, **choices: Any) -> StoredRun:
 @pytest.mark.quick_cases("near")
 @pytest.mark.parametrize("ticks", [(0, 20, 59), (59, 20, 0), (30, 30, 31)], ids=["forward", "back", "near"])
 def test_sensors_see_what_the_pen_had_drawn_by_then(ticks: tuple[int, ...]) -> None:
-    run = stored("tank_drive.on_for_seconds(50, 50, 0.6)\n", pen_down=True, pen_marks=True)
+    run = stored("tank_drive.on_for_seconds(50, 50, 0.6)\n", {"pen.down": True, "pen_marks": True})
     mat, recording = open_mat(run), Recording(run)
     records = run.telemetry.array().tolist()
     for tick in ticks:
@@ -95,7 +95,7 @@ def test_sensors_see_what_the_pen_had_drawn_by_then(ticks: tuple[int, ...]) -> N
 
 
 def test_the_pen_of_a_long_run_takes_little_memory() -> None:
-    run = stored("import time\ntime.sleep(100)\n", pen_down=True, pen_marks=True)
+    run = stored("import time\ntime.sleep(100)\n", {"pen.down": True, "pen_marks": True})
     mat, recording = open_mat(run), Recording(run)
     assert recording.newest >= 10_000
     tracemalloc.start()

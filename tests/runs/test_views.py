@@ -17,16 +17,21 @@ import pytest
 from tests.runs.run_recorder import Recorder
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
+from tuisim.errors import LogError
+from tuisim.runs import records
 from tuisim.runs.recorded_run import RowIndex
 from tuisim.runs.records import (
     HEADER_BYTES,
     OUTPUT_FILE,
     OUTPUT_ROW,
     TELEMETRY_FILE,
+    TELEMETRY_MAGIC,
     OutputWriter,
     Stream,
     TelemetryWriter,
+    header,
 )
+from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 from tuisim.runs.views import OutputView, TelemetryView, TickRecord, instant_of
 
@@ -290,6 +295,39 @@ def test_of_a_run_with_a_damaged_recording_the_other_one_is_read(
     run = store.load_run(file.parent.name)
     assert run.notes == (f"{name}: not a tuisim recording: nothing of it can be read",)
     assert (len(run.output.all_rows()), run.telemetry.count) == (rows, ticks)
+
+
+@pytest.mark.parametrize(("time_ns", "most"), [(0, 5), (2_000_000_000, 25)])
+def test_a_flood_of_short_rows_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, time_ns: int, most: int
+) -> None:
+    monkeypatch.setattr(records, "MAX_OUTPUT_ROWS", 5)
+    monkeypatch.setattr(records, "_NS_PER_ROW", 100_000_000)
+    writer = OutputWriter(tmp_path)
+    for _ in range(most):
+        writer.write(b"a", 0, time_ns, 0, Stream.STDOUT)
+    with pytest.raises(LogError, match="the program printed more than 5 lines and "):
+        writer.write(b"a", 0, time_ns, 0, Stream.STDOUT)
+
+
+def _as_new(file: Path) -> None:
+    file.write_bytes(bytes(file.stat().st_size))
+
+
+@pytest.mark.parametrize("harm", [Path.unlink, _as_new])
+@pytest.mark.parametrize("name", [TELEMETRY_FILE, OUTPUT_FILE])
+def test_a_recording_that_is_lost_without_a_trace_is_told(
+    name: str, harm: Callable[[Path], None], logged: StoredRun, store: RunStore
+) -> None:
+    harm(logged.folder / name)
+    assert store.load_run(logged.id).notes == (f"{name} is missing",)
+
+
+def test_ticks_that_are_lost_without_a_trace_are_told(logged: StoredRun, store: RunStore) -> None:
+    file = logged.folder / TELEMETRY_FILE
+    whole = file.read_bytes()
+    file.write_bytes(header(TELEMETRY_MAGIC, TICK_RECORD.size, 5) + whole[HEADER_BYTES:])
+    assert store.load_run(logged.id).notes == (f"{TELEMETRY_FILE} has 5 of 18 records",)
 
 
 def test_a_stream_of_another_version_is_read_as_unknown(tmp_path: Path) -> None:

@@ -20,3 +20,10 @@ def test_too_much_output_ends_the_run(run: Run, monkeypatch: pytest.MonkeyPatch)
     done = run("x = 'y' * 10_000_000\nwhile True: print(x)")
     assert (done.ended.end, done.ended.error_line) == ("output_limit", 2)
     assert "256 MiB" in done.ended.summary
+
+
+@pytest.mark.slow
+def test_a_flood_of_lines_ends_the_run(run: Run) -> None:
+    done = run("import os\nwhile True: os.write(1, b'\\n' * 10_000)")
+    assert (done.ended.end, done.ended.error_line) == ("output_limit", 2)
+    assert done.ended.summary == "the program printed more than 1,000,000 lines and 1,000 a second"

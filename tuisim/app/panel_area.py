@@ -60,6 +60,8 @@ class _Mounted(Generic[PanelWidget]):
 
 _NOTICE_COLUMNS = 24
 """Columns that are enough for a notice."""
+_AXIS_ROWS = 3
+"""Rows of a chart from its time axis to its lower edge."""
 
 
 class PanelArea(Container):
@@ -281,13 +283,16 @@ class PanelArea(Container):
         self.post_message(self.Rearranged())
 
     def _place_notices(self) -> None:
-        """Show notices beside the chart, not on its time axis, if it is at the bottom and there is room beside it."""
-        box, left = self.arrangement.boxes.get("chart"), 0
-        is_below = box is not None and box.x == 0 and box.y + box.height == self.size.height
-        if box is not None and is_below and self.size.width - box.width >= _NOTICE_COLUMNS:
-            left = box.width
+        """Show notices beside a chart at the bottom if there is room, else above its time axis."""
+        box, left, below = self.arrangement.boxes.get("chart"), 0, 1
+        if box is not None and box.x == 0 and box.y + box.height == self.size.height:
+            if self.size.width - box.width >= _NOTICE_COLUMNS:
+                left = box.width
+            else:
+                below += _AXIS_ROWS
         for rack in self.screen.query(ToastRack):
-            rack.styles.margin = (0, 0, 1, left)
+            rack.styles.margin = (0, 0, below, left)
+            rack.styles.width = self.size.width - left
 
     def _panel(self, panel: str) -> Widget:
         if panel not in self.panels:

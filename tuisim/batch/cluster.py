@@ -60,10 +60,15 @@ def run_on_cluster(tasks: Iterable[Task], scheduler: str = "", workers: int = 0)
     cluster = None
     try:
         if scheduler:
-            client = within(CONNECT_S + 1, distributed.Client, scheduler, timeout=CONNECT_S, set_as_default=False)
+            client = within(CONNECT_S + 1, _client_of, distributed, scheduler)
         else:
             cluster = distributed.LocalCluster(
-                n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                dashboard_address=None,
+                # Its server takes a fixed port otherwise, also without a dashboard, and warns if that is in use.
+                scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
             )
             client = distributed.Client(cluster, set_as_default=False)
     except Exception as error:  # What listens at an address may be anything, and raise anything.
@@ -74,6 +79,18 @@ def run_on_cluster(tasks: Iterable[Task], scheduler: str = "", workers: int = 0)
         _close(client)
         if cluster is not None:
             cluster.close()
+
+
+def _client_of(distributed: Any, scheduler: str) -> Any:
+    client = object.__new__(distributed.Client)
+    try:
+        client.__init__(scheduler, timeout=CONNECT_S, set_as_default=False)
+    # All of them: it is raised again.
+    except BaseException:
+        # Deleted, it would wait for the end of a connection that it never had.
+        client.status = "closed"
+        raise
+    return client
 
 
 def _dask() -> Any:
@@ -92,6 +109,9 @@ def _dask() -> Any:
 
 def _no_scheduler(scheduler: str, error: Exception) -> ConfigError:
     why = str(error).partition("\n")[0] or type(error).__name__
+    if isinstance(error, MemoryError):
+        # It takes any greeting for the size of a message.
+        why = "what listens there is none"
     if scheduler:
         return ConfigError(
             f"no scheduler answers at {scheduler}: {why}", "start one with `dask scheduler`", key="--scheduler"

@@ -121,20 +121,24 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     """Return rows of text under their heads, with aligned columns; columns of numbers are right-aligned.
 
     In a terminal that is too narrow for it, the longest texts are broken between words; if that is not enough, heads of
-    several words take a line for each, and the gaps are narrower. Numbers and dates stay whole.
+    several words take a line for each, and the gaps are narrower. Only if nothing else helps words are cut. Numbers and
+    dates stay whole.
     """
     right = [bool(rows) and all(isinstance(row[at], int | float) for row in rows) for at in range(len(heads))]
     body = [[printable(str(cell)) for cell in row] for row in rows]
     room = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
     columns = list(zip(*body, strict=True)) if body else [()] * len(heads)
     figures = [all(cell.strip()[:1].isdecimal() for cell in column if cell) for column in columns]
+    longest = [max((len(word) for cell in column for word in cell.split()), default=0) for column in columns]
     found = ""
     above = _stacked(heads)
     for lines, gap, least in (([[*heads]], "  ", _GOOD_CELLS), (above, "  ", _GOOD_CELLS), (above, " ", _LEAST_CELLS)):
         cells = [*lines, *body]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
         if room is not None:
-            widths = _cut_to(room, widths, figures, gap, least)
+            widths = _cut_to(room, widths, figures, gap, [max(least, length) for length in longest])
+            if least == _LEAST_CELLS:
+                widths = _cut_to(room, widths, figures, gap, [least] * len(heads))
         found = _aligned([line for row in cells for line in _wrapped(row, widths)], widths, right, gap)
         if room is None or _total(widths, gap) <= room:
             break
@@ -155,7 +159,10 @@ def _total(widths: Sequence[int], gap: str) -> int:
 def _wrapped(row: Sequence[str], widths: Sequence[int]) -> Iterator[tuple[str, ...]]:
     """Yield the lines of a row whose texts are broken between words; a longer word is cut, and marked."""
     texts = [
-        [word if len(word) <= width else word[: width - 1] + "…" for word in wrap(cell, width, break_long_words=False)]
+        [
+            word if len(word) <= width else word[: width - 1] + "…"
+            for word in wrap(cell, width, break_long_words=False, break_on_hyphens=False)
+        ]
         if len(cell) > width
         else [cell]
         for cell, width in zip(row, widths, strict=True)
@@ -163,11 +170,11 @@ def _wrapped(row: Sequence[str], widths: Sequence[int]) -> Iterator[tuple[str, .
     yield from zip_longest(*texts, fillvalue="")
 
 
-def _cut_to(room: int, widths: Sequence[int], figures: Sequence[bool], gap: str, least: int) -> list[int]:
+def _cut_to(room: int, widths: Sequence[int], figures: Sequence[bool], gap: str, least: Sequence[int]) -> list[int]:
     """Return the widths of columns with the widest texts made narrower until they fit, as far as they can be."""
     widths = [*widths]
     while _total(widths, gap) > room:
-        texts = [at for at, is_figure in enumerate(figures) if not is_figure and widths[at] > least]
+        texts = [at for at, is_figure in enumerate(figures) if not is_figure and widths[at] > least[at]]
         if not texts:
             break
         widths[max(texts, key=widths.__getitem__)] -= 1

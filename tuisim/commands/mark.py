@@ -22,9 +22,13 @@ from tuisim.commands.listings import names_of
 from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import Arguments, WordType, argument, command, option
+from tuisim.config.folders import backgrounds_folder
+from tuisim.config.mat_image import decode, read_file
+from tuisim.config.mats import background
 from tuisim.config.options import APP, PANEL, settings_of
 from tuisim.config.program_settings import program_settings
 from tuisim.config.shared_options import shared_options
+from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError, ExportError, counted, listed, printable, see_page
 from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.goals.spec import Goal
@@ -37,6 +41,7 @@ from tuisim.marks.page import page_of, reports_folder
 from tuisim.marks.runs import STALL_LIMIT_S, MarkPlan, RunEntry, outcomes_of
 from tuisim.marks.sheet import Sheet, SheetColumn, lines_of, sheet_of, summary_of
 from tuisim.marks.students import Student, StudentsFound, file_outside, find_students
+from tuisim.regular_file import of_the_machine
 from tuisim.runs.child.isolation import check_isolation
 from tuisim.runs.child.supervisor import supervised
 from tuisim.runs.handle import RunOptions, user_python_path
@@ -244,18 +249,41 @@ def _entries(found: StudentsFound, task: GoalsFile, arguments: Arguments) -> tup
         spec = shared
         if student.source and not task.settings:
             try:
-                if outside := file_outside(student):
-                    raise ConfigError("the magic line names a file outside the folder", key=outside)
-                spec = build_run_spec(program_settings(student.source, arguments.settings).settings)
+                spec = _own_spec(student, arguments)
             except ConfigError as error:
-                # A file of the student's is named as it is in the folder.
-                folder = student.path if student.path.is_dir() else student.path.parent
-                text = str(error).replace(f"{folder}{os.sep}", "")
-                student = replace(student, source=None, problem=printable(text))
+                cause = error.__cause__
+                is_unread = isinstance(cause, OSError) and of_the_machine(cause)
+                student = replace(student, source=None, problem=_told(error, student), is_unread=is_unread)
         if student.source:
             entries.append(RunEntry(student, spec))
         students.append(student)
     return entries, students
+
+
+def _own_spec(student: Student, arguments: Arguments) -> RunSpec:
+    """Return the world of a student's magic line.
+
+    Raises:
+        ConfigError: the line, or a file that it names, is wrong.
+    """
+    assert student.source is not None
+    if outside := file_outside(student):
+        raise ConfigError("the magic line names a file outside the folder", key=outside)
+    spec = build_run_spec(program_settings(student.source, arguments.settings).settings)
+    image = background(spec.world.background).image
+    if not image.is_relative_to(backgrounds_folder()):
+        # A run for which it cannot be read is one that this machine could not make.
+        decode(read_file(image), image, spec.world.background_fit)
+    return spec
+
+
+def _told(error: ConfigError, student: Student) -> str:
+    """Return what is wrong, with the student's files named as they are in the folder."""
+    folder = student.path if student.path.is_dir() else student.path.parent
+    text = str(error)
+    for place in (os.path.abspath(folder), os.path.realpath(folder), str(folder)):
+        text = text.replace(f"{place}{os.sep}", "")
+    return printable(text)
 
 
 def _collect(

@@ -205,10 +205,11 @@ def find_program(word: str) -> Path:
     return path
 
 
-def read_program(path: Path, *, as_python: bool = False) -> ProgramSource:
+def read_program(path: Path, *, as_python: bool = False, alone: bool = False) -> ProgramSource:
     """Read a program file; files in its magic line are looked up beside it.
 
     Args:
+        alone: Whether no module lies beside it: a class's files may lie in one folder. Its path then is one in itself.
         as_python: Whether a file that is not text is read all the same, its wrong bytes as lone surrogates: when it is
             run, it raises what Python raises.
 
@@ -222,21 +223,24 @@ def read_program(path: Path, *, as_python: bool = False) -> ProgramSource:
         raise ConfigError(f"is larger than {MAX_PROGRAM_BYTES >> 20} MiB", hint, file=shown)
     if path.suffix == ".ipynb":
         raise ConfigError("is a notebook", hint, file=shown)
-    return program_of_text(_decode(data, shown, as_python), path, path.name)
+    return program_of_text(_decode(data, shown, as_python), path, path.name, alone=alone)
 
 
-def program_of_text(text: str, path: Path | None, name: str) -> ProgramSource:
+def program_of_text(text: str, path: Path | None, name: str, *, alone: bool = False) -> ProgramSource:
     """Like `read_program`, from a text; files in its magic line are looked up beside `path`.
 
     Args:
         text: The source, with `\\n` as line endings.
         path: Its file, which may not exist; None if it has none.
         name: Its name, for errors and tables.
+        alone: As in `read_program`.
 
     Raises:
         ConfigError: its magic line is wrong.
     """
-    source = parse_program(text, name, str(path) if path else "")
+    # In a file, nothing can be found.
+    where = path / name if path and alone else path
+    source = parse_program(text, name, str(where) if where else "")
     return replace(source, options=beside(path.parent if path else Path.cwd(), source.options))
 
 

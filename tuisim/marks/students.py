@@ -169,14 +169,20 @@ def _what_is_refused(folder: Path) -> str:
 def file_outside(student: Student) -> str:
     """Return the option of the student's magic line that names a file outside the folder; empty if there is none.
 
-    Such a file would be read with the rights of whoever marks.
+    Such a file would be read with the rights of whoever marks. Beside a program that is a file, the folders and the
+    programs are those of other students.
     """
     assert student.source is not None
-    own = _real(student.path if student.path.is_dir() else student.path.parent)
+    is_file = not student.path.is_dir()
+    own = _real(student.path.parent if is_file else student.path)
     for field in sorted(FILE_FIELDS & student.source.options.keys()):
         word = str(student.source.options[field])
-        if (field == "mats" or names_file(word)) and not _real(Path(word)).is_relative_to(own):
-            return field
+        if field == "mats" or names_file(word):
+            place = _real(Path(word))
+            if is_file and (place.parent != own or place.is_dir() or place.suffix.lower() == SUFFIX):
+                return field
+            if not place.is_relative_to(own):
+                return field
     return ""
 
 
@@ -187,7 +193,7 @@ def _shown(name: str) -> str:
 
 def _read(student: Student, path: Path) -> Student:
     try:
-        source = read_program(path, as_python=True)
+        source = read_program(path, as_python=True, alone=path == student.path)
         return replace(student, source=replace(source, program=replace(source.program, name=_shown(path.name))))
     except ConfigError as error:
         problem = printable(str(error).replace(str(path), path.name))

@@ -89,6 +89,9 @@ _LEAST_STEP = 4096
 
 MAX_OUTPUT_BYTES = 256 << 20
 """A run that prints more than this is stopped."""
+MAX_OUTPUT_ROWS, MAX_ROWS_PER_S = 1_000_000, 1_000
+"""So is one with more rows than these together: for each, whoever judges a run needs time and memory."""
+_NS_PER_ROW = 1_000_000_000 // MAX_ROWS_PER_S
 
 
 def header(magic: bytes, record_bytes: int, length: int) -> bytes:
@@ -212,7 +215,7 @@ class OutputWriter(_Writer):
 
     def __init__(self, folder: Path) -> None:
         super().__init__(folder / OUTPUT_FILE, OUTPUT_MAGIC, 0, OUTPUT_CHUNK)
-        self.length = 0
+        self.length = self._rows = 0
 
     def write(self, text: bytes, tick: int, time_ns: int, line: int, stream: Stream) -> None:
         """Append one row.
@@ -225,10 +228,13 @@ class OutputWriter(_Writer):
             stream: The stream.
 
         Raises:
-            LogError: the output has reached MAX_OUTPUT_BYTES.
+            LogError: the output has reached MAX_OUTPUT_BYTES, or more rows than are allowed up to this time.
         """
         if self._is_full:
             return
+        self._rows += 1
+        if self._rows > MAX_OUTPUT_ROWS + time_ns // _NS_PER_ROW:
+            raise LogError(f"the program printed more than {MAX_OUTPUT_ROWS:,} lines and {MAX_ROWS_PER_S:,} a second")
         at = HEADER_BYTES + self.length
         end = at + OUTPUT_ROW.size + len(text)
         if end > self._capacity:

@@ -39,6 +39,8 @@ _Kind = TypeVar("_Kind")
 MOST_INTEGER = (1 << 63) - 1
 """What the catalogue can hold."""
 _ANY_END = Ended(End.FINISHED, 0, 0)
+_TOLD = frozenset({End.FINISHED, End.RAISED, End.TIME_LIMIT, End.DEADLOCK})
+"""Ends that a program's process tells after it has written both recordings."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,6 +248,8 @@ def read_run(folder: Path, document: bytes | None = None) -> StoredRun:
         for key in ("working_directory", "module_folder"):
             program[key] = _typed(data["program"].get(key, ""), str, key)
         spec = _checked(from_plain(data["spec"]))
+        end = None if data["end"] is None else _end_of(data["end"])
+        lost = [view.note or _lost_of(view, end) for view in (telemetry, output)]
         return StoredRun(
             folder=folder,
             id=_typed(data["id"], str, "id"),
@@ -257,12 +261,10 @@ def read_run(folder: Path, document: bytes | None = None) -> StoredRun:
             field=_typed(data["field"] or {}, dict, "field") or None,
             options=_options_of(data),
             tags=tuple(_typed(tag, str, "a tag") for tag in data.get("tags", ())),
-            end=None if data["end"] is None else _end_of(data["end"]),
+            end=end,
             actions=actions,
             # Both recordings may have the same note.
-            notes=tuple(
-                filter(None, dict.fromkeys((telemetry.note, output.note, cut, _model_note(data["spec"]["profile"]))))
-            ),
+            notes=tuple(filter(None, dict.fromkeys((*lost, cut, _model_note(data["spec"]["profile"]))))),
             telemetry=telemetry,
             output=output,
         )
@@ -271,6 +273,17 @@ def read_run(folder: Path, document: bytes | None = None) -> StoredRun:
     except (KeyError, TypeError, ValueError, OverflowError, AttributeError, TuisimError) as error:
         what = f"{error} is missing" if isinstance(error, KeyError) else str(error)
         raise LogError(f"damaged: {shortened(what)}", file=str(folder / RUN_FILE)) from error
+
+
+def _lost_of(view: TelemetryView | OutputView, end: Ended | None) -> str:
+    """Return what a sound recording lacks of a run that has told its own end; empty if nothing."""
+    if end is None or end.end not in _TOLD:
+        return ""
+    if view.is_missing:
+        return f"{view.name} is missing"
+    if isinstance(view, TelemetryView) and view.count <= end.tick:
+        return f"{view.name} has {view.count} of {end.tick + 1} records"
+    return ""
 
 
 def _model_note(profile: Mapping[str, Any]) -> str:

@@ -113,7 +113,8 @@ class _View(ABC):
         LogError: by every method, if this machine cannot read the file, or if its packed form is damaged.
     """
 
-    _name: ClassVar[str]
+    name: ClassVar[str]
+    """That of the file."""
     _magic: ClassVar[bytes]
     _record_bytes: ClassVar[int]
     """Size of a record; 1 if it varies."""
@@ -123,7 +124,7 @@ class _View(ABC):
     """The length that the program's process never exceeds; None if there is none."""
 
     def __init__(self, folder: Path, is_checked: bool = False) -> None:
-        self._path = folder / self._name
+        self._path = folder / self.name
         self._is_checked = is_checked
         self._damage = ""
         self.holds = False
@@ -134,7 +135,7 @@ class _View(ABC):
         self._source: int | None = None
         """Descriptor of the file, from which records that were dropped are read again; open only if some were."""
         self._published = self._there = 0
-        self._unpacked = False
+        self._has_begun = self._unpacked = False
         self._packed: Packed | None = None
         """The packed form, while only its header has been read."""
         self._earlier: Packed | None = None
@@ -147,8 +148,8 @@ class _View(ABC):
 
     @property
     def is_missing(self) -> bool:
-        """Whether there is neither the file nor its packed form."""
-        return not self._extent() and self._packed is None and not self._path.exists()
+        """Whether there is neither a recording, be it empty, nor a packed one."""
+        return not self._extent() and self._packed is None and not self._has_begun
 
     @property
     def note(self) -> str:
@@ -237,6 +238,7 @@ class _View(ABC):
         except LogError as error:
             self._damage = f"{error.message}: nothing of it can be read"
             return
+        self._has_begun = True
         if self._most_bytes is not None and published > self._most_bytes:
             self._damage = f"{self._path.name} is longer than a recording can be"
             return
@@ -336,7 +338,7 @@ def _read_into(fd: int, place: memoryview, at: int) -> int:
 class TelemetryView(_View):
     """The tick records of a run."""
 
-    _name, _magic, _record_bytes = TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size
+    name, _magic, _record_bytes = TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size
     _kept = 1 << 14
 
     @property
@@ -427,7 +429,7 @@ class TelemetryView(_View):
 class OutputView(_View):
     """The rows of a run: printed, spoken, answers to input(), brick state."""
 
-    _name, _magic, _record_bytes = OUTPUT_FILE, OUTPUT_MAGIC, 1
+    name, _magic, _record_bytes = OUTPUT_FILE, OUTPUT_MAGIC, 1
     # The file is larger by its last step of growth.
     _most_bytes = 2 * MAX_OUTPUT_BYTES
     _kept = 1 << 20

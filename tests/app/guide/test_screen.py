@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 from textual.pilot import Pilot
-from textual.widgets import Tree
+from textual.widgets import Input, Tree
 
 from tests.app.app_help import lab, ready, screen_text, settings, until, until_shown
 from tests.guide.questions import QUESTIONS
@@ -109,6 +109,13 @@ async def test_a_question_is_answered_by_its_page(question: str) -> None:
         await pilot.press("enter", "enter")
         await until(pilot, lambda: screen.focused is not None and screen.focused.id == "page")
         assert screen.place[0] == QUESTIONS[question]
+
+
+async def test_a_new_search_replaces_the_old_one() -> None:
+    async with LabApp(settings()).run_test(size=SMALL) as pilot:
+        screen = await opened(pilot)
+        await pilot.press("slash", *"noise", "enter", "slash", *"black")
+        assert screen.query_one(Input).value == "black"
 
 
 @pytest.mark.slow

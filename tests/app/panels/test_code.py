@@ -4,9 +4,21 @@ from __future__ import annotations
 
 import pytest
 
+from tests.app.app_help import until
 from tests.app.code_help import CodeApp, alone
+from tests.app.panel_help import screen_text
+from tuisim.app.panels.code import Code
 
 Keys = list[str]
+
+
+async def test_it_says_that_there_is_no_program_only_when_it_knows() -> None:
+    app = CodeApp()
+    async with app.run_test(size=(60, 12)) as pilot:
+        await pilot.pause()
+        assert "No program" not in "".join(screen_text(app))
+        app.query_one(Code).set_program("", "")
+        await until(pilot, lambda: "No program" in "".join(screen_text(app)))
 
 
 @pytest.mark.parametrize(

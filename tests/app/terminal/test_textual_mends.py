@@ -1,7 +1,8 @@
-"""Every widget is told its size; lists without room, and clicks on options that are gone."""
+"""Every widget is told its size, what is gone leaves the screen; lists without room, clicks on gone options."""
 
 from __future__ import annotations
 
+import pyte
 import pytest
 from rich.style import Style
 from textual import events
@@ -13,8 +14,10 @@ from textual.message import Message
 from textual.screen import Screen
 from textual.widget import Widget
 from textual.widgets import OptionList
+from textual.widgets._toast import Toast
 
 from tests.app.app_help import LOGS, ready, settings, until
+from tests.app.wires import on_wire, until_quiet, wire_of
 from tuisim.app.app import LabApp
 from tuisim.app.terminal.terminal_app import TerminalApp
 
@@ -89,3 +92,23 @@ async def test_a_click_on_an_option_that_is_gone_does_nothing(kind: type[OptionL
             listed.post_message(Click(listed, 1, 1, 0, 0, 1, False, False, False, style=clicked))
             await pilot.pause()
             assert listed.highlighted == highlighted
+
+
+async def test_a_notice_that_is_gone_leaves_the_screen(told: dict[Widget, Size]) -> None:
+    async with on_wire(LabApp(settings(LOGS)), notifications=True) as pilot:
+        app = await ready(pilot)
+        await until_quiet(pilot)
+        terminal = pyte.Screen(120, 40)
+        stream = pyte.Stream(terminal)
+        app.notify("A notice", timeout=60)
+        await until_quiet(pilot)
+        stream.feed("".join(wire_of(pilot).sent))
+        assert "A notice" in "\n".join(terminal.display)
+        wire_of(pilot).sent.clear()
+        for toast in app.screen.query(Toast):
+            # What is drawn meanwhile is not known in the map of all widgets: it is made anew for who asks.
+            app.screen._compositor._full_map_invalidated = True
+            toast._expire()
+        await until_quiet(pilot)
+        stream.feed("".join(wire_of(pilot).sent))
+        assert "A notice" not in "\n".join(terminal.display)

@@ -93,7 +93,6 @@ class Code(Vertical):
         """What is wrong in the line that is marked as an error, as far as it is known."""
 
     def compose(self) -> ComposeResult:
-        self._area.placeholder = self._nothing_open
         yield self._area
         yield self._bar
 

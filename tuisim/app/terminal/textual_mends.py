@@ -15,8 +15,8 @@ class ThoroughCompositor(Compositor):
     """Compares a layout with the last layout that the widgets were told.
 
     Textual compares it with the map of all widgets, and makes that map anew when somebody asks for the size of a widget
-    between two layouts. To a widget that was mounted in between it would never send `Resize` or `Show`, and whether
-    somebody asks in between depends on how busy the machine is.
+    between two layouts. To a widget that was mounted in between it would never send `Resize` or `Show`, and one that
+    was removed would stay on the screen. Whether somebody asks in between depends on how busy the machine is.
     """
 
     def __init__(self) -> None:
@@ -35,6 +35,8 @@ class ThoroughCompositor(Compositor):
                 for widget in self._told.keys() & told.keys()
                 if self._told[widget].region.size != told[widget].region.size
             }
+            changes = (geometry for _, geometry in self._told.items() ^ told.items())
+            self._dirty_regions.update(filter(None, (one.clip.intersection(one.region) for one in changes)))
         return ReflowResult(hidden, shown, resized)
 
 

@@ -244,13 +244,17 @@ def spawn_isolated(
 def _command(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> list[str]:
     """Return the command of bubblewrap, up to its last options."""
     words = [BWRAP, "--unshare-all", "--as-pid-1", "--new-session", "--die-with-parent"]
+    # It leaves them to root, who could mount again for writing what is mounted for reading.
+    words += ["--cap-drop", "ALL"]
     words += ["--proc", "/proc", "--dev", "/dev", "--size", str(_TMP_BYTES), "--tmpfs", "/tmp"]
     for place in (*_SYSTEM, *_python(), *map(str, readable)):
         words += ["--ro-bind-try", place, place]
     for folder in writable:
         words += ["--bind", str(folder), str(folder)]
-    # These are in memory, too.
-    return [*words, "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", str(cwd)]
+    # /dev and / are in memory, too, and in /proc root could change the settings of the whole system.
+    for place in ("/proc", "/dev", "/"):
+        words += ["--remount-ro", place]
+    return [*words, "--chdir", str(cwd)]
 
 
 def _python() -> list[str]:

@@ -30,15 +30,15 @@ class _Machine:
     """`AUDIT_ARCH_…`"""
     clone: int
     refused: tuple[int, ...]
-    """fork, vfork; unshare, setns; shmget; add_key, request_key, keyctl."""
+    """fork, vfork; unshare, setns; shmget, msgget; add_key, request_key, keyctl."""
     clone3: int = 435
     refused_everywhere: tuple[int, ...] = (425, 447)
     """io_uring_setup, memfd_secret."""
 
 
 _MACHINES = {
-    "x86_64": _Machine(0xC000003E, 56, (57, 58, 272, 308, 29, 248, 249, 250)),
-    "aarch64": _Machine(0xC00000B7, 220, (97, 268, 194, 217, 218, 219)),
+    "x86_64": _Machine(0xC000003E, 56, (57, 58, 272, 308, 29, 68, 248, 249, 250)),
+    "aarch64": _Machine(0xC00000B7, 220, (97, 268, 194, 186, 217, 218, 219)),
 }
 
 
