@@ -85,7 +85,7 @@ def _client_of(distributed: Any, scheduler: str) -> Any:
     client = object.__new__(distributed.Client)
     try:
         client.__init__(scheduler, timeout=CONNECT_S, set_as_default=False)
-    except BaseException:
+    except BaseException:  # Raised again, whatever it is.
         # Deleted, it would wait for the end of a connection that it never had.
         client.status = "closed"
         raise
