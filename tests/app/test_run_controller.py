@@ -16,7 +16,7 @@ from tuisim.app.panels.world import WorldView
 from tuisim.app.snapshot import RunPhase
 from tuisim.app.terminal.picture_mode import PictureMode
 from tuisim.config import mat_cache
-from tuisim.config.options import CellSet
+from tuisim.config.picture_options import CellSet
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.errors import BackgroundError

@@ -25,7 +25,8 @@ from tuisim.charts.glyphs import glyph_set
 from tuisim.charts.world_image import COLORED, CellPoints, Viewport, draw_robot
 from tuisim.config.build import build_run_spec
 from tuisim.config.mats import mats
-from tuisim.config.options import CellSet, Settings
+from tuisim.config.options import Settings
+from tuisim.config.picture_options import CellSet
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import RobotSpec

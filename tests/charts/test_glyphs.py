@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tuisim.charts.glyphs import GLYPHS, glyph_set
-from tuisim.config.options import CellSet
+from tuisim.config.picture_options import CellSet
 
 
 def shown(cells: CellSet) -> dict[str, str]:

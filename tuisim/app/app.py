@@ -39,7 +39,8 @@ from tuisim.app.speech import Voice
 from tuisim.app.terminal.input_order import takes_letters
 from tuisim.app.terminal.pacer import Pacer
 from tuisim.app.terminal.picture_mode import PictureMode, choose_colors, picture_mode_for
-from tuisim.config.options import AUTO, DEFAULT_FPS, Settings
+from tuisim.config.options import DEFAULT_FPS, Settings
+from tuisim.config.picture_options import AUTO
 from tuisim.config.program_settings import Decided
 from tuisim.config.user_config import FILE, UserConfig, load_config
 from tuisim.core.spec import RunSpec

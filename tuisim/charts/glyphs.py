@@ -13,7 +13,7 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.config.options import CellSet
+from tuisim.config.picture_options import CellSet
 
 Covered = npt.NDArray[np.float32]
 """Shape (n, points): the share of each point that a glyph covers, row by row from the upper left."""

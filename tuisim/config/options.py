@@ -10,49 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
 from typing import Any, NamedTuple
 
+from tuisim.config.picture_options import AUTO, CELLS, PIXELS
 from tuisim.core.spec import RunSpec
 from tuisim.core.tree import leaves
 from tuisim.core.values import Choice, Flag, NamedNumber, Value, Whole, WrongValue, parse
 from tuisim.errors import ConfigError
 from tuisim.source import PRELUDE_TEXTS
 
-
-class CellSet(StrEnum):
-    """The glyphs that pictures are drawn with, by the points in a cell (columns × rows)."""
-
-    HALF = "half"
-    """1 × 2"""
-    QUADRANT = "quadrant"
-    """2 × 2"""
-    SEXTANT = "sextant"
-    """2 × 3"""
-    OCTANT = "octant"
-    """2 × 4, Unicode 16"""
-    BRAILLE = "braille"
-    """2 × 4, as dots"""
-    ASCII = "ascii"
-    """Letters and signs"""
-
-
-AUTO = "auto"
-CELLS = (AUTO, *CellSet)
-"""What `--cells` accepts."""
-
-
-class Protocol(StrEnum):
-    """How a terminal is told to draw pixels."""
-
-    KITTY = "kitty"
-    ITERM = "iterm"
-    SIXEL = "sixel"
-
-
-NO_PIXELS = "none"
-PIXELS = (AUTO, *Protocol, NO_PIXELS)
-"""What `--pixels` accepts."""
 COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "8", "none")
 MIN_SPEED, MAX_SPEED = 0.01, 1000.0
 MAX_SPEED_WORD = "max"

@@ -9,10 +9,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from tuisim.core.field import Field
-from tuisim.core.spec import RobotSpec, RunSpec
-from tuisim.core.state import Instant
+if TYPE_CHECKING:
+    from tuisim.core.field import Field
+    from tuisim.core.spec import RobotSpec, RunSpec
+    from tuisim.core.state import Instant
 
 
 @dataclass(frozen=True, slots=True)

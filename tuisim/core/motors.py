@@ -8,10 +8,11 @@ second.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
-from tuisim.core.drive import EvenGlide, Glide
-from tuisim.core.profile import ProfileSpec
+if TYPE_CHECKING:
+    from tuisim.core.drive import EvenGlide, Glide
+    from tuisim.core.profile import ProfileSpec
 
 STOPPED, FOREVER, TIMED, POSITION = range(4)
 """Values of `Motor.mode`."""

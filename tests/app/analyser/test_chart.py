@@ -16,7 +16,7 @@ from tuisim.app.analyser.chart import LogChart
 from tuisim.app.terminal.plot_view import PlotView
 from tuisim.app.terminal.queries import TerminalAnswered, facts_in
 from tuisim.charts.traces import TRACE_COLORS
-from tuisim.config.options import Protocol
+from tuisim.config.picture_options import Protocol
 
 
 @pytest.mark.quick_cases("kitty-one chart")

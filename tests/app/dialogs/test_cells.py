@@ -13,7 +13,7 @@ from tuisim.app.terminal import picture_mode as modes
 from tuisim.app.terminal.cell_view import PixelView
 from tuisim.app.terminal.picture_mode import PictureMode, Sharpness, picture_mode_for
 from tuisim.charts.glyphs import GLYPHS
-from tuisim.config.options import CellSet
+from tuisim.config.picture_options import CellSet
 
 
 @pytest.fixture(autouse=True)

@@ -11,7 +11,7 @@ import pytest
 from tests.app.graphics.decoder import PixelTerminal
 from tuisim.app.graphics import kitty, sixel
 from tuisim.app.graphics.picture import Graphics, Rectangle, TilePicture, rectangles
-from tuisim.config.options import Protocol
+from tuisim.config.picture_options import Protocol
 
 ROWS, COLS = 11, 21
 CELL_PX = 6, 13

@@ -11,7 +11,7 @@ from tuisim.app.render.cells import changed_cells, changed_runs
 from tuisim.app.render.mat import Pixels
 from tuisim.charts.fitted_cells import Cells, all_cells, fit_cells
 from tuisim.charts.glyphs import GLYPHS, glyph_set, half_block_of
-from tuisim.config.options import CellSet
+from tuisim.config.picture_options import CellSet
 
 INK, PAPER = (255, 0, 0), (255, 255, 255)
 FINE = (CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT, CellSet.BRAILLE)

@@ -12,7 +12,7 @@ from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState, visible_
 from tuisim.charts.fitted_cells import all_cells
 from tuisim.charts.glyphs import GLYPHS, SIGNS, glyph_set
 from tuisim.charts.world_image import CellPoints
-from tuisim.config.options import CellSet
+from tuisim.config.picture_options import CellSet
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import RobotSpec

@@ -13,7 +13,7 @@ from tests.app.wires import until_quiet, wire_of
 from tuisim.app.terminal.cell_view import PixelView
 from tuisim.app.terminal.plot_view import PlotView
 from tuisim.app.terminal.queries import TerminalAnswered, facts_in
-from tuisim.config.options import Protocol
+from tuisim.config.picture_options import Protocol
 
 CELL_PX = 8, 16
 ANSWERS = {

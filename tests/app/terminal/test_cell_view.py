@@ -20,7 +20,7 @@ from tuisim.app.panels.world import WorldView
 from tuisim.app.terminal.cell_view import PixelView
 from tuisim.app.terminal.picture_mode import Sharpness
 from tuisim.app.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, KITTY_QUESTIONS
-from tuisim.config.options import AUTO, CellSet, Protocol
+from tuisim.config.picture_options import AUTO, CellSet, Protocol
 
 
 @pytest.mark.quick_cases("kitty")

@@ -19,7 +19,7 @@ from tuisim.app.terminal import probe
 from tuisim.app.terminal.frame_buffer import as_ascii
 from tuisim.app.terminal.picture_mode import PictureMode, color_depth, picture_mode_for
 from tuisim.app.terminal.probe import colors_without_asking
-from tuisim.config.options import CellSet
+from tuisim.config.picture_options import CellSet
 
 SOURCES = [path for path in Path(tuisim.__file__).parent.rglob("*") if path.suffix in (".py", ".tcss")]
 

@@ -17,7 +17,7 @@ from tuisim.app.terminal.picture_mode import Sharpness
 from tuisim.app.terminal.plot_view import PlotView
 from tuisim.app.terminal.queries import TerminalAnswered, facts_in
 from tuisim.app.terminal.screenshot import screen_cells
-from tuisim.config.options import AUTO, CellSet, Protocol
+from tuisim.config.picture_options import AUTO, CellSet, Protocol
 
 
 def _fed(pilot: Pilot[Any], end_s: float) -> PlotView:

@@ -13,7 +13,7 @@ import pytest
 from tests.running import PATIENCE_S
 from tuisim.app.terminal import probe
 from tuisim.app.terminal.probe import best_cells, cells_of, cells_without_asking
-from tuisim.config.options import CellSet
+from tuisim.config.picture_options import CellSet
 
 ATTRIBUTES = b"\x1b[?62;4c"
 

@@ -15,7 +15,7 @@ from tuisim.app.graphics.choice import graphics_of
 from tuisim.app.graphics.picture import Graphics
 from tuisim.app.terminal import queries
 from tuisim.app.terminal.queries import AnswerParser, TerminalAnswered, TerminalFacts, cell_size_px
-from tuisim.config.options import AUTO, NO_PIXELS, Protocol
+from tuisim.config.picture_options import AUTO, NO_PIXELS, Protocol
 
 XTERM = "\x1bP>|XTerm(379)\x1b\\\x1b[6;14;7t\x1b[?63;1;2;4;6;9;15;22c"
 KITTY = "\x1bP>|kitty(0.36.4)\x1b\\\x1b[6;20;10t\x1b[?62;52;c"

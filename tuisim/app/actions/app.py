@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from tuisim.app.action import key_groups
 from tuisim.app.layout.arrangement import Preset
 from tuisim.app.terminal.terminal_app import theme_list
-from tuisim.config.options import AUTO
+from tuisim.config.picture_options import AUTO
 from tuisim.config.user_config import CELL_SET
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from tuisim.app.analyser.screen import LogScreen
 from tuisim.app.background import leave
 from tuisim.app.terminal.picture_mode import PictureMode, choose_colors, picture_mode_for
 from tuisim.app.terminal.terminal_app import TerminalApp
-from tuisim.config.options import AUTO
+from tuisim.config.picture_options import AUTO
 from tuisim.errors import TuisimError
 
 

@@ -16,7 +16,7 @@ from tuisim.app.dialogs.dialog import name_and_title
 from tuisim.app.render.mat import Pixels
 from tuisim.app.terminal.cell_view import PixelView
 from tuisim.charts.glyphs import glyph_set
-from tuisim.config.options import AUTO, CellSet
+from tuisim.config.picture_options import AUTO, CellSet
 
 _SETS = {
     AUTO: "finest known to work here",

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from tuisim.app.graphics import kitty
 from tuisim.app.graphics.picture import Graphics
 from tuisim.app.terminal.queries import TerminalFacts
-from tuisim.config.options import AUTO, NO_PIXELS, Protocol
+from tuisim.config.picture_options import AUTO, NO_PIXELS, Protocol
 
 INLINE_IMAGES: Mapping[str, str] = {
     "iTerm2": "https://iterm2.com/documentation-images.html",

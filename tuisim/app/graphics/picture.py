@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tuisim.app.graphics import iterm, kitty, sixel
-from tuisim.config.options import Protocol
+from tuisim.config.picture_options import Protocol
 
 if TYPE_CHECKING:
     from tuisim.app.render.mat import Pixels

@@ -26,7 +26,7 @@ from tuisim.app.terminal.picture_mode import BLOCKS
 from tuisim.charts.axes import time_limits
 from tuisim.charts.text_runs import Run
 from tuisim.charts.world_image import Viewport, drawn_scale
-from tuisim.config.options import CellSet
+from tuisim.config.picture_options import CellSet
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec

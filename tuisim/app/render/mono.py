@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from tuisim.charts.glyphs import BRAILLE_FROM, Covered, GlyphSet, nearest_signs, sign_number
 from tuisim.charts.world_image import CLEARED, draw_robot
-from tuisim.config.options import CellSet
+from tuisim.config.picture_options import CellSet
 
 if TYPE_CHECKING:
     from tuisim.charts.fitted_cells import CellIndex, Cells

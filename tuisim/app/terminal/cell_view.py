@@ -28,7 +28,7 @@ from tuisim.charts.fitted_cells import CellIndex, Cells, all_cells, fit_cells
 from tuisim.charts.glyphs import GLYPHS, GlyphSet, glyph_set, half_block_of
 from tuisim.charts.text_runs import Run, cut_line
 from tuisim.charts.world_image import CellPoints
-from tuisim.config.options import CellSet
+from tuisim.config.picture_options import CellSet
 
 if TYPE_CHECKING:
     from tuisim.charts.world_image import Pixels

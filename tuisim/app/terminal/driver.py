@@ -22,7 +22,7 @@ from tuisim.app.graphics import kitty
 from tuisim.app.terminal.picture_mode import picture_mode_of
 from tuisim.app.terminal.probe import SILENT, take_typed
 from tuisim.app.terminal.queries import QUESTIONS, AnswerParser
-from tuisim.config.options import Protocol
+from tuisim.config.picture_options import Protocol
 from tuisim.errors import SIGNALLED, TuisimError
 
 _LOST = SIGNALLED + signal.SIGHUP

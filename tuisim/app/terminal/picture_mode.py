@@ -18,7 +18,7 @@ from tuisim.app.render.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TR
 from tuisim.app.terminal.environment import in_browser
 from tuisim.app.terminal.probe import best_cells, colors_without_asking
 from tuisim.app.terminal.themes import ThemeColors
-from tuisim.config.options import AUTO, CellSet
+from tuisim.config.picture_options import AUTO, CellSet
 from tuisim.config.user_config import CELL_SET, load_config
 
 BLOCKS = frozenset({CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT})

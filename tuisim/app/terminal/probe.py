@@ -29,7 +29,7 @@ from tuisim.app.terminal.queries import (
     TerminalFacts,
     facts_in,
 )
-from tuisim.config.options import AUTO, CellSet
+from tuisim.config.picture_options import AUTO, CellSet
 
 ANSWER_S = 0.4
 """Longest time to wait for an answer."""

@@ -60,7 +60,7 @@ from tuisim.app.terminal.textual_mends import ThoroughCompositor
 from tuisim.app.terminal.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors
 from tuisim.charts.traces import TRACE_COLORS
 from tuisim.config.files import Scalar
-from tuisim.config.options import AUTO, NO_PIXELS, CellSet
+from tuisim.config.picture_options import AUTO, NO_PIXELS, CellSet
 from tuisim.config.user_config import SETTINGS, THEME, load_config
 from tuisim.errors import SIGNALLED, ConfigError, TuisimError
 

@@ -153,7 +153,7 @@ def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) ->
         first_environment,
     )
     from tuisim.app.terminal.queries import TerminalFacts, cell_size_px
-    from tuisim.config.options import AUTO, NO_PIXELS
+    from tuisim.config.picture_options import AUTO, NO_PIXELS
 
     term = environment.get("TERM", "")
     answers = Answers(TerminalFacts(), None, None)
@@ -191,7 +191,7 @@ def _colors_without_asking(environment: Mapping[str, str]) -> str:
 def _colors_finding(environment: Mapping[str, str], is_remote: bool) -> Finding:
     from rich.console import Console
 
-    from tuisim.config.options import AUTO
+    from tuisim.config.picture_options import AUTO
 
     known = _colors_without_asking(environment)
     if known != AUTO:

@@ -6,13 +6,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import cos, radians, sin
+from typing import TYPE_CHECKING
 
 from tuisim.core.columns import Column
 from tuisim.core.field import OUTSIDE_DISC_RGB, Field, disc_pixels, disc_weights, weighted_mean
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.noise import disturb_pixels
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, RunSpec
-from tuisim.core.state import Instant
+
+if TYPE_CHECKING:
+    from tuisim.core.state import Instant
 
 COLOR_NAMES = ("NoColor", "Black", "Blue", "Green", "Yellow", "Red", "White", "Brown")
 """Names by colour code, as in ev3dev2."""

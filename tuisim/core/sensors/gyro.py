@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tuisim.core.columns import Column
-from tuisim.core.field import Field
-from tuisim.core.spec import GyroSpec, RunSpec
-from tuisim.core.state import Instant
+
+if TYPE_CHECKING:
+    from tuisim.core.field import Field
+    from tuisim.core.spec import GyroSpec, RunSpec
+    from tuisim.core.state import Instant
 
 
 def angle_deg(instant: Instant) -> int:

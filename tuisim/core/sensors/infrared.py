@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 from tuisim.core.columns import Column
-from tuisim.core.field import Field
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.sensors.ultrasonic import first_hit_mm, surfaces
 from tuisim.core.spec import REMOTE_CODES, InfraredSpec, RunSpec, WorldSpec
-from tuisim.core.state import Instant
+
+if TYPE_CHECKING:
+    from tuisim.core.field import Field
+    from tuisim.core.state import Instant
 
 PROXIMITY_RANGE_MM = 700.0
 """Distance that is 100 % proximity."""

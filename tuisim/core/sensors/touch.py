@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from tuisim.core.columns import Column
 from tuisim.core.end_stops import end_flag
-from tuisim.core.field import Field
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec, TouchSpec, WorldSpec
-from tuisim.core.state import Instant
+
+if TYPE_CHECKING:
+    from tuisim.core.field import Field
+    from tuisim.core.state import Instant
 
 REACH_MM = 2.0
 """The bumper reacts at this distance: it gives way before the robot is stopped."""

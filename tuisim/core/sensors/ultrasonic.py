@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from tuisim.core.columns import Column
-from tuisim.core.field import Field
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.noise import stream
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec, UltrasonicSpec, WorldSpec
-from tuisim.core.state import Instant
+
+if TYPE_CHECKING:
+    from tuisim.core.field import Field
+    from tuisim.core.state import Instant
 
 MIN_ECHO_DEG, MAX_ECHO_DEG = 40.0, 140.0
 """A surface at an angle to the heading outside these limits reflects the pulse away."""
