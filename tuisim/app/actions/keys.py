@@ -6,7 +6,7 @@ footer, help and command palette follow from the line.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import lru_cache, partial
 from typing import TypeAlias
@@ -14,7 +14,6 @@ from typing import TypeAlias
 from tuisim.app.action import Action
 from tuisim.app.actions import ActionContext, app, files, lesson, program, robot, time_travel
 from tuisim.app.actions.files import analyse
-from tuisim.app.host import LabHost
 from tuisim.app.layout.arrangement import Preset
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import IN_RUN, RunPhase, Situation
@@ -74,11 +73,6 @@ def _can_export(now: Situation) -> str:
 
 def _can_draw_pixels(now: Situation) -> str:
     return "" if now.has_pixels else "This terminal draws no pixels, as far as it tells"
-
-
-def _app(do: Callable[[LabHost], None]) -> Callable[[ActionContext], None]:
-    """Return what runs a method of the app."""
-    return lambda lab: do(lab.app)
 
 
 def _nudge(key: str, words: str, forward: tuple[float, float]) -> LabAction:
@@ -178,7 +172,7 @@ def _scroll(name: str, key: str, where: str, by: int) -> LabAction:
 
 
 _SCREENSHOT = "Save a screenshot: SVG and PNG (also F12)"
-_PIXELS = _app(LabHost.action_switch_pixels)
+_PIXELS = lambda lab: lab.app.action_switch_pixels()
 _TICK_BACK = partial(time_travel.by_ticks, ticks=-1)
 _SLOWER, _FASTER = (partial(program.change_speed, by=by) for by in (-1, 1))
 
@@ -235,9 +229,13 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("cells", "V", "Glyphs of the world: choose by eye", APP, app.choose_cells),
         Action("theme", "f10", "Theme: light, high contrast and others", APP, app.choose_theme),
         Action("settings", "asterisk", "Settings: your own defaults", APP, app.open_settings),
-        Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, _app(LabHost.action_redraw)),
-        Action("screenshot", "I,f12", _SCREENSHOT, APP, _app(LabHost.action_save_screen), shown_key="I"),
-        Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, _app(LabHost.action_suspend_process)),
+        Action(
+            "redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, lambda lab: lab.app.action_redraw()
+        ),
+        Action("screenshot", "I,f12", _SCREENSHOT, APP, lambda lab: lab.app.action_save_screen(), shown_key="I"),
+        Action(
+            "suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, lambda lab: lab.app.action_suspend_process()
+        ),
         Action("quit", "q", "Quit", APP, app.leave, footer="quit"),
     )
 }
