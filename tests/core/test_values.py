@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tuisim.config.options import parse
 from tuisim.core.values import (
     Choice,
     Choices,
@@ -18,7 +19,6 @@ from tuisim.core.values import (
     Whole,
     WrongValue,
     number_text,
-    parse,
     shown,
 )
 from tuisim.errors import ConfigError

@@ -6,7 +6,8 @@ from typing import Any
 
 from tuisim.batch.task import MAX_JOBS, Keep
 from tuisim.config.command_line import GroupedOption, WordType, choice, option
-from tuisim.core.values import Whole, parse
+from tuisim.config.options import parse
+from tuisim.core.values import Whole
 
 _WORKERS = Whole(1, MAX_JOBS)
 

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tuisim.config.command_line import GroupedOption, WordType, option
-from tuisim.core.values import Number, parse
+from tuisim.config.options import parse
+from tuisim.core.values import Number
 from tuisim.errors import ConfigError, nearest
 from tuisim.protocol import BUTTONS, SetButtons, UserAction
 from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 from tuisim.commands.app import OPENED, read_opened
 from tuisim.commands.echo import echo, echo_error_lines
 from tuisim.config.command_line import Arguments, WordType, command, option, words_without
-from tuisim.core.values import Number, Whole, parse
+from tuisim.config.options import parse
+from tuisim.core.values import Number, Whole
 from tuisim.errors import ConfigError
 
 if TYPE_CHECKING:

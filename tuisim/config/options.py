@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from tuisim.config.picture_options import AUTO, CELLS, PIXELS
 from tuisim.core.spec import RunSpec
 from tuisim.core.tree import leaves
-from tuisim.core.values import Choice, Flag, NamedNumber, Value, Whole, WrongValue, parse
+from tuisim.core.values import Choice, Flag, NamedNumber, Value, Whole, WrongValue
 from tuisim.errors import ConfigError
 from tuisim.source import PRELUDE_TEXTS
 
@@ -23,6 +23,18 @@ COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "8", "none")
 MIN_SPEED, MAX_SPEED = 0.01, 1000.0
 MAX_SPEED_WORD = "max"
 DEFAULT_FPS = 20
+
+
+def parse(value: Value, text: str, key: str) -> Any:
+    """Return the value that the text after an option gives.
+
+    Raises:
+        ConfigError: it is not allowed; `key` is to blame.
+    """
+    try:
+        return value.from_text(text)
+    except WrongValue as error:
+        raise ConfigError(error.message, error.hint, key=key) from None
 
 
 class Name(Value):

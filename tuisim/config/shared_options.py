@@ -9,7 +9,7 @@ import click
 
 from tuisim.config.command_line import Command, GroupedOption, WordType, parse
 from tuisim.config.options import OPTIONS, Option
-from tuisim.core.values import parse as parse_value
+from tuisim.config.options import parse as parse_value
 
 Names = Callable[[str], Iterable[str]]
 

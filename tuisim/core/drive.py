@@ -11,11 +11,13 @@ import math
 from collections.abc import Iterator
 from math import cos, degrees, radians, sin
 from struct import Struct
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import RobotSpec
 from tuisim.core.tick_record import POSITION_FIELDS, TICK_RECORD, Buffer
+
+if TYPE_CHECKING:
+    from tuisim.core.geometry import Pose
+    from tuisim.core.spec import RobotSpec
 
 _FLOAT32 = Struct("<f")
 _WHOLE_TURN = 2 * math.pi

@@ -8,7 +8,7 @@ floating-point operations in the same order as a single tick.
 from __future__ import annotations
 
 from math import degrees
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
 from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
@@ -18,8 +18,10 @@ from tuisim.core.end_stops import flags_at_start
 from tuisim.core.motors import Motor, MotorState, top_speed_dps
 from tuisim.core.noise import wheel_noise
 from tuisim.core.profile import MotorLaw
-from tuisim.core.spec import RunSpec
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING, TICK_RECORD, Buffer, TickSink
+
+if TYPE_CHECKING:
+    from tuisim.core.spec import RunSpec
 
 STALL_MS = 100
 """A running motor that does not turn for longer than this is stalled (EV3 motor driver)."""

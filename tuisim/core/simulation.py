@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
 from tuisim.core.drive import float32, turn_rate_dps
 from tuisim.core.end_stops import EndStops
 from tuisim.core.geometry import Pose
 from tuisim.core.motion import Motion, motor_of
-from tuisim.core.motors import Motor
 from tuisim.core.profile import NS_PER_S
-from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import TICK_RECORD, TickSink
+
+if TYPE_CHECKING:
+    from tuisim.core.motors import Motor
+    from tuisim.core.spec import RunSpec
 
 
 class Simulation(Motion):

@@ -15,9 +15,6 @@ from dataclasses import Field
 from re import Pattern
 from typing import Any
 
-from tuisim.core.css_colors import css_names, css_rgb
-from tuisim.errors import ConfigError
-
 METADATA = "value"
 """Where a field has its value."""
 
@@ -442,6 +439,8 @@ class Color(Value):
 
     def from_data(self, data: object) -> str:
         self.check(data)
+        from tuisim.core.css_colors import css_names, css_rgb
+
         word = str(data)
         if css_rgb(word) is None:
             import difflib
@@ -498,18 +497,6 @@ class Parts(Part):
     def check(self, value: Any) -> None:
         if not isinstance(value, tuple) or not all(isinstance(one, self.of) for one in value):
             raise self.wrong(value)
-
-
-def parse(value: Value, text: str, key: str) -> Any:
-    """Return the value that the text after an option gives.
-
-    Raises:
-        ConfigError: it is not allowed; `key` is to blame.
-    """
-    try:
-        return value.from_text(text)
-    except WrongValue as error:
-        raise ConfigError(error.message, error.hint, key=key) from None
 
 
 def values_of(kind: type) -> Mapping[str, Value]:

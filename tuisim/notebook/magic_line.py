@@ -9,9 +9,9 @@ from typing import Any
 
 from tuisim.config.command_line import Arguments, Command, GroupedOption, WordType, help_of, option, parse
 from tuisim.config.options import RUN_VALUES, START
+from tuisim.config.options import parse as parse_value
 from tuisim.config.shared_options import shared_options
 from tuisim.core.values import Number, Whole
-from tuisim.core.values import parse as parse_value
 from tuisim.errors import ConfigError
 
 MAX_INDEX = 1_000_000

@@ -9,10 +9,12 @@ from __future__ import annotations
 import errno
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import partial, wraps
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from tuisim.shim.session import DeviceSession
 from tuisim.shim.waits import Wait, waits_for
+
+if TYPE_CHECKING:
+    from tuisim.shim.session import DeviceSession
 
 Reader = Callable[[], object]
 Writer = Callable[[str], None]

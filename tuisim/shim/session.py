@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
-from tuisim.core.field import Field
-from tuisim.core.simulation import Simulation
-from tuisim.protocol import MotorRegisters
-from tuisim.runs.records import Stream
+if TYPE_CHECKING:
+    from tuisim.core.field import Field
+    from tuisim.core.simulation import Simulation
+    from tuisim.protocol import MotorRegisters
+    from tuisim.runs.records import Stream
 
 
 class DeviceSession(Protocol):

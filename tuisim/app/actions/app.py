@@ -117,3 +117,23 @@ def _leave(context: ActionContext) -> None:
     from tuisim.app.dialogs.question import LeaveQuestion
 
     context.app.push_screen(LeaveQuestion(), lambda yes: context.app.exit() if yes else None)
+
+
+def redraw(context: ActionContext) -> None:
+    """Redraw the screen."""
+    context.app.action_redraw()
+
+
+def save_screen(context: ActionContext) -> None:
+    """Save a screenshot."""
+    context.app.action_save_screen()
+
+
+def switch_pixels(context: ActionContext) -> None:
+    """Draw with pixels instead of characters, or the other way round."""
+    context.app.action_switch_pixels()
+
+
+def suspend(context: ActionContext) -> None:
+    """Leave the terminal to the shell."""
+    context.app.action_suspend_process()

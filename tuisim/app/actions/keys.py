@@ -172,7 +172,6 @@ def _scroll(name: str, key: str, where: str, by: int) -> LabAction:
 
 
 _SCREENSHOT = "Save a screenshot: SVG and PNG (also F12)"
-_PIXELS = lambda lab: lab.app.action_switch_pixels()
 _TICK_BACK = partial(time_travel.by_ticks, ticks=-1)
 _SLOWER, _FASTER = (partial(program.change_speed, by=by) for by in (-1, 1))
 
@@ -211,7 +210,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("save-obstacles", "ctrl+o", "Save the obstacles to a file", FILES, files.save_obstacles),
         Action("zoom", "v", "Zoom the world", ROBOT, robot.zoom, footer="zoom"),
         Action("rays", "U", "Show or hide the ultrasonic rays", ROBOT, robot.rays, footer="rays"),
-        Action("pixels", "number_sign", "Characters or pixels", APP, _PIXELS, _can_draw_pixels, "cells"),
+        Action("pixels", "number_sign", "Characters or pixels", APP, app.switch_pixels, _can_draw_pixels, "cells"),
         Action("clear", "C", "Clear the pen trace", ROBOT, robot.clear_trace, footer="clear"),
         Action("clear-log", "x", "Clear output and chart; the run keeps its log", FILES, files.clear_log),
         *_toggles(),
@@ -229,13 +228,9 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("cells", "V", "Glyphs of the world: choose by eye", APP, app.choose_cells),
         Action("theme", "f10", "Theme: light, high contrast and others", APP, app.choose_theme),
         Action("settings", "asterisk", "Settings: your own defaults", APP, app.open_settings),
-        Action(
-            "redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, lambda lab: lab.app.action_redraw()
-        ),
-        Action("screenshot", "I,f12", _SCREENSHOT, APP, lambda lab: lab.app.action_save_screen(), shown_key="I"),
-        Action(
-            "suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, lambda lab: lab.app.action_suspend_process()
-        ),
+        Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, app.redraw),
+        Action("screenshot", "I,f12", _SCREENSHOT, APP, app.save_screen, shown_key="I"),
+        Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, app.suspend),
         Action("quit", "q", "Quit", APP, app.leave, footer="quit"),
     )
 }

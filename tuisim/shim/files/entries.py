@@ -7,10 +7,12 @@ import os
 import select
 import stat
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tuisim.errors import NotSimulated
-from tuisim.shim.device_files import SimDevice
+
+if TYPE_CHECKING:
+    from tuisim.shim.device_files import SimDevice
 
 FOLDER_MODE = stat.S_IFDIR | 0o755
 READ_MODE, WRITE_MODE = 0o444, 0o220
