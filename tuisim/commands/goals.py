@@ -10,8 +10,7 @@ from typing import Any
 from tuisim.commands.echo import Progress, echo, echo_error, echo_json, tell
 from tuisim.config.build import build_run_spec, settings_from
 from tuisim.config.command_line import AS_JSON, Group, argument, command
-from tuisim.config.options import START, Settings, settings_of
-from tuisim.config.robots import RobotChoice
+from tuisim.config.options import START, settings_of
 from tuisim.errors import ConfigError, counted
 from tuisim.goals.files import GoalsFile, example_names, load_goals
 from tuisim.goals.judge import judge
@@ -84,8 +83,10 @@ def _differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
         yield f"run {run.number} was changed while it ran: {counted(len(run.actions), 'action')} of the user"
     try:
         found = settings_from(run.spec)
-        # A mat of one's own is known by its path: the file may name it in another way.
-        of_file = settings_from(build_run_spec(_in_world_of(file, run)))
+        # A mat of one's own is known by its path: the file may name it in another way. All else that moves the mat's
+        # start is as it was in the run.
+        elsewhere = {path: value for path, value in found.items() if path not in _WHERE}
+        of_file = settings_from(build_run_spec(settings_of(elsewhere, file.settings)))
     except ConfigError:
         # A mat no longer exists.
         return
@@ -100,13 +101,6 @@ def _differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
     ]
     if other:
         yield f"run {run.number} was not run in the world of {file.path.name}: {', '.join(other)}"
-
-
-def _in_world_of(file: GoalsFile, run: StoredRun) -> Settings:
-    """Return the settings of a run in the world of a file, with what moves the mat's start as it was in a run."""
-    world = run.spec.world
-    of_run = {"robot": RobotChoice(run.spec.robot), "profile": run.spec.profile, "walls": world.walls}
-    return settings_of(of_run | {"solid": world.solid}, file.settings)
 
 
 def _plain(run: StoredRun, judgements: Sequence[Judgement]) -> dict[str, Any]:

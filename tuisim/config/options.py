@@ -103,6 +103,9 @@ START = tuple(path for path in RUN_VALUES if path.startswith("start."))
 OF_THE_MAT = ("obstacles", "background_fit", *START)
 """The paths of what a mat brings with it, so that another mat replaces it."""
 
+OF_THE_PROFILE = ("solid",)
+"""The paths of what a profile brings with it, so that another profile replaces it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Option:
@@ -176,14 +179,10 @@ def _of_values(*tables: str) -> Iterator[Option]:
         if value.flags and spec_path.startswith(tables):
             takes_no_value = isinstance(value, Flag) and not default
             group = RUN if path == spec_path else WORLD
-            decided = "" if path in _DECIDED_ELSEWHERE or path.startswith(("start.", "pen.")) else default
+            decided = "" if path in (*OF_THE_MAT, *OF_THE_PROFILE) or path.startswith("pen.") else default
             yield Option(group, path, value, decided, value.flags, constant=True if takes_no_value else None)
             if isinstance(value, Flag) and value.off_flag:
                 yield Option(group, path, value, decided, (value.off_flag,), constant=False)
-
-
-_DECIDED_ELSEWHERE = ("solid", "background_fit")
-"""Values of the world that profile or mat decide where nobody chooses."""
 
 
 def _of_app(path: str, value: Value, default: Any, **about: Any) -> Option:

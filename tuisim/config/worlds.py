@@ -20,6 +20,7 @@ from tuisim.config.obstacles import load_obstacles, obstacle_lines, obstacles_fr
 from tuisim.config.options import PANELS, RUN_VALUES, settings_of
 from tuisim.config.profiles import load_profile, profile_from_table, profile_lines
 from tuisim.config.robots import RobotChoice, load_robot, robot_from_table, robot_lines
+from tuisim.core import tree
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ProfileSpec
 from tuisim.core.spec import START_VALUES, BeaconSpec, RemotePress, RunSpec
@@ -305,8 +306,8 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None, argumen
         top["arguments"] = list(arguments)
     mat = settings["background"]
     top["background"] = _relative(mat, folder) if os.sep in mat else mat
-    settings["solid"] = spec.world.solid
-    of_world = {name: settings[name] for name, keys in _TABLES.items() if not keys}
+    values = {path: tree.at(spec, one.spec_path) for path, one in RUN_VALUES.items()}
+    of_world = {name: values[name] for name, keys in _TABLES.items() if not keys}
     presets = {key: settings[key] for key in ("robot", "obstacles", "profile") if isinstance(settings[key], str)}
     top |= of_world | presets | {"seed": of_world.pop("seed")}
     comments = {**_COMMENTS, **{path: one.value.help for path, one in RUN_VALUES.items()}}
@@ -314,7 +315,7 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None, argumen
     for name, keys in _TABLES.items():
         if keys:
             help_of = {key: comments[f"{name}.{key}"] for key in keys}
-            lines += ["", f"[{name}]", *files.toml_lines({key: settings[f"{name}.{key}"] for key in keys}, help_of)]
+            lines += ["", f"[{name}]", *files.toml_lines({key: values[f"{name}.{key}"] for key in keys}, help_of)]
     if isinstance(settings["robot"], RobotChoice):
         lines += ["", *robot_lines(spec.robot, "robot", ("x_mm", "y_mm"))]
     if isinstance(settings["profile"], ProfileSpec):

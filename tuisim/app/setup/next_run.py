@@ -12,7 +12,7 @@ from typing import Any
 
 from tuisim.config.build import build_run_spec, settings_from
 from tuisim.config.obstacles import load_obstacles
-from tuisim.config.options import OF_THE_MAT, RUN_VALUES, START, Settings, settings_of
+from tuisim.config.options import OF_THE_MAT, OF_THE_PROFILE, RUN_VALUES, START, Settings, settings_of
 from tuisim.config.profiles import load_profile
 from tuisim.config.program_file import ProgramSource
 from tuisim.config.program_settings import BRICK_PROFILE, PROGRAM_PATHS, Decided, decide
@@ -202,8 +202,7 @@ def with_profile(plan: NextRun, word: str) -> NextRun:
     Raises:
         ProfileError: there is no profile of that name, or the file is invalid.
     """
-    # The profile decides whether obstacles are solid, until the user sets it again.
-    return with_choices(plan, {"profile": word, "solid": None})
+    return with_choices(plan, {**dict.fromkeys(OF_THE_PROFILE), "profile": word})
 
 
 def with_robot_as_chosen(plan: NextRun) -> NextRun:
