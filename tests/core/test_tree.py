@@ -9,6 +9,7 @@ import site
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 from venv import EnvBuilder
 
 import pytest
@@ -84,6 +85,20 @@ def test_plain_data_of_a_run_are_that_run() -> None:
     # What came later is left out where it is as it was.
     assert "gear_ratio" not in plain["robot"]
     assert plain["robot"]["ultrasonic"] is None
+
+
+@pytest.mark.parametrize("damage", [3, "x", [], None])
+@pytest.mark.parametrize("path", ["", "robot", "world", "profile", "world.noise", "world.start", "robot.pen"])
+def test_data_of_another_kind_are_told(path: str, damage: object) -> None:
+    plain: dict[str, object] = json.loads(json.dumps(tree.to_plain(RUN)))
+    whole: dict[str, Any] = {"": plain}
+    inside: Any = whole
+    *outer, last = ["", *path.split(".")] if path else [""]
+    for name in outer:
+        inside = inside[name]
+    inside[last] = damage
+    with pytest.raises((KeyError, TypeError, ValueError, ConfigError)):
+        tree.from_plain(whole[""])
 
 
 def test_every_leaf_that_an_option_sets_says_what_it_is() -> None:

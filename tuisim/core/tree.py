@@ -100,13 +100,15 @@ def from_plain(data: Mapping[str, Any]) -> RunSpec:
     """Return the run of which `to_plain` has returned the data.
 
     Raises:
-        KeyError, TypeError, ValueError, AttributeError: `data` is not the output of `to_plain`.
+        KeyError, TypeError, ValueError: `data` is not the output of `to_plain`.
         ConfigError: a value is wrong.
     """
     return _from_plain(RunSpec, data)
 
 
 def _from_plain(kind: type[_Node], data: Any) -> _Node:
+    if not isinstance(data, Mapping):
+        raise TypeError(f"{kind.__name__} is {data!r:.60}")
     if kind is ProfileSpec:
         return profile_from_plain(data)  # type: ignore[return-value]
     values = values_of(kind) if issubclass(kind, Spec) else {}
