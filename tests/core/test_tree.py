@@ -87,8 +87,10 @@ def test_plain_data_of_a_run_are_that_run() -> None:
     assert plain["robot"]["ultrasonic"] is None
 
 
-@pytest.mark.parametrize("damage", [3, "x", [], None])
-@pytest.mark.parametrize("path", ["", "robot", "world", "profile", "world.noise", "world.start", "robot.pen"])
+@pytest.mark.parametrize("damage", ["x", [], None, True])
+@pytest.mark.parametrize(
+    "path", ["", "robot", "world", "profile", "world.noise", "world.start", "world.start.x_mm", "robot.pen"]
+)
 def test_data_of_another_kind_are_told(path: str, damage: object) -> None:
     plain: dict[str, object] = json.loads(json.dumps(tree.to_plain(RUN)))
     whole: dict[str, Any] = {"": plain}

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from tuisim.atomic import replacing
 from tuisim.config.folders import user_path
-from tuisim.core.fields import Spec
+from tuisim.core.spec_fields import Spec
 from tuisim.core.values import NamedNumber, Value, WrongValue, shown, values_of
 from tuisim.errors import ConfigError, did_you_mean, nearest
 

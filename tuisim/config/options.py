@@ -1,9 +1,9 @@
 """The options shared by the command line, magic lines, Python and `config.toml`, and the settings that they make.
 
 Settings are values by path. The paths of a run's values are those of a world file: `walls`, `noise.light`. Values that
-`core.spec` gives an option have it here, too; the others are in `_WORDS` and `_APP`.
+`core.spec` gives an option have it here, too.
 
-To add an option that is no value of a run: add a line to `_APP`.
+To add an option that is no value of a run: add a line to `OPTIONS`.
 """
 
 from __future__ import annotations

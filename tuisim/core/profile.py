@@ -16,7 +16,7 @@ from dataclasses import asdict
 from enum import StrEnum
 from typing import Any
 
-from tuisim.core.fields import Spec, choice, flag, number, spec, text, whole
+from tuisim.core.spec_fields import Spec, choice, flag, number, spec, text, whole
 from tuisim.core.values import values_of
 from tuisim.errors import ProfileError
 

@@ -13,7 +13,9 @@ import re
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from tuisim.core.fields import (
+from tuisim.core.geometry import Pose
+from tuisim.core.profile import ProfileSpec
+from tuisim.core.spec_fields import (
     Spec,
     choice,
     color,
@@ -29,8 +31,6 @@ from tuisim.core.fields import (
     text,
     whole,
 )
-from tuisim.core.geometry import Pose
-from tuisim.core.profile import ProfileSpec
 from tuisim.core.values import Number, Part, Parts, values_of
 from tuisim.errors import ObstacleError, RobotError, require_one_of
 

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, replace
 from typing import Any, TypeVar
 
-from tuisim.core.fields import Spec
 from tuisim.core.profile import ProfileSpec, profile_from_plain, profile_to_plain
 from tuisim.core.spec import RunSpec
+from tuisim.core.spec_fields import Spec
 from tuisim.core.values import Part, Parts, Value, values_of
 
 _Node = TypeVar("_Node")
@@ -111,7 +111,13 @@ def _from_plain(kind: type[_Node], data: Any) -> _Node:
         raise TypeError(f"{kind.__name__} is {data!r:.60}")
     if kind is ProfileSpec:
         return profile_from_plain(data)  # type: ignore[return-value]
-    values = values_of(kind) if issubclass(kind, Spec) else {}
+    if not issubclass(kind, Spec):
+        # A pose: it does not check what it is made of.
+        for name, one in data.items():
+            if isinstance(one, bool) or not isinstance(one, int | float):
+                raise TypeError(f"{name} is {one!r:.60}")
+        return kind(**data)
+    values = values_of(kind)
     return kind(**{name: _value(values.get(name), one) for name, one in data.items()})
 
 

@@ -1,9 +1,9 @@
 """Values of a run, each said once: what it may be, its unit, its help, the options that set it.
 
-The specs of a run consist of them (`tuisim.core.fields`). Files, options, magic lines, forms and tables are views of
-them: `tuisim.core.tree` finds a value by its path.
+The specs of a run consist of them, see `tuisim.core.spec_fields`. Files, options, magic lines, forms and tables are
+views of them: `tuisim.core.tree` finds a value by its path.
 
-To add a kind of value: add its class, and its function to `tuisim.core.fields`.
+To add a kind of value: add its class, and its function to `tuisim.core.spec_fields`.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Sensors: one file for each kind, and the table of kinds.
 
-To add a sensor: write its frozen spec and add its place on the robot (`MOUNTS` in `core.spec`), write its file, with
+To add a sensor: write its frozen spec and add a field of `RobotSpec` in `core.spec`, write its file, with
 its columns and pure functions from an `Instant` to values, and add a line to `SENSORS`; its device and a line in
 `DEVICES` go to `shim/sensors.py`. Robot files, settings, breakpoints, the telemetry frame, the panels and the contract
 test walk these tables.

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tuisim.core.fields import Spec, flag, number, part, parts, spec
+from tuisim.core.spec_fields import Spec, flag, number, part, parts, spec
 from tuisim.errors import ConfigError, ObstacleError, RobotError
 
 
