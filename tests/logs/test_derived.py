@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -18,7 +19,7 @@ from tuisim.core.spec import RobotSpec
 from tuisim.errors import LogError
 from tuisim.logs.bands import distance_mm
 from tuisim.logs.columns import guess_columns
-from tuisim.logs.derived import NEEDED, dead_reckoning, definition_of, derived, error_mm, reckoned_series
+from tuisim.logs.derived import NEEDED, dead_reckoning, definition_of, derived, error_mm, reckoned_series, spec_in
 from tuisim.logs.log import Log
 
 FALLING = 90.0 - 10.0 * np.arange(10)
@@ -149,3 +150,12 @@ class TestReckoning:
         got = dead_reckoning(column(0, 0), column(0, 0), Pose(0, 0, 0), RobotSpec())
         assert_allclose(error_mm(got, column(0, 3), column(0, 4)), [0, 5])
         assert_allclose(distance_mm(column(0, 3, 3), column(0, 4, 6)), [0, 5, 7])
+
+
+@pytest.mark.parametrize(
+    "metadata",
+    [{}, {"runs": []}, {"runs": 3}, {"runs": [[]]}, {"runs": ["x"]}, {"runs": [{}]}, {"runs": [{"robot": {}}]}],
+    ids=str,
+)
+def test_damaged_metadata_describe_no_run(metadata: dict[str, Any]) -> None:
+    assert spec_in(metadata) is None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -149,10 +149,8 @@ def _computed_column(of: Any, columns: Sequence[Column], log: Log, robot: RobotS
 
 def robot_of(log: Log) -> RobotSpec | None:
     """Return the robot of a log, None if its metadata describe none."""
-    try:
-        return _run_of(log).robot
-    except (*_NO_RUN, ConfigError):
-        return None
+    spec = spec_in(log.metadata)
+    return spec.robot if spec else None
 
 
 def named_columns(log: Log, text: str) -> list[str]:
@@ -170,12 +168,17 @@ def with_named_columns(log: Log, text: str) -> Log:
     return log
 
 
-_NO_RUN = (KeyError, IndexError, TypeError)
-"""What `_run_of` raises if the metadata of a log describe no run."""
+def spec_in(metadata: Mapping[str, Any], run: int = 0) -> RunSpec | None:
+    """Return the specification of a run in the metadata of a log; None if they have none, or are damaged.
 
-
-def _run_of(log: Log) -> RunSpec:
-    return from_plain({k: v for k, v in log.metadata["runs"][0].items() if k not in ("run", "program")})
+    Args:
+        run: The number of the run among those of the log.
+    """
+    try:
+        entry = metadata["runs"][run]
+        return from_plain({key: value for key, value in entry.items() if key not in ("run", "program")})
+    except (KeyError, IndexError, TypeError, ValueError, AttributeError, ConfigError):
+        return None
 
 
 def _of_signal(base: Series, change: Any, values: Any) -> FloatArray:
@@ -251,11 +254,10 @@ def reckoned_series(log: Log) -> list[Series]:
         raise LogError(
             f"no column {missing[0]!r} with numbers", "a stored run, or its telemetry exported", file=log.title
         )
-    try:
-        spec = _run_of(log)
-    except _NO_RUN as error:
+    spec = spec_in(log.metadata)
+    if spec is None:
         hint = "a stored run, or its telemetry exported to a file"
-        raise LogError("has no metadata of the robot", hint, file=log.title) from error
+        raise LogError("has no metadata of the robot", hint, file=log.title)
     left, right, x_mm, y_mm, _ = (log.numbers(name) for name in NEEDED)
     found = dead_reckoning(left, right, spec.world.start, spec.robot)
     columns = (found.x_mm, found.y_mm, found.heading_deg, error_mm(found, x_mm, y_mm))

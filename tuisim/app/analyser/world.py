@@ -5,9 +5,8 @@ Pose and sensor view come from the recording, or from the log itself.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rich.style import Style
 from textual.app import ComposeResult
@@ -25,8 +24,8 @@ from tuisim.core.geometry import Pose
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import FLAG_PEN_DOWN
-from tuisim.core.tree import from_plain
 from tuisim.errors import TuisimError, printable
+from tuisim.logs.derived import spec_in
 from tuisim.runs.recorded_run import Recording
 from tuisim.runs.views import instant_of
 from tuisim.source import source_lines
@@ -102,7 +101,7 @@ def has_poses(opened: OpenedLog) -> bool:
     if opened.runs:
         return True
     named = set(_POSE) <= set(opened.log.table.column_names)
-    return named and _spec_in(opened.log.metadata, 0) is not None
+    return named and spec_in(opened.log.metadata) is not None
 
 
 def world_at(opened: OpenedLog, run: int) -> WorldAt | None:
@@ -119,7 +118,7 @@ def world_at(opened: OpenedLog, run: int) -> WorldAt | None:
         except TuisimError:
             mat = blank_mat(stored.spec)
         return WorldAt(stored.spec, mat, stored, opened.log)
-    spec = _spec_in(opened.log.metadata, run)
+    spec = spec_in(opened.log.metadata, run)
     if spec is None or not set(_POSE) <= set(opened.log.table.column_names):
         return None
     try:
@@ -127,15 +126,6 @@ def world_at(opened: OpenedLog, run: int) -> WorldAt | None:
     except TuisimError:
         mat = blank_mat(spec)
     return WorldAt(spec, mat, None, opened.log)
-
-
-def _spec_in(metadata: Mapping[str, Any], run: int) -> RunSpec | None:
-    """Return the specification in the metadata of an export, if any."""
-    try:
-        entry = metadata["runs"][run]
-        return from_plain({key: value for key, value in entry.items() if key not in ("run", "program")})
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError, TuisimError):
-        return None
 
 
 class WorldPane(Vertical):
