@@ -71,7 +71,7 @@ def imports(effort: Effort) -> Iterator[Figure]:
     shell = "from IPython.core.interactiveshell import InteractiveShell as S; import pandas; s = S.instance()"
     for name, before, added, goal in (
         ("import tuisim", "pass", "import tuisim", 1.0),
-        ("%load_ext tuisim, beyond pandas", shell, "s.run_line_magic('load_ext', 'tuisim')", 3.5),
+        ("%load_ext tuisim, beyond pandas", shell, "s.run_line_magic('load_ext', 'tuisim')", 2.7),
     ):
         samples = in_turns(partial(_added_cpu_s, before, added), start_cpu_s, effort)
         yield _start(name, samples, goal)

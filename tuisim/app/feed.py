@@ -161,6 +161,8 @@ class PanelFeed:
     def __init__(self, panel_area: PanelArea, runs: RunController) -> None:
         self._panel_area, self._runs = panel_area, runs
         self._feed: Feed | None = None
+        self._uncharted: list[OutputRow] = []
+        """What has been written since the chart was last on the screen."""
         self._shows_past = False
         self._traced: object = None
         self._printed: object = None
@@ -169,13 +171,21 @@ class PanelFeed:
         """Begin with another run, or with none."""
         recording = self._runs.timeline.recording
         self._feed = Feed(recording) if recording else None
+        self._uncharted.clear()
         self._panel_area.clear_log()
 
     def add_rows(self, rows: list[OutputRow]) -> None:
         """Pass on what the program has written."""
         if output := self._panel_area.output:
             output.add(rows)
-        self._append(sample_series(rows), logged=True)
+        self._uncharted += rows
+        self._chart_rows()
+
+    def _chart_rows(self) -> None:
+        """Pass on what has been written, if the chart is on the screen."""
+        if self._uncharted and self._panel_area.shown("chart"):
+            self._append(sample_series(self._uncharted), logged=True)
+            self._uncharted.clear()
 
     def _append(self, series: Series, logged: bool) -> None:
         if chart := self._panel_area.chart:
@@ -193,6 +203,7 @@ class PanelFeed:
 
     def show(self) -> None:
         """Pass on the telemetry since the last call; keep trace and output at the instant in view."""
+        self._chart_rows()
         if self._feed is not None:
             if world := self._panel_area.world:
                 xs, ys = self._feed.trace_points()
