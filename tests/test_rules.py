@@ -34,7 +34,6 @@ LEFT_OPEN = re.compile(rf"\b({UNFINISHED})\b|(?<![\w.$])({PLACES})")
 LONG_LINES = 150
 """A module that is longer has a test of its own."""
 TESTED_BESIDE = {
-    "app/feed.py": "app/test_timeline.py",
     "app/setup/fields.py": "app/setup/test_next_run.py",
     "config/worlds.py": "config/test_files.py",
     "goals/evidence.py": "goals/test_judge_conditions.py",

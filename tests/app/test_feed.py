@@ -1,0 +1,86 @@
+"""What a run writes over time, passed on to panels that may not be on the screen."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tuisim.app.feed import PanelFeed, _thinned, _with_gaps, sample_series
+from tuisim.runs.records import OutputRow, Stream
+
+
+def row(text: str, time_ns: int = 0) -> OutputRow:
+    return OutputRow(text, 0, time_ns, 1, Stream.STDOUT)
+
+
+class Panels:
+    """The panels of an app, with a chart that notes what it gets."""
+
+    def __init__(self) -> None:
+        self.output = self.world = None
+        self.chart = self
+        self.on_screen = False
+        self.got: list[tuple[str, list[float], bool]] = []
+
+    def shown(self, panel: str) -> bool:
+        assert panel == "chart"
+        return self.on_screen
+
+    def append(self, name: str, times_s: list[float], values: list[float], logged: bool) -> None:
+        self.got.append((name, values, logged))
+
+    def clear_log(self) -> None:
+        self.got.clear()
+
+
+@pytest.fixture
+def panels() -> Panels:
+    return Panels()
+
+
+@pytest.fixture
+def feed(panels: Panels) -> PanelFeed:
+    runs: Any = SimpleNamespace(timeline=SimpleNamespace(recording=None, at=None))
+    area: Any = panels
+    return PanelFeed(area, runs)
+
+
+def test_a_chart_gets_what_was_written_before_it_was_shown(panels: Panels, feed: PanelFeed) -> None:
+    feed.add_rows([row("Colour: 1"), row("no sample")])
+    feed.add_rows([row("Colour: 2")])
+    feed.show()
+    assert panels.got == []
+    panels.on_screen = True
+    feed.show()
+    assert panels.got == [("Colour", [1.0, 2.0], True)]
+    feed.add_rows([row("Colour: 3")])
+    assert panels.got[1:] == [("Colour", [3.0], True)]
+
+
+def test_a_chart_gets_nothing_of_the_run_before(panels: Panels, feed: PanelFeed) -> None:
+    feed.add_rows([row("Colour: 1")])
+    feed.run_changed()
+    panels.on_screen = True
+    feed.show()
+    assert panels.got == []
+
+
+def test_samples_are_at_the_time_that_they_carry() -> None:
+    assert sample_series([row("A: 1", 5 * 10**8), row("A: 2 0.25"), row("B: 3")]) == {
+        "A": ([0.5, 0.25], [1.0, 2.0]),
+        "B": ([0.0], [3.0]),
+    }
+
+
+def test_a_long_stretch_is_thinned_and_keeps_its_end() -> None:
+    assert _thinned(3, 6, 5) == [3, 4, 5]
+    assert _thinned(0, 10, 4) == [1, 4, 6, 9]
+
+
+def test_a_placement_leaves_a_gap_in_the_trace() -> None:
+    xs, ys = _with_gaps(np.array([1.0, 2.0, 9.0]), np.array([0.0, 0.0, 0.0]), np.array([0, 0, 1]))
+    np.testing.assert_array_equal(xs, [1.0, 2.0, np.nan, 9.0])
+    assert len(ys) == 4
