@@ -280,8 +280,8 @@ class PenSpec(Spec):
 
     KEY = "pen"
 
-    x_mm: float = number(-500, 500, default=0.0, unit="mm", label="x mm", help="to the right of the robot's centre")
-    y_mm: float = number(-500, 500, default=0.0, unit="mm", label="y mm", help="forward of the axle")
+    x_mm: float = _x(0.0)
+    y_mm: float = _y(0.0)
     color: str = color(
         default="red", label="Colour", flags=("-P", "--pencolor"), help="colour of the pen: a CSS name, or #rrggbb"
     )
