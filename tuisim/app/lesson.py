@@ -572,7 +572,8 @@ def _place_of(world: WorldSpec) -> tuple[object, ...]:
 
 def _at_start(other: OtherWorld) -> str:
     """Return where the robot starts in another world, for a sentence; empty if it is where the lesson starts."""
-    places = [f"{axis} = {other.settings[f'{axis}_mm']:g} mm" for axis in "xy" if f"{axis}_mm" in other.settings]
+    found = {axis: other.settings.get(f"start.{axis}_mm") for axis in "xy"}
+    places = [f"{axis} = {value:g} mm" for axis, value in found.items() if value is not None]
     return f" (start {', '.join(places)})" if places else ""
 
 

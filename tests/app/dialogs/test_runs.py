@@ -33,7 +33,7 @@ pytestmark = pytest.mark.usefixtures("home")
 
 def stored(text: str = LOGS, **choices: Any) -> str:
     """Carry a program out and return the run's id."""
-    spec = build_run_spec(replace(Settings({"background": "Grey_bands", "seed": 5}), **choices))
+    spec = build_run_spec(Settings({"background": "Grey_bands", "seed": 5, **choices}))
     options = RunOptions(actions=(UserAction(100, SetNoise(20, 0)), UserAction(200, SetNoise(0, 0))))
     run = start_run(program(text), spec, options)
     assert run.wait(PATIENCE_S)

@@ -102,8 +102,8 @@ async def test_a_wrong_number_is_refused() -> None:
         for field, typed, said in (
             ("width_mm", "0", "W must be above 0, got 0.0"),
             ("x_mm", "wide", "X must be a number, got 'wide'"),
-            ("y_mm", "1e9", "Y must be from -10000 to 10000, got 1000000000.0"),
-            ("height_mm", "nan", "H must be a number, got nan"),
+            ("y_mm", "1e9", "Y must be a number from -10000 to 10000, got 1000000000.0"),
+            ("height_mm", "nan", "H must be a number from -10000 to 10000, got nan"),
         ):
             entry = app.query_one(f"#{field}", Input)
             entry.focus()
