@@ -159,7 +159,7 @@ def _kill_workers(department: Department) -> None:
 
 
 BREAKS = {
-    "scheduler killed": (_kill_scheduler, "the scheduler is lost"),
+    "scheduler killed": (_kill_scheduler, "the scheduler (is lost|does not answer)"),
     "scheduler stopped": (_stop_scheduler, "the scheduler (does not answer|is lost)"),
     "workers killed": (_kill_workers, "the cluster has no worker"),
 }
