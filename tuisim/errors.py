@@ -13,7 +13,6 @@ goes to stderr, to a notice in the app, and to the notebook.
 
 from __future__ import annotations
 
-import math
 import re
 import reprlib
 from collections.abc import Iterable, Sequence
@@ -188,29 +187,6 @@ class LogError(TuisimError):
 
 class ExportError(TuisimError):
     """An export could not be written; no partial file is left."""
-
-
-def require(
-    value: float, low: float, high: float, key: str, error: type[ConfigError] = RobotError, *, whole: bool = False
-) -> None:
-    """Check that a value is a number within limits.
-
-    Args:
-        value: Value to check; a bool is not a number.
-        low: Smallest allowed value.
-        high: Largest allowed value.
-        key: Name of the value in the error.
-        error: Class of the error.
-        whole: Whether only whole numbers are allowed.
-
-    Raises:
-        ConfigError: the check failed; raised as `error`.
-    """
-    number = isinstance(value, int) or (isinstance(value, float) and not whole and math.isfinite(value))
-    if not number or isinstance(value, bool):
-        raise error(f"must be a {'whole ' if whole else ''}number, got {reprlib.repr(value)}", key=key)
-    if not low <= value <= high:
-        raise error(f"must be from {low:g} to {high:g}, got {value!r}", key=key)
 
 
 def require_one_of(

@@ -452,3 +452,23 @@ def test_output_that_a_program_changes_later_is_damage_and_no_error(tmp_path: Pa
     assert index.row(LINES - 1).text.strip() == f"line {LINES - 1}"
     assert view.all_rows() == []
     assert "was changed" in view.damage
+
+
+@pytest.mark.parametrize(
+    ("mode", "is_damage"), [(0o600, False), (0o000, True)], ids=["by the machine", "by its program"]
+)
+def test_a_recording_that_may_not_be_read(
+    mode: int, is_damage: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def forbidden(path: Path) -> None:
+        raise PermissionError(13, "Permission denied", str(path))
+
+    (tmp_path / "output.bin").write_bytes(b"x" * 100)
+    (tmp_path / "output.bin").chmod(mode)
+    monkeypatch.setattr("tuisim.runs.views.open_regular", forbidden)
+    view = OutputView(tmp_path)
+    if is_damage:
+        assert view.note == "output.bin cannot be read: Permission denied"
+        return
+    with pytest.raises(LogError, match="cannot be read: Permission denied"):
+        list(view.rows())

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from itertools import islice
 from mmap import MAP_ANONYMOUS, MAP_PRIVATE, mmap
 from pathlib import Path
+from stat import S_IRUSR
 from typing import TYPE_CHECKING, Any, ClassVar
 from weakref import finalize
 
@@ -211,9 +212,16 @@ class _View(ABC):
             self._read_packed()
         except OSError as error:
             reason = error.strerror or str(error)
-            if of_the_machine(error):
+            if of_the_machine(error) or self._is_withheld(error):
                 raise LogError(f"cannot be read: {reason}", file=str(self._path)) from error
             self._damage = f"{self._path.name} cannot be read: {reason}"
+
+    def _is_withheld(self, error: OSError) -> bool:
+        """Return whether this machine forbids to read a file whose owner may read it: no program has seen to that."""
+        try:
+            return isinstance(error, PermissionError) and bool(self._path.stat().st_mode & S_IRUSR)
+        except OSError:
+            return False
 
     def _read_packed(self) -> None:
         if self._is_checked:
