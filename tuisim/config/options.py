@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from tuisim.config.picture_options import AUTO, CELLS, PIXELS
 from tuisim.core.spec import RunSpec
 from tuisim.core.tree import leaves
-from tuisim.core.values import Choice, Flag, NamedNumber, Value, Whole, WrongValue
+from tuisim.core.values import Choice, Flag, NamedNumber, Value, Whole, WrongValue, values_of
 from tuisim.errors import ConfigError
 from tuisim.source import PRELUDE_TEXTS
 
@@ -81,7 +81,8 @@ def _default(path: str) -> Any:
     *outer, name = path.split(".")
     kind: Any = RunSpec
     for part in outer:
-        kind = kind.__dataclass_fields__[part].metadata["value"].of
+        inner: Any = values_of(kind)[part]
+        kind = inner.of
     return kind.__dataclass_fields__[name].default
 
 
@@ -165,8 +166,6 @@ class Option:
 
 
 WORLD, RUN, APP, PANEL = "World", "Run", "App", "Panels of the app"
-
-_NO_VALUE = Flag()
 
 
 def _word(path: str, flags: tuple[str, ...], metavar: str, allowed: str, about: str, default: str = "") -> Option:

@@ -309,7 +309,7 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None, argumen
     values = {path: tree.at(spec, one.spec_path) for path, one in RUN_VALUES.items()}
     of_world = {name: values[name] for name, keys in _TABLES.items() if not keys}
     presets = {key: settings[key] for key in ("robot", "obstacles", "profile") if isinstance(settings[key], str)}
-    top |= of_world | presets | {"seed": of_world.pop("seed")}
+    top |= of_world | presets
     comments = {**_COMMENTS, **{path: one.value.help for path, one in RUN_VALUES.items()}}
     lines = [_HEAD, "", *files.toml_lines(top, comments)]
     for name, keys in _TABLES.items():
