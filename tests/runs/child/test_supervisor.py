@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
 import subprocess
@@ -9,7 +10,10 @@ import sys
 import time
 from collections.abc import Callable
 
+import pytest
+
 from tests.running import PATIENCE_S
+from tuisim.errors import HostError
 from tuisim.runs.child import supervisor
 
 STOPPED_CHILD = """
@@ -82,3 +86,12 @@ def test_a_command_that_the_user_suspends_stays_so() -> None:
             assert process.stdout.read() == b"goes on\n"
         finally:
             os.killpg(process.pid, signal.SIGKILL)
+
+
+def test_a_machine_that_can_start_no_more_processes_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*words: object, **more: object) -> None:
+        raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+
+    monkeypatch.setattr(subprocess, "Popen", refuse)
+    with pytest.raises(HostError, match="cannot be started: Too many open files"), supervisor.supervised():
+        pass

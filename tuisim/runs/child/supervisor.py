@@ -77,7 +77,10 @@ def supervise(root: int) -> None:
 def supervised() -> Iterator[None]:
     """Continue this process, and those that it starts in the block, when a program stops them; see `runs.supervisor`.
 
-    Where it cannot be started, such as without `/proc`, nothing is continued.
+    Without `/proc` nothing is continued.
+
+    Raises:
+        HostError: this machine cannot start the process that does it.
     """
     if not os.path.isdir("/proc/self"):
         yield
@@ -86,7 +89,15 @@ def supervised() -> Iterator[None]:
     import subprocess
 
     command = [sys.executable, "-I", "-S", __file__, str(os.getpid())]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True) as process:
+    try:
+        process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True)
+    except OSError as error:
+        from tuisim.errors import HostError
+
+        raise HostError(
+            f"the process that watches over programs cannot be started: {error.strerror or error}"
+        ) from error
+    with process:
         assert process.stdin is not None
         told = process.stdin.fileno()
 
