@@ -11,7 +11,6 @@ from textual.app import App, ComposeResult
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.app.render.mat import Pixels
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
@@ -19,6 +18,7 @@ from tuisim.core.profile import ROBOLAB
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.core.state import Instant
+from tuisim.terminal.pixels import Pixels
 
 P = TypeVar("P", bound=Widget)
 M = TypeVar("M", bound=Message)

@@ -13,7 +13,7 @@ from tuisim.analysis.source import LogRequest
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.app.analyser.app import Analyser
 from tuisim.app.app import LabApp
-from tuisim.app.terminal.terminal_app import ActionProvider
+from tuisim.app.terminal_app import ActionProvider
 
 
 async def test_it_offers_every_key_and_finds_it_by_its_title() -> None:

@@ -19,7 +19,7 @@ from tests.running import PATIENCE_S
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import LabApp
-from tuisim.app.terminal.terminal_app import TerminalApp
+from tuisim.app.terminal_app import TerminalApp
 
 PRESSES, AT_ONE_GO = 3000, 400
 """How often something is pressed for one seed, and at most before the app is left and opened anew."""

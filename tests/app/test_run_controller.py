@@ -14,13 +14,13 @@ from tuisim.app.app import LabApp
 from tuisim.app.panels.output import Answer
 from tuisim.app.panels.world import WorldView
 from tuisim.app.snapshot import RunPhase
-from tuisim.app.terminal.picture_mode import PictureMode
 from tuisim.config import mat_cache
-from tuisim.config.picture_options import CellSet
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.errors import BackgroundError
 from tuisim.logs.reader import read_log
+from tuisim.terminal.picture_mode import PictureMode
+from tuisim.terminal.picture_options import CellSet
 
 pytestmark = pytest.mark.usefixtures("home")
 

@@ -13,7 +13,7 @@ from textual.drivers.headless_driver import HeadlessDriver
 from textual.pilot import Pilot
 
 from tests.running import PATIENCE_S
-from tuisim.app.terminal.terminal_app import TerminalApp
+from tuisim.app.terminal_app import TerminalApp
 
 QUERY = "\x1b[6n"
 

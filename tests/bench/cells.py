@@ -14,23 +14,24 @@ from textual.geometry import Region
 
 from tests.bench.figures import Figure
 from tests.bench.sampling import QUICK, Effort
-from tuisim.app.render.cells import changed_cells, changed_runs
-from tuisim.app.render.mat import Pixels, shrink, whole_field
+from tuisim.app.render.mat import shrink, whole_field
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
 from tuisim.app.setup.mat import prepare_mat
-from tuisim.app.terminal.cell_view import CellStrip
-from tuisim.app.terminal.frame_buffer import FrameBuffer, TextMode
-from tuisim.charts.fitted_cells import Cells, all_cells, fit_cells
-from tuisim.charts.glyphs import glyph_set
-from tuisim.charts.world_image import COLORED, CellPoints, Viewport, draw_robot
+from tuisim.charts.world_image import COLORED, Viewport, draw_robot
 from tuisim.config.build import build_run_spec
 from tuisim.config.mats import mats
 from tuisim.config.options import Settings
-from tuisim.config.picture_options import CellSet
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import RobotSpec
 from tuisim.errors import BackgroundError
+from tuisim.terminal.cell_view import CellStrip
+from tuisim.terminal.cells import changed_cells, changed_runs
+from tuisim.terminal.fitted_cells import Cells, all_cells, fit_cells
+from tuisim.terminal.frame_buffer import FrameBuffer, TextMode
+from tuisim.terminal.glyphs import glyph_set
+from tuisim.terminal.picture_options import CellSet
+from tuisim.terminal.pixels import CellPoints, Pixels
 
 COLS, ROWS = 74, 36
 """Cells of the world at 120 × 40."""

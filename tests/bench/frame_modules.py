@@ -22,9 +22,9 @@ from tests.bench.figures import Figure
 from tests.bench.frames import CIRCLE
 from tests.bench.sampling import Effort
 from tests.bench.terminal import Terminal
-from tuisim.app.terminal.pacer import Pacer
 from tuisim.atomic import replacing
 from tuisim.cli import run_command
+from tuisim.terminal.pacer import Pacer
 
 SETTLE_S = 5.0
 """From the first frame, for modules that are imported and caches that are filled."""

@@ -13,7 +13,7 @@ from tests.bench.processes import cpu_s
 from tests.bench.references import paints
 from tests.bench.sampling import Effort
 from tests.bench.terminal import Terminal
-from tuisim.config.picture_options import CellSet, Protocol
+from tuisim.terminal.picture_options import CellSet, Protocol
 
 CIRCLE = """\
 # %%sim_magic_preloaded -b Grey_bands -x 600 -y 500

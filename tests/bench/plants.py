@@ -64,7 +64,7 @@ TelemetryWriter.publish = burn
 """
 """Makes every recorded tick cost so many turns of a loop."""
 DRAWN = """
-from tuisim.app.terminal.frame_buffer import FrameBuffer
+from tuisim.terminal.frame_buffer import FrameBuffer
 codes = FrameBuffer.codes
 
 def burn(*words):
@@ -78,7 +78,7 @@ FrameBuffer.codes = burn
 LARGE = "ballast = bytearray({megabytes} << 20)\n"
 """Makes a process so much larger."""
 WALKS = """
-from tuisim.app.terminal.frame_buffer import FrameBuffer
+from tuisim.terminal.frame_buffer import FrameBuffer
 codes = FrameBuffer.codes
 
 def function_of(module):

@@ -21,7 +21,7 @@ from tests.bench.sampling import Effort
 from tests.bench.screen import Screen
 from tests.bench.sshd import Sshd, missing
 from tests.bench.terminal import Terminal
-from tuisim.config.picture_options import CellSet, Protocol
+from tuisim.terminal.picture_options import CellSet, Protocol
 
 _UNLIMITED = Line("no limit")
 _SLOW = (Line("128 kbit/s", 128e3, 0.150), Line("256 kbit/s", 256e3, 0.150))

@@ -13,12 +13,12 @@ from tests.app.app_help import ready, until
 from tests.conftest import ROOT
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.editor.area import CodeArea
+from tuisim.app.screenshot import screen_cells
 from tuisim.app.snapshot import RunPhase
-from tuisim.app.terminal.screenshot import screen_cells
-from tuisim.charts.cell_image import svg_of_cells
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.source import Program
+from tuisim.terminal.cell_image import svg_of_cells
 
 PICTURE = Path(__file__).with_name("tuisim.svg")
 SIZE = (120, 40)

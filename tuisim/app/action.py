@@ -19,8 +19,8 @@ from textual.keys import format_key
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.app.background import is_leaving
 from tuisim.errors import TuisimError
+from tuisim.terminal.textual_internals import is_leaving
 
 ACT = "act"
 """Key of the style metadata that names the action of a clickable word."""

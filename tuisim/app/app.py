@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -20,7 +20,7 @@ from tuisim.app.actions import ActionContext, time_travel
 from tuisim.app.actions.files import welcome
 from tuisim.app.actions.keys import ACTIONS, PAGES, RUN_KEYS, TEXT_KEYS, footer_actions, working
 from tuisim.app.actions.lesson import reads_on, takes_pages
-from tuisim.app.background import is_leaving, leave
+from tuisim.app.background import leave
 from tuisim.app.branch import branch_message
 from tuisim.app.debugger import DebugController
 from tuisim.app.editor.document import Document
@@ -36,11 +36,8 @@ from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
 from tuisim.app.setup import next_run as plans
 from tuisim.app.snapshot import AT_REST, GOOD_ENDS, AppState, RunPhase, Situation, end_words
 from tuisim.app.speech import Voice
-from tuisim.app.terminal.input_order import takes_letters
-from tuisim.app.terminal.pacer import Pacer
-from tuisim.app.terminal.picture_mode import PictureMode, choose_colors, picture_mode_for
+from tuisim.app.terminal_app import picture_mode_at_start
 from tuisim.config.options import DEFAULT_FPS, Settings
-from tuisim.config.picture_options import AUTO
 from tuisim.config.program_settings import Decided
 from tuisim.config.user_config import FILE, UserConfig, load_config
 from tuisim.core.spec import RunSpec
@@ -50,12 +47,17 @@ from tuisim.runs.child.process import warm_up
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.source import Program
+from tuisim.terminal.input_order import takes_letters
+from tuisim.terminal.pacer import Pacer
+from tuisim.terminal.picture_mode import PictureMode
+from tuisim.terminal.picture_options import AUTO
+from tuisim.terminal.textual_internals import is_leaving
 
 if TYPE_CHECKING:
     from tuisim.app.panels.output import Output
-    from tuisim.app.render.mat import Pixels
     from tuisim.goals.files import GoalsFile
     from tuisim.lessons.spec import Lesson
+    from tuisim.terminal.pixels import Pixels
 
 AFTER_FIRST_PAINT_S = 0.05
 """Large data is sent this much later: the screen is painted more than once at startup."""
@@ -555,7 +557,6 @@ def _footed(state: AppState) -> tuple[Any, ...]:
 
 def run_app(settings: AppSettings) -> int:
     """Run the app in this terminal until the user quits; return the exit code."""
-    most_colors = choose_colors(settings.colors)
-    lab = LabApp(settings, replace(picture_mode_for(settings.cells), most_colors=most_colors))
+    lab = LabApp(settings, picture_mode_at_start(settings.cells, settings.colors))
     lab.run()
     return leave(lab.return_code or 0)

@@ -19,6 +19,7 @@ from textual.worker import get_current_worker
 
 from tuisim.atomic import drop_unfinished, unfinished
 from tuisim.errors import TuisimError
+from tuisim.terminal.textual_internals import is_leaving
 
 Made = TypeVar("Made")
 Given = ParamSpec("Given")
@@ -27,12 +28,6 @@ FINISHES_WITHIN_S = 1.0
 """So long an app that has been left waits for files that are being written."""
 _LOOK_S = 0.02
 _threads: list[Thread] = []
-
-
-def is_leaving(app: App[Any]) -> bool:
-    """Return whether the app is shutting down: nothing may be opened any more, for it could not be drawn."""
-    # Textual has no public API for it.
-    return app._exit
 
 
 def run(

@@ -6,10 +6,10 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING
 
 from tuisim.app.action import ActionHost
-from tuisim.app.terminal.terminal_app import TerminalApp
+from tuisim.app.terminal_app import TerminalApp
 
 if TYPE_CHECKING:
-    from tuisim.app.render.mat import Pixels
+    from tuisim.terminal.pixels import Pixels
 
 
 class LabHost(ActionHost, TerminalApp):

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 from textual.keys import KEY_NAME_REPLACEMENTS, Keys, _character_to_key
 
 from tuisim.app.action import Action, label_of_key
-from tuisim.app.terminal.themes import theme_names
+from tuisim.app.themes import theme_names
 from tuisim.config.files import Location
 from tuisim.config.user_config import THEME, Section, UserConfig
 from tuisim.errors import nearest

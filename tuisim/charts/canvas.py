@@ -14,10 +14,10 @@ from rich.style import Style
 
 from tuisim.charts import axes
 from tuisim.charts.axes import Limits
-from tuisim.charts.text_runs import Run
 from tuisim.charts.traces import min_max
 from tuisim.core.css_colors import Rgb
 from tuisim.runs.arrays import FloatArray
+from tuisim.terminal.text_runs import Run
 
 TextRun = tuple[str, Rgb | None]
 """A piece of a row in one colour, None where nothing is drawn."""

@@ -28,11 +28,11 @@ from tuisim.charts.layout import (
     grid_of,
     shortened,
 )
-from tuisim.charts.world_image import Pixels
 from tuisim.core.css_colors import Rgb
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import counted
 from tuisim.runs.arrays import FloatArray
+from tuisim.terminal.pixels import Pixels
 
 MOST_GROUPS = 8
 """Groups that can be distinguished by their colours."""

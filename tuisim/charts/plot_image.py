@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from tuisim.charts.axes import Limits
-    from tuisim.charts.world_image import Pixels
     from tuisim.core.css_colors import Rgb
     from tuisim.runs.arrays import FloatArray
+    from tuisim.terminal.pixels import Pixels
 
     _Points = npt.NDArray[np.float64]
 

@@ -14,10 +14,10 @@ from tuisim.charts.axes import Limits
 from tuisim.charts.canvas import AXIS, BRAILLE, PLAIN, Curve, TextRun, canvas, styled, xy_lines
 from tuisim.charts.layout import COLORS, ChartData, Line, color_of, limits_of
 from tuisim.charts.plot_image import Plot
-from tuisim.charts.text_runs import Run, cut
 from tuisim.charts.traces import Trace, Traces
 from tuisim.errors import printable
 from tuisim.runs.arrays import FloatArray
+from tuisim.terminal.text_runs import Run, cut
 
 _CURSOR = Style(color="#ffffff", bgcolor="#44505e")
 _STRONG = Style(color="#ffffff", bold=True)

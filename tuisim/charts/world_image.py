@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,7 @@ from tuisim.core.sensors.ultrasonic import rays_mm
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec, RobotSpec, RunSpec
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.runs.arrays import FloatArray, world_points_mm
+from tuisim.terminal.pixels import SQUARE, CellPoints, Pixels
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -25,9 +26,6 @@ if TYPE_CHECKING:
 
     from tuisim.runs.run_folder import StoredRun
     from tuisim.runs.views import TickRecord
-
-Pixels = npt.NDArray[np.uint8]
-"""Shape (height, width, 3): red, green, blue."""
 
 _SAMPLES = (4, 8)
 """Samples across and down a character cell."""
@@ -50,24 +48,6 @@ _SPOT_MM = 10.0
 """Radius of a further sensor."""
 
 _NONE, _EDGE, _BODY, _WHEEL, _SENSOR, _MARKER, _BUMPER, _PRESSED, _SPOT = range(9)
-
-
-class CellPoints(NamedTuple):
-    """The pixels of a picture in a character cell."""
-
-    cols: int = 1
-    rows: int = 2
-    aspect: float = 2.0
-    """Height of the cell, as a multiple of its width."""
-
-    @property
-    def tall(self) -> float:
-        """Height of a pixel, as a multiple of its width."""
-        return self.aspect * self.cols / self.rows
-
-
-SQUARE = CellPoints()
-"""Two square pixels, one above the other."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ from tuisim.config.folders import user_path
 from tuisim.errors import ConfigError, counted
 
 if TYPE_CHECKING:
-    from tuisim.charts.text_runs import Line
+    from tuisim.terminal.text_runs import Line
 
 _MOST_COLUMNS = 100
 _MOST_RESULTS = 8

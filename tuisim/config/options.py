@@ -12,12 +12,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from tuisim.config.picture_options import AUTO, CELLS, PIXELS
 from tuisim.core.spec import RunSpec
 from tuisim.core.tree import leaves
 from tuisim.core.values import Choice, Flag, NamedNumber, Value, Whole, WrongValue, values_of
 from tuisim.errors import ConfigError
 from tuisim.source import PRELUDE_TEXTS
+from tuisim.terminal.picture_options import AUTO, CELLS, PIXELS
 
 COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "8", "none")
 MIN_SPEED, MAX_SPEED = 0.01, 1000.0

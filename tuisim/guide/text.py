@@ -6,11 +6,11 @@ import re
 
 from rich.style import Style
 
-from tuisim.charts.text_runs import Line
 from tuisim.guide.catalogue import CONTENTS, Page, pages
 from tuisim.guide.search import SearchResult
 from tuisim.guide.tables import markdown_of
 from tuisim.lessons.markdown import PLAIN, markdown_lines
+from tuisim.terminal.text_runs import Line
 
 _LINK = re.compile(r"\[([^\]]+)\]\(([\w-]+)\.md\)")
 _HEADING = re.compile(r"^## (.+)$", re.MULTILINE)

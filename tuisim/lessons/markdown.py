@@ -9,7 +9,7 @@ from rich.markdown import Markdown
 from rich.style import Style
 from rich.theme import Theme
 
-from tuisim.charts.text_runs import Line, Run
+from tuisim.terminal.text_runs import Line, Run
 
 _THEME = Theme(
     {

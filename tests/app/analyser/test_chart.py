@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from tests.app.app_help import until
-from tests.app.terminal.pixel_help import ANSWERS, drawn_by, on_canvas, part_of, seen_on
 from tests.app.wires import on_wire, until_quiet
+from tests.terminal.pixel_help import ANSWERS, drawn_by, on_canvas, part_of, seen_on
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.analyser.chart import LogChart
-from tuisim.app.terminal.plot_view import PlotView
-from tuisim.app.terminal.queries import TerminalAnswered, facts_in
+from tuisim.app.plot_view import PlotView
 from tuisim.charts.traces import TRACE_COLORS
-from tuisim.config.picture_options import Protocol
+from tuisim.terminal.picture_options import Protocol
+from tuisim.terminal.queries import TerminalAnswered, facts_in
 
 
 @pytest.mark.quick_cases("kitty-one chart")

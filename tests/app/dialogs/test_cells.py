@@ -9,16 +9,22 @@ from tests.app.app_help import LOGS, ready, settings, until
 from tests.app.wires import on_wire, until_quiet
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.cells import CellsCard
-from tuisim.app.terminal import picture_mode as modes
-from tuisim.app.terminal.cell_view import PixelView
-from tuisim.app.terminal.picture_mode import PictureMode, Sharpness, picture_mode_for
-from tuisim.charts.glyphs import GLYPHS
-from tuisim.config.picture_options import CellSet
+from tuisim.config.user_config import CELL_SET, load_config
+from tuisim.terminal import picture_mode as modes
+from tuisim.terminal.cell_view import PixelView
+from tuisim.terminal.glyphs import GLYPHS
+from tuisim.terminal.picture_mode import PictureMode, Sharpness, picture_mode_for
+from tuisim.terminal.picture_options import CellSet
 
 
 @pytest.fixture(autouse=True)
 def known_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(modes, "best_cells", lambda **_: CellSet.SEXTANT)
+
+
+def started(cells: str | None) -> PictureMode:
+    """How an app that starts draws pictures."""
+    return picture_mode_for(cells, str(load_config().value(CELL_SET)))
 
 
 def glyphs(view: PixelView) -> set[str]:
@@ -29,7 +35,7 @@ def glyphs(view: PixelView) -> set[str]:
 @pytest.mark.quick_cases("80x24")
 @pytest.mark.parametrize("size", [(80, 24), (60, 18), (120, 40)], ids=["80x24", "60x18", "120x40"])
 async def test_a_set_is_chosen_by_eye_and_kept(size: tuple[int, int]) -> None:
-    async with LabApp(settings(LOGS), picture_mode_for(None)).run_test(size=size) as pilot:
+    async with LabApp(settings(LOGS), started(None)).run_test(size=size) as pilot:
         app = await ready(pilot)
         assert app.picture_mode.cells is CellSet.SEXTANT
         await pilot.press("V")
@@ -43,9 +49,9 @@ async def test_a_set_is_chosen_by_eye_and_kept(size: tuple[int, int]) -> None:
         world = app.panel_area.screen.query_one("WorldView", PixelView)
         await until(pilot, lambda: any("\U0001cd00" <= glyph <= "\U0001cde5" for glyph in glyphs(world)))
 
-    assert picture_mode_for(None).cells is CellSet.OCTANT
-    assert picture_mode_for("half").cells is CellSet.HALF
-    assert picture_mode_for("auto").cells is CellSet.SEXTANT
+    assert started(None).cells is CellSet.OCTANT
+    assert started("half").cells is CellSet.HALF
+    assert started("auto").cells is CellSet.SEXTANT
 
 
 @pytest.mark.slow

@@ -11,8 +11,8 @@ from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import LOGS, notices, ready, settings, until
 from tuisim.app.app import AppSettings, LabApp
-from tuisim.app.terminal.cell_view import PixelView
 from tuisim.config.options import Settings
+from tuisim.terminal.cell_view import PixelView
 
 
 @pytest.mark.slow

@@ -24,7 +24,7 @@ from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.dialogs.question import Question
 from tuisim.app.guide.screen import GuideScreen, KeyPage, Topic
-from tuisim.app.terminal.terminal_app import Palette
+from tuisim.app.terminal_app import Palette
 
 IN_THE_LAB = {
     "mat": "b enter enter",

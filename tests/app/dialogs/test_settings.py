@@ -13,8 +13,8 @@ from tests.app.app_help import LOGS, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.settings import SettingsScreen
 from tuisim.app.panels.world import World
-from tuisim.config.picture_options import CellSet
 from tuisim.config.user_config import SETTINGS, load_config
+from tuisim.terminal.picture_options import CellSet
 
 APPLIED: dict[str, tuple[list[str], object, Callable[[LabApp], bool]]] = {
     "app.ultrasound": (["enter"], True, lambda app: any(world.show_rays for world in app.query(World))),

@@ -9,11 +9,11 @@ import pytest
 
 from tests.app.panel_help import PanelApp, moment, screen_text, small_field
 from tuisim.app.panels.arrays import Arrays, name_line
-from tuisim.app.render.cells import PALETTE_8, PALETTE_16, ColorMode
 from tuisim.app.render.mat import lay_out
-from tuisim.app.terminal.cell_view import PixelView
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
+from tuisim.terminal.cell_view import PixelView
+from tuisim.terminal.cells import PALETTE_8, PALETTE_16, ColorMode
 
 FIELD = small_field()
 

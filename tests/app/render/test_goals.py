@@ -8,9 +8,9 @@ from dataclasses import replace
 import pytest
 
 from tuisim.app.render.goals import GoalsView, draw_goals
-from tuisim.charts.text_runs import Line
 from tuisim.goals.judgement import Change, GoalState, Judgement
 from tuisim.goals.spec import AllOf, FinishCondition, Goal, UseCondition
+from tuisim.terminal.text_runs import Line
 
 MET = Judgement(
     Goal("there", FinishCondition(), "Drive to it.", 2), (Change(100, 1.0, GoalState.MET, 299.6, 80.2),), line=7

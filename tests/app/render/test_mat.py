@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tuisim.app.render.mat import MatPictures, Pixels, shrink, whole_field
-from tuisim.charts.world_image import CellPoints, Viewport
+from tuisim.app.render.mat import MatPictures, shrink, whole_field
+from tuisim.charts.world_image import Viewport
+from tuisim.terminal.pixels import CellPoints, Pixels
 
 OUTSIDE = (1, 2, 3)
 

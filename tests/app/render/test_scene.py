@@ -8,12 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tuisim.app.render.mat import Pixels, whole_field
+from tuisim.app.render.mat import whole_field
 from tuisim.app.render.scene import BEACON_CORE_RGB, BEACON_RGB, PenTrace, ScenePainter, SceneState, pen_rgb
-from tuisim.charts.world_image import COLORED, CellPoints, Viewport, draw_robot, drawn_scale
+from tuisim.charts.world_image import COLORED, Viewport, draw_robot, drawn_scale
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import BeaconSpec, InfraredSpec, Obstacle, PenSpec, RobotSpec, TouchSpec
+from tuisim.terminal.pixels import CellPoints, Pixels
 
 MAT = np.full((1143, 2362, 3), 255, np.uint8)
 VIEW = whole_field(160, 78)

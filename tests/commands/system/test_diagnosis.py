@@ -6,7 +6,7 @@ import pytest
 
 from tuisim.commands.system import diagnosis
 from tuisim.commands.system.diagnosis import Finding, State, prevents_use
-from tuisim.config.picture_options import CellSet
+from tuisim.terminal.picture_options import CellSet
 
 OK, ADVICE, PROBLEM = State
 

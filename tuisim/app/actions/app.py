@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from tuisim.app.action import key_groups
 from tuisim.app.layout.arrangement import Preset
-from tuisim.app.terminal.terminal_app import theme_list
-from tuisim.config.picture_options import AUTO
+from tuisim.app.terminal_app import theme_list
 from tuisim.config.user_config import CELL_SET
+from tuisim.terminal.picture_options import AUTO
 
 if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext
@@ -95,7 +95,7 @@ def open_settings(context: ActionContext) -> None:
     """Open the settings screen."""
     from tuisim.app.dialogs.settings import SettingsScreen
     from tuisim.app.setup.user_settings import change
-    from tuisim.app.terminal.themes import theme_names
+    from tuisim.app.themes import theme_names
 
     context.app.push_screen(SettingsScreen(partial(change, context), theme_names()))
 

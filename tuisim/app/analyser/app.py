@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gc
-from dataclasses import replace
 from typing import ClassVar
 
 from textual.binding import Binding, BindingType
@@ -14,10 +13,10 @@ from tuisim.app.action import key_bindings
 from tuisim.app.analyser.actions.keys import ACTIONS
 from tuisim.app.analyser.screen import LogScreen
 from tuisim.app.background import leave
-from tuisim.app.terminal.picture_mode import PictureMode, choose_colors, picture_mode_for
-from tuisim.app.terminal.terminal_app import TerminalApp
-from tuisim.config.picture_options import AUTO
+from tuisim.app.terminal_app import TerminalApp, picture_mode_at_start
 from tuisim.errors import TuisimError
+from tuisim.terminal.picture_mode import PictureMode
+from tuisim.terminal.picture_options import AUTO
 
 
 class Analyser(LogScreen):
@@ -78,8 +77,7 @@ def run_analyser(request: LogRequest) -> int:
     """
     # Modules imported by now stay until the end: exclude them from garbage collection.
     gc.freeze()
-    most_colors = choose_colors(AUTO)
-    app = AnalyserApp(request, replace(picture_mode_for(None), most_colors=most_colors))
+    app = AnalyserApp(request, picture_mode_at_start(None, AUTO))
     app.run()
     if app.failure is not None:
         raise app.failure

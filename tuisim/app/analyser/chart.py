@@ -12,14 +12,14 @@ from textual.message import Message
 
 from tuisim.analysis.chart import event_marks
 from tuisim.analysis.traces import DISTANCE
-from tuisim.app.graphics.picture import MOST_POINTS
-from tuisim.app.terminal.cell_view import LinesPanel
-from tuisim.app.terminal.picture_mode import shows_ascii
-from tuisim.app.terminal.plot_view import PlotView
+from tuisim.app.plot_view import PlotView
 from tuisim.charts.canvas import BRAILLE, xy_lines
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
-from tuisim.charts.text_runs import Run
 from tuisim.charts.traces import Traces
+from tuisim.terminal.cell_view import LinesPanel
+from tuisim.terminal.graphics.picture import MOST_POINTS
+from tuisim.terminal.picture_mode import shows_ascii
+from tuisim.terminal.text_runs import Run
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model

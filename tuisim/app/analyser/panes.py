@@ -20,12 +20,12 @@ from tuisim.analysis.model import Model
 from tuisim.analysis.table import AT_ONCE
 from tuisim.app import background
 from tuisim.app.snapshot import end_label
-from tuisim.app.terminal.cell_view import LinesPanel
-from tuisim.charts.text_runs import Line, cut, first_shown
 from tuisim.errors import TuisimError, counted
 from tuisim.logs.bands import Band
 from tuisim.logs.plateaus import plateaus_in_subprocess
 from tuisim.logs.signals import QUANTILES
+from tuisim.terminal.cell_view import LinesPanel
+from tuisim.terminal.text_runs import Line, cut, first_shown
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -26,12 +26,12 @@ from tuisim.app.analyser.panes import PaneView
 from tuisim.app.analyser.world import WorldPane
 from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.app.dialogs.question import Form, LinePrompt
-from tuisim.app.terminal.cell_view import LinesView
 from tuisim.errors import LogError, TuisimError
 from tuisim.logs.columns import choose_columns, is_numeric
 from tuisim.logs.derived import SIGNALS, TIME, computed_columns
 from tuisim.logs.expressions import CONSTANTS, FUNCTIONS
 from tuisim.logs.log import Log
+from tuisim.terminal.cell_view import LinesView
 
 _POLL_S = 1.0
 _WIDE_COLS = 120

@@ -18,8 +18,6 @@ from tuisim.app.panels.arrays import Arrays
 from tuisim.app.panels.world import WorldView
 from tuisim.app.setup.mat import Mat, blank_mat, prepare_mat, prepare_mat_of
 from tuisim.app.snapshot import RunPhase, Snapshot
-from tuisim.app.terminal.cell_view import LinesView
-from tuisim.charts.text_runs import Run, first_shown
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
@@ -29,6 +27,8 @@ from tuisim.logs.derived import spec_in
 from tuisim.runs.recorded_run import Recording
 from tuisim.runs.views import instant_of
 from tuisim.source import source_lines
+from tuisim.terminal.cell_view import LinesView
+from tuisim.terminal.text_runs import Run, first_shown
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model

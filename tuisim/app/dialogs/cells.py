@@ -13,10 +13,10 @@ from textual.widgets.option_list import Option
 
 from tuisim.app.dialogs.chooser import ListDialog
 from tuisim.app.dialogs.dialog import name_and_title
-from tuisim.app.render.mat import Pixels
-from tuisim.app.terminal.cell_view import PixelView
-from tuisim.charts.glyphs import glyph_set
-from tuisim.config.picture_options import AUTO, CellSet
+from tuisim.terminal.cell_view import PixelView
+from tuisim.terminal.glyphs import glyph_set
+from tuisim.terminal.picture_options import AUTO, CellSet
+from tuisim.terminal.pixels import Pixels
 
 _SETS = {
     AUTO: "finest known to work here",

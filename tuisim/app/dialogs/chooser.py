@@ -18,8 +18,7 @@ from textual.widgets.option_list import Option
 from tuisim.app import background
 from tuisim.app.dialogs.dialog import Dialog, name_and_title
 from tuisim.app.dialogs.save import typed_path
-from tuisim.app.render.mat import Pixels, shrink, whole_field
-from tuisim.app.terminal.cell_view import PixelView
+from tuisim.app.render.mat import shrink, whole_field
 from tuisim.config.mat_image import decode, read_file
 from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import OBSTACLES, load_obstacles
@@ -29,6 +28,8 @@ from tuisim.core.profile import PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import TuisimError
 from tuisim.logs.export import is_companion
+from tuisim.terminal.cell_view import PixelView
+from tuisim.terminal.pixels import Pixels
 
 if TYPE_CHECKING:
     from tuisim.app.setup.next_run import NextRun

@@ -23,8 +23,8 @@ from textual.widgets import Static
 
 from tuisim.app import background
 from tuisim.app.background import Made
-from tuisim.app.terminal.cell_view import JoinedStrip, LazyStrip
 from tuisim.errors import TuisimError
+from tuisim.terminal.cell_view import JoinedStrip, LazyStrip
 
 Result = TypeVar("Result")
 

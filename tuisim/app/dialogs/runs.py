@@ -20,9 +20,9 @@ from tuisim.app.branch import BRANCH_TAG
 from tuisim.app.dialogs.chooser import ListDialog
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.snapshot import GOOD_ENDS, end_label
-from tuisim.charts.text_runs import cut
 from tuisim.runs.catalogue import RunInfo
 from tuisim.runs.store import RunStore
+from tuisim.terminal.text_runs import cut
 
 if TYPE_CHECKING:
     from tuisim.runs.diff import RunDiff

@@ -15,11 +15,11 @@ from textual.widgets import Input, Static
 
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.dialogs.question import Form, form_list
-from tuisim.app.terminal.environment import offer
 from tuisim.config.folders import user_path
 from tuisim.errors import ConfigError, TuisimError, shortened
 from tuisim.logs.export import LISTED, check_target, export_samples, export_telemetry, files_in_words
 from tuisim.runs.store import RunStore
+from tuisim.terminal.environment import offer
 
 
 def typed_path(text: str) -> Path:

@@ -18,10 +18,10 @@ from textual.widgets.tree import TreeNode
 from tuisim.app import background
 from tuisim.app.action import KeyWord, key_table
 from tuisim.app.dialogs.dialog import Dialog
-from tuisim.charts.text_runs import Line
 from tuisim.guide.catalogue import CONTENTS, pages
 from tuisim.guide.search import SearchResult, search
 from tuisim.guide.text import NO_WORDS, headings_in, linked_names, page_lines
+from tuisim.terminal.text_runs import Line
 
 
 @dataclass(frozen=True, slots=True)

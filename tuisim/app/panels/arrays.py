@@ -11,11 +11,11 @@ from textual.app import ComposeResult
 from textual.widget import Widget
 
 from tuisim.app.render.mat import CORNER_16_RGB, FULL_PX, DiscLayout, draw_discs, lay_out
-from tuisim.app.terminal.cell_view import LinesView, PixelView
-from tuisim.app.terminal.pacer import Throttle
-from tuisim.charts.text_runs import cut
 from tuisim.charts.world_image import CORNER_RGB
 from tuisim.core.sensors.color import pixel_array
+from tuisim.terminal.cell_view import LinesView, PixelView
+from tuisim.terminal.pacer import Throttle
+from tuisim.terminal.text_runs import cut
 
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot

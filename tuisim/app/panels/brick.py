@@ -13,9 +13,9 @@ from textual.timer import Timer
 
 from tuisim.app.render.brick import BrickPicture, draw_brick
 from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot
-from tuisim.app.terminal.cell_view import LinesPanel
-from tuisim.app.terminal.pacer import Throttle
 from tuisim.protocol import BUTTONS
+from tuisim.terminal.cell_view import LinesPanel
+from tuisim.terminal.pacer import Throttle
 
 _PERIOD_S = 0.1
 """The whole display may change at once: a shorter period would saturate a slow link."""

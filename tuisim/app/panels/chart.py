@@ -11,15 +11,15 @@ from textual import events
 from textual.binding import Binding, BindingType
 from textual.message import Message
 
+from tuisim.app.plot_view import PlotView
 from tuisim.app.snapshot import RunPhase, Snapshot
-from tuisim.app.terminal.cell_view import LinesPanel
-from tuisim.app.terminal.pacer import Throttle
-from tuisim.app.terminal.picture_mode import shows_ascii
-from tuisim.app.terminal.plot_view import PlotView
 from tuisim.charts import axes
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
-from tuisim.charts.text_runs import Run
 from tuisim.charts.traces import Trace, Traces
+from tuisim.terminal.cell_view import LinesPanel
+from tuisim.terminal.pacer import Throttle
+from tuisim.terminal.picture_mode import shows_ascii
+from tuisim.terminal.text_runs import Run
 
 _PERIOD_S = 0.33
 """Drawing a chart takes tens of milliseconds: three times a second is enough to follow it."""

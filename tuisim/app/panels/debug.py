@@ -12,8 +12,8 @@ from textual.message import Message
 from tuisim.app.panels import PANELS
 from tuisim.app.render.debug import DebugView, debug_lines
 from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
-from tuisim.app.terminal.cell_view import LinesPanel
-from tuisim.charts.text_runs import Line
+from tuisim.terminal.cell_view import LinesPanel
+from tuisim.terminal.text_runs import Line
 
 if TYPE_CHECKING:
     from tuisim.protocol import Paused

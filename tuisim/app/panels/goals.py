@@ -9,7 +9,7 @@ from textual.binding import Binding, BindingType
 
 from tuisim.app.panels import PANELS
 from tuisim.app.render.goals import GoalsPicture, GoalsView, current_goal, draw_goals
-from tuisim.app.terminal.cell_view import LinesPanel
+from tuisim.terminal.cell_view import LinesPanel
 
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot

@@ -8,12 +8,12 @@ from rich.color import Color
 from rich.style import Style
 
 from tuisim.app.snapshot import RunPhase, Snapshot, end_label
-from tuisim.app.terminal.cell_view import LinesPanel
-from tuisim.app.terminal.pacer import Throttle
-from tuisim.charts.text_runs import Line, Run, cut
 from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.sensors.color import ColorReading
 from tuisim.logs.units import unit_of
+from tuisim.terminal.cell_view import LinesPanel
+from tuisim.terminal.pacer import Throttle
+from tuisim.terminal.text_runs import Line, Run, cut
 
 _PERIOD_S = 0.1
 """Values that change faster cannot be read."""

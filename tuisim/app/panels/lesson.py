@@ -9,7 +9,7 @@ from textual.binding import Binding, BindingType
 from tuisim.app.action import with_keys_of
 from tuisim.app.panels import PANELS
 from tuisim.app.render.lesson import Away, LessonPicture, LessonView, draw_lesson
-from tuisim.app.terminal.cell_view import LinesPanel
+from tuisim.terminal.cell_view import LinesPanel
 
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot

@@ -16,21 +16,22 @@ from textual.widget import Widget
 
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.obstacles import BoxGrip, box_at
-from tuisim.app.render.cells import MONO
-from tuisim.app.render.mat import ZOOMS, Pixels, following
-from tuisim.app.render.mono import body, pointer
+from tuisim.app.render.mat import ZOOMS, following
+from tuisim.app.render.mono_robot import body, pointer
 from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
 from tuisim.app.snapshot import AT_REST, RunPhase, Snapshot
-from tuisim.app.terminal.cell_view import LinesView, PixelView
-from tuisim.app.terminal.picture_mode import BLOCKS
 from tuisim.charts.axes import time_limits
-from tuisim.charts.text_runs import Run
 from tuisim.charts.world_image import Viewport, drawn_scale
-from tuisim.config.picture_options import CellSet
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec
 from tuisim.runs.records import Mark
+from tuisim.terminal.cell_view import LinesView, PixelView
+from tuisim.terminal.cells import MONO
+from tuisim.terminal.picture_mode import BLOCKS
+from tuisim.terminal.picture_options import CellSet
+from tuisim.terminal.pixels import Pixels
+from tuisim.terminal.text_runs import Run
 
 TURN_STEP_DEG = 5.0
 """Turn of the robot per notch of the mouse wheel."""

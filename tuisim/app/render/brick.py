@@ -12,9 +12,9 @@ from rich.color import Color
 from rich.style import Style
 
 from tuisim.app.render.mat import shrunk
-from tuisim.charts.text_runs import Run
 from tuisim.core.css_colors import Rgb
 from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, ROW_BYTES, BrickState, TextScreen
+from tuisim.terminal.text_runs import Run
 
 _PAPER_RGB, _INK_RGB = (172, 186, 158), (22, 28, 20)
 _PAPER = Style(color=Color.from_rgb(*_INK_RGB), bgcolor=Color.from_rgb(*_PAPER_RGB))

@@ -12,8 +12,8 @@ from typing import assert_never
 from rich.style import Style
 
 from tuisim.app.snapshot import RunPhase
-from tuisim.charts.text_runs import Line, cut
 from tuisim.protocol import FrameState, Inspected, Paused, PauseReason, Variable
+from tuisim.terminal.text_runs import Line, cut
 
 _PLAIN = Style(color="#d8dee6")
 _NAME = Style(color="#9fd3ff")

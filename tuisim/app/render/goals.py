@@ -9,9 +9,9 @@ from typing import assert_never
 
 from rich.style import Style
 
-from tuisim.charts.text_runs import Line, cut
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.goals.spec import ConditionKind, Goal
+from tuisim.terminal.text_runs import Line, cut
 
 _NAME = Style(color="#ffffff", bold=True)
 _PLAIN = Style(color="#d8dee6")

@@ -11,7 +11,6 @@ from rich.style import Style
 
 from tuisim.app.panels import PANELS
 from tuisim.app.render.code_rows import code_rows
-from tuisim.charts.text_runs import Line, cut
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.lessons.markdown import markdown_lines
 from tuisim.lessons.progress import StepState
@@ -27,6 +26,7 @@ from tuisim.lessons.spec import (
     VisitCheck,
     WatchCheck,
 )
+from tuisim.terminal.text_runs import Line, cut
 
 _NAME = Style(color="#ffffff", bold=True)
 _PLAIN = Style(color="#d8dee6")

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.charts.world_image import SQUARE, CellPoints, Viewport, disc_in_box
-from tuisim.charts.world_image import Pixels as Pixels
+from tuisim.charts.world_image import Viewport, disc_in_box
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.terminal.pixels import SQUARE, CellPoints, Pixels
 
 ZOOMS = (1, 2, 4)
 """Zoom factors, relative to the whole field."""

@@ -9,7 +9,7 @@ from itertools import groupby
 
 import numpy as np
 
-from tuisim.app.render.mat import MatPictures, Pixels
+from tuisim.app.render.mat import MatPictures
 from tuisim.charts.world_image import (
     CLEARED,
     COLORED,
@@ -26,6 +26,7 @@ from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import RobotOutline, outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, BeaconSpec, Obstacle, PenSpec, RobotSpec
 from tuisim.runs.arrays import FloatArray
+from tuisim.terminal.pixels import Pixels
 
 _GHOST_OPACITY = 0.75
 

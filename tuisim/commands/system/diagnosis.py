@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
-from tuisim.config.picture_options import CellSet
+from tuisim.terminal.picture_options import CellSet
 
 SMALLEST, COMFORTABLE = (60, 18), (80, 24)
 """Columns and rows that the app needs, and those that it is designed for."""

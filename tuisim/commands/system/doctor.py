@@ -123,7 +123,7 @@ def _terminal() -> Iterator[int | None]:
 
 def _restore() -> None:
     # On demand: this and the report are all that the command needs of the app.
-    from tuisim.app.terminal.restore import restore_terminal
+    from tuisim.terminal.restore import restore_terminal
 
     with _terminal() as fd:
         if fd is None:
@@ -143,8 +143,9 @@ def _terminal_findings(environment: Mapping[str, str]) -> list[Finding]:
 def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) -> list[Finding]:
     import termios
 
-    from tuisim.app.graphics.choice import graphics_of
-    from tuisim.app.terminal.probe import (
+    from tuisim.terminal.graphics.choice import graphics_of
+    from tuisim.terminal.picture_options import AUTO, NO_PIXELS
+    from tuisim.terminal.probe import (
         SILENT,
         Answers,
         ask_everything,
@@ -152,8 +153,7 @@ def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) ->
         cells_without_asking,
         first_environment,
     )
-    from tuisim.app.terminal.queries import TerminalFacts, cell_size_px
-    from tuisim.config.picture_options import AUTO, NO_PIXELS
+    from tuisim.terminal.queries import TerminalFacts, cell_size_px
 
     term = environment.get("TERM", "")
     answers = Answers(TerminalFacts(), None, None)
@@ -182,7 +182,7 @@ def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) ->
 
 def _colors_without_asking(environment: Mapping[str, str]) -> str:
     """Return the colours that the environment decides, as the app takes them; `auto` if it leaves them open."""
-    from tuisim.app.terminal.probe import colors_without_asking
+    from tuisim.terminal.probe import colors_without_asking
 
     # Textual takes an empty variable as well.
     return "none" if "NO_COLOR" in environment else colors_without_asking(environment)
@@ -191,7 +191,7 @@ def _colors_without_asking(environment: Mapping[str, str]) -> str:
 def _colors_finding(environment: Mapping[str, str], is_remote: bool) -> Finding:
     from rich.console import Console
 
-    from tuisim.config.picture_options import AUTO
+    from tuisim.terminal.picture_options import AUTO
 
     known = _colors_without_asking(environment)
     if known != AUTO:

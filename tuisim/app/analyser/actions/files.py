@@ -14,8 +14,8 @@ from tuisim.analysis.source import OpenedLog
 from tuisim.app import background
 from tuisim.app.analyser.panes import PANES, pane_frame
 from tuisim.app.dialogs.save import SaveDialog
-from tuisim.app.terminal.environment import offer
 from tuisim.errors import counted
+from tuisim.terminal.environment import offer
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -12,7 +12,7 @@ from functools import partial
 from tuisim.app.action import Action, key_groups
 from tuisim.app.analyser.actions import chart, files, log, panes
 from tuisim.app.analyser.screen import LogScreen
-from tuisim.app.terminal.terminal_app import theme_list
+from tuisim.app.terminal_app import theme_list
 
 CURSOR, PANE, CHART, TABLE, LOG = "Cursor", "Panes", "Chart", "Table", "Log"
 FILES, APP = "Files", "App"

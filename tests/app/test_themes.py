@@ -1,0 +1,107 @@
+"""Themes: everything follows them, and can be read."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.color import Color as RichColor
+from rich.segment import Segment
+from rich.style import Style
+from textual.color import Color
+from textual.theme import BUILTIN_THEMES
+
+import tuisim.app
+from tests.app.app_help import LOGS, ready, settings, until
+from tests.bench.cells import lab_of
+from tuisim.app.app import LabApp
+from tuisim.app.terminal_app import Palette
+from tuisim.app.themes import HIGH_CONTRAST, LIGHT, OWN_COLORS, UNUSED_THEMES, ThemeColors, contrast
+from tuisim.charts.traces import TRACE_COLORS
+
+THEMES = [
+    *(pytest.param(theme, id=name) for name, theme in BUILTIN_THEMES.items() if name not in UNUSED_THEMES),
+    pytest.param(HIGH_CONTRAST, id="high contrast"),
+    pytest.param(LIGHT, id="light"),
+]
+TEXT = ["#d8dee6", "#ffffff", "#9fb0c3", "#8fa0b2", "#7f8fa1", "#5fafff", "#ffd75f", "#ff6e6e", "#87d7af", "#d7a0ff"]
+GROUNDS = ["#10151c", "#18202a", "#1c242e", "#263545"]
+
+
+def test_every_colour_of_the_app_is_known() -> None:
+    folder = Path(tuisim.app.__file__).parent
+    files = [path for path in folder.rglob("*") if path.suffix in (".py", ".tcss") and path.name != "themes.py"]
+
+    named = {color.lower() for path in files for color in re.findall(r"#[0-9a-fA-F]{6}\b", path.read_text("utf-8"))}
+
+    assert named == OWN_COLORS
+
+
+def shown(colors: ThemeColors, style: Style) -> tuple[Color, Color]:
+    """Foreground and background of a text under a theme."""
+    segment = colors.apply([Segment("a", style)], Color(0, 0, 0))[0]
+    assert segment.style and segment.style.color and segment.style.bgcolor
+    fore, back = segment.style.color.triplet, segment.style.bgcolor.triplet
+    assert fore and back
+    return Color(*fore), Color(*back)
+
+
+@pytest.mark.parametrize("theme", THEMES)
+def test_text_can_be_read_under_any_theme(theme: object) -> None:
+    colors = ThemeColors(theme, TRACE_COLORS)  # type: ignore[arg-type]
+    least = 7.0 if theme is HIGH_CONTRAST else 4.5
+    traces = [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in TRACE_COLORS]
+
+    for text, ground in itertools.product([*TEXT, *traces], GROUNDS):
+        assert contrast(*shown(colors, Style(color=text, bgcolor=ground))) >= least - 0.05, (text, ground)
+
+
+def test_colours_that_a_sensor_sees_stay_as_they_are() -> None:
+    for seen in ((255, 255, 255), (255, 0, 0), (0, 0, 0)):
+        swatch = Style(color="#d8dee6", bgcolor=RichColor.from_rgb(*seen))
+        assert shown(ThemeColors(LIGHT), swatch)[1].rgb == seen
+
+
+@pytest.mark.slow
+async def test_a_theme_is_chosen_from_the_list_and_kept() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("f10")
+        await until(pilot, lambda: isinstance(app.screen, Palette))
+        await pilot.press(*"high-contrast")
+        await until(pilot, lambda: app.screen.query_one("CommandList").display)
+        await pilot.pause(0.3)
+        await pilot.press("enter")
+        await until(pilot, lambda: app.theme == "high-contrast")
+        await pilot.pause()
+        assert app.picture_mode.theme is not None
+        background = {
+            segment.style.bgcolor.triplet
+            for strip in app.screen._compositor.render_strips()
+            for segment in strip
+            if segment.style and segment.style.bgcolor and segment.text == "╭─ "
+        }
+        assert all(triplet is None or tuple(triplet) == (0, 0, 0) for triplet in background)
+
+    assert LabApp(settings(LOGS)).theme == "high-contrast"
+
+
+# Machado, Oliveira, Fernandes 2009, severity 1.0: https://www.inf.ufrgs.br/~oliveira/pubs_files/CVD_Simulation/
+SEEN_BY = {
+    "protan": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+    "deutan": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]],
+    "tritan": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.3039]],
+}
+
+
+@pytest.mark.parametrize("eyes", SEEN_BY)
+def test_traces_stay_apart_for_everybody(eyes: str) -> None:
+    value = np.array(TRACE_COLORS) / 255
+    light = np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+    seen = np.clip(light @ np.array(SEEN_BY[eyes]).T, 0, 1)
+    lab = lab_of(255 * np.where(seen <= 0.0031308, 12.92 * seen, 1.055 * seen ** (1 / 2.4) - 0.055))
+
+    assert min(np.linalg.norm(one - other) for one, other in itertools.combinations(lab, 2)) > 15

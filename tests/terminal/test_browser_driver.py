@@ -1,0 +1,67 @@
+"""The driver for a browser: chosen where a server says so, and safe against broken writes."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from threading import Lock
+
+import pytest
+from textual.driver import Driver
+
+from tuisim.app.terminal_app import TerminalApp
+from tuisim.terminal.browser_driver import BrowserDriver
+from tuisim.terminal.driver import TerminalDriver
+from tuisim.terminal.environment import WEB_DRIVER
+
+CHOSEN = {
+    "a server": (WEB_DRIVER, BrowserDriver),
+    "a terminal": (None, TerminalDriver),
+    "another driver": ("elsewhere:Driver", TerminalDriver),
+}
+
+
+@pytest.mark.parametrize(("named", "chosen"), CHOSEN.values(), ids=CHOSEN)
+def test_the_driver_suits_what_shows_the_app(
+    named: str | None, chosen: type[Driver], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("TEXTUAL_DRIVER", raising=False)
+    if named:
+        monkeypatch.setenv("TEXTUAL_DRIVER", named)
+    assert TerminalApp().driver_class is chosen
+
+
+@pytest.fixture
+def driver() -> BrowserDriver:
+    """A driver that has not started."""
+    made = BrowserDriver.__new__(BrowserDriver)
+    made.fileno, made._one_at_a_time, made._server_is_gone = -1, Lock(), False
+    return made
+
+
+def test_an_interrupted_write_is_continued(driver: BrowserDriver, monkeypatch: pytest.MonkeyPatch) -> None:
+    written = b""
+
+    def write(_: int, data: bytes) -> int:
+        nonlocal written
+        written += data[:3]
+        return len(data[:3])
+
+    monkeypatch.setattr(os, "write", write)
+    assert (driver._write_all(b"a packet"), written) == (8, b"a packet")
+
+
+def test_what_is_written_after_the_server_has_gone_is_dropped(driver: BrowserDriver) -> None:
+    assert [driver._write_all(b"a packet"), driver._write_all(b"another")] == [8, 7]
+
+
+def test_packets_of_two_threads_are_not_mixed(driver: BrowserDriver) -> None:
+    read, driver.fileno = os.pipe()
+    # More than a pipe holds.
+    size = 200_000
+    with ThreadPoolExecutor(2) as threads, os.fdopen(read, "rb") as reader:
+        for letter in (b"a", b"b"):
+            threads.submit(driver._write_all, letter * size)
+        seen = reader.read(2 * size)
+    os.close(driver.fileno)
+    assert seen in (b"a" * size + b"b" * size, b"b" * size + b"a" * size)

@@ -1,0 +1,189 @@
+"""The app draws the world and the sensor arrays with pixels where the terminal can."""
+
+from __future__ import annotations
+
+import gc
+import re
+from typing import Any
+from weakref import ref
+
+import numpy as np
+import pytest
+from textual.geometry import Region
+
+from tests.app.app_help import lab, settings, until
+from tests.app.wires import on_wire, until_quiet, wire_of
+from tests.terminal.pixel_help import ANSWERS, answered, drawn_by, part_of, seen_on, sharp
+from tuisim.app.app import LabApp
+from tuisim.app.panels.arrays import Arrays
+from tuisim.app.panels.world import WorldView
+from tuisim.terminal.cell_view import PixelView
+from tuisim.terminal.picture_mode import Sharpness
+from tuisim.terminal.picture_options import AUTO, CellSet, Protocol
+from tuisim.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, KITTY_QUESTIONS
+
+
+@pytest.mark.quick_cases("kitty")
+@pytest.mark.parametrize("protocol", Protocol)
+async def test_what_the_terminal_shows_is_what_was_drawn(protocol: Protocol) -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await answered(pilot, ANSWERS[protocol])
+        for key in ("right", "a", "a", "up"):
+            await pilot.press(key)
+        for view in (pilot.app.query_one(WorldView), pilot.app.query_one(Arrays).query_one(PixelView)):
+            await sharp(pilot, view)
+            assert np.array_equal(part_of(seen_on(pilot), view), drawn_by(view, protocol))
+
+
+def _around(shown: PixelView, hidden: Region, points: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Return an image of a view without the cells that something hides."""
+    seen = points.copy()
+    x, y, width, height = hidden.translate(-shown.content_region.offset)
+    seen[max(y, 0) * 16 : max(y + height, 0) * 16, max(x, 0) * 8 : max(x + width, 0) * 8] = 0
+    return seen
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("protocol", Protocol)
+async def test_a_dialog_hides_a_part_of_the_picture_and_gives_it_back(protocol: Protocol) -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await answered(pilot, ANSWERS[protocol])
+        world = pilot.app.query_one(WorldView)
+        await sharp(pilot, world)
+        await pilot.press("b")
+        await until_quiet(pilot)
+        frame = pilot.app.screen.query_one(".dialog").region
+        seen, drawn = part_of(seen_on(pilot), world), drawn_by(world, protocol)
+        assert frame.overlaps(world.content_region)
+        assert not np.array_equal(seen, drawn)
+        assert np.array_equal(_around(world, frame, seen), _around(world, frame, drawn))
+        await pilot.press("escape")
+        await sharp(pilot, world)
+        assert np.array_equal(part_of(seen_on(pilot), world), drawn_by(world, protocol))
+
+
+@pytest.mark.slow
+async def test_a_resized_terminal_is_asked_for_the_size_of_its_cells() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await answered(pilot, ANSWERS[Protocol.SIXEL])
+        wire_of(pilot).sent.clear()
+        await pilot.resize_terminal(110, 36)
+        await until(pilot, lambda: CELL_SIZE_QUERY + ATTRIBUTES_QUERY in wire_of(pilot).sent)
+
+
+async def test_kitty_is_asked_for_what_is_used_and_is_told_to_report_errors() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await answered(pilot, ANSWERS[Protocol.KITTY].partition("\x1b_G")[0])
+        assert KITTY_QUESTIONS in wire_of(pilot).sent
+        assert pilot.app.query_one(WorldView)._tiles is None
+        await answered(pilot, ANSWERS[Protocol.KITTY])
+        codes = "".join(wire_of(pilot).sent)
+        commands = re.findall(r"\x1b_G([^;\x1b]*)", codes)
+        assert all("U=1" in one.split(",") for one in commands if "a=q" in one.split(","))
+        assert all("q=1" in one.split(",") for one in commands if "a=T" in one.split(","))
+
+
+async def test_an_error_of_kitty_brings_the_cells_back_at_once() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await answered(pilot, ANSWERS[Protocol.KITTY])
+        await sharp(pilot, pilot.app.query_one(WorldView))
+        await answered(pilot, ANSWERS[Protocol.KITTY] + "\x1b_Gi=1;ENOSPC:No space left\x1b\\")
+        assert pilot.app.query_one(WorldView)._tiles is None
+        seen = seen_on(pilot)
+        assert not seen.pixels.any(), "a picture is still in sight"
+        assert any("ENOSPC:No space left" in notice.message for notice in lab(pilot)._notifications)
+
+
+async def test_one_key_switches_to_characters_and_back() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await answered(pilot, ANSWERS[Protocol.SIXEL])
+        assert any(action.id == "pixels" for action in lab(pilot).key_footer._actions)
+        await pilot.press("number_sign")
+        assert pilot.app.query_one(WorldView)._tiles is None
+        await pilot.press("number_sign")
+        assert pilot.app.query_one(WorldView)._tiles is not None
+
+
+async def test_a_terminal_without_pixels_gets_cells() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await answered(pilot, "\x1b[?1;2c")
+        assert pilot.app.query_one(WorldView)._tiles is None
+
+
+async def test_who_wants_no_colors_gets_no_pixels(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await answered(pilot, ANSWERS[Protocol.SIXEL])
+        assert pilot.app.query_one(WorldView)._tiles is None
+
+
+async def test_glyphs_that_the_user_has_chosen_are_shown_instead() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await answered(pilot, ANSWERS[Protocol.SIXEL])
+        lab(pilot).choose_cells(CellSet.HALF)
+        await until_quiet(pilot)
+        assert pilot.app.query_one(WorldView)._tiles is None
+        lab(pilot).choose_cells(AUTO)
+        await sharp(pilot, pilot.app.query_one(WorldView))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("protocol", Protocol)
+async def test_on_a_slow_link_half_blocks_are_sent_for_what_moves(
+    protocol: Protocol, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await answered(pilot, ANSWERS[protocol])
+        world = pilot.app.query_one(WorldView)
+        await sharp(pilot, world)
+        await pilot.press("right")
+        await until_quiet(pilot)
+        wire_of(pilot).sent.clear()
+        lab(pilot).picture_mode.is_slow = lambda: True
+        with monkeypatch.context() as patch:
+            patch.setattr(Sharpness, "is_still", False)
+            await pilot.press("right")
+            await until(pilot, lambda: world._tiles is not None and world._tiles.is_coarse)
+            await until(pilot, lambda: "▀" in "".join(wire_of(pilot).sent))
+            assert len("".join(wire_of(pilot).sent)) < 4_000
+            wire_of(pilot).sent.clear()
+        await sharp(pilot, world)
+        assert len("".join(wire_of(pilot).sent)) < 20_000
+
+
+@pytest.mark.quick_cases("kitty")
+@pytest.mark.parametrize("protocol", Protocol)
+async def test_half_blocks_become_pixels_once_the_picture_stands_still(protocol: Protocol) -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        lab(pilot).picture_mode.is_slow = lambda: True
+        await answered(pilot, ANSWERS[protocol])
+        for key in ("right", "a"):
+            await pilot.press(key)
+        world = pilot.app.query_one(WorldView)
+        await sharp(pilot, world)
+        assert np.array_equal(part_of(seen_on(pilot), world), drawn_by(world, protocol))
+
+
+@pytest.mark.slow
+async def test_kitty_keeps_no_images_of_pictures_that_have_gone() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await answered(pilot, ANSWERS[Protocol.KITTY])
+        await sharp(pilot, pilot.app.query_one(WorldView))
+        assert seen_on(pilot).images
+        lab(pilot).choose_cells(CellSet.HALF)
+        await until_quiet(pilot)
+        gc.collect()
+        await pilot.press("question_mark")
+        await until_quiet(pilot)
+        assert not seen_on(pilot).images
+
+
+@pytest.mark.slow
+async def test_pictures_that_have_gone_take_no_memory() -> None:
+    async with on_wire(LabApp(settings()), "truecolor") as pilot:
+        await answered(pilot, ANSWERS[Protocol.SIXEL])
+        gone = ref(pilot.app.query_one(WorldView)._tiles)
+        lab(pilot).choose_cells(CellSet.HALF)
+        await until_quiet(pilot)
+        gc.collect()
+        assert gone() is None

@@ -1,0 +1,88 @@
+"""Fewer colours: what has to stay apart stays apart."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tuisim.charts.world_image import COLORED, GREY
+from tuisim.terminal.cells import PALETTE_8, PALETTE_16, PALETTE_256, ColorMode, reduce_pixels, sgr_index
+from tuisim.terminal.pixels import Pixels
+
+MODES = [
+    pytest.param(ColorMode(), id="full"),
+    pytest.param(ColorMode(PALETTE_256), id="256"),
+    pytest.param(ColorMode(PALETTE_16), id="16"),
+    pytest.param(ColorMode(PALETTE_8), id="8"),
+    pytest.param(ColorMode(grey=True), id="grey"),
+    pytest.param(ColorMode(PALETTE_256, grey=True), id="grey 256"),
+]
+
+
+def area(rgb: tuple[int, int, int], mode: ColorMode) -> Pixels:
+    """A plain area of 8 × 8 pixels as the terminal shows it."""
+    rows, cols = np.indices((8, 8)).reshape(2, -1)
+    return reduce_pixels(np.full((64, 3), rgb, np.uint8), rows, cols, mode)
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("band", [220, 211, 128, 0])
+def test_bands_of_grey_stand_out_on_white(mode: ColorMode, band: int) -> None:
+    white, grey = area((255, 255, 255), mode), area((band,) * 3, mode)
+
+    assert len(np.unique(white)) == 1
+    assert grey.mean() < white.mean() - 5
+
+
+def test_the_ground_of_a_panel_is_plain_in_8_colours() -> None:
+    assert len(np.unique(area((16, 20, 27), ColorMode(PALETTE_8)))) == 1
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_the_two_pale_bands_differ(mode: ColorMode) -> None:
+    assert (area((220,) * 3, mode) != area((211,) * 3, mode)).any()
+
+
+@pytest.mark.parametrize("mode", MODES)
+@pytest.mark.parametrize("ground", [0, 128, 211, 255])
+def test_the_robot_stands_out(mode: ColorMode, ground: int) -> None:
+    colors = GREY if mode.grey else COLORED
+    below = area((ground,) * 3, mode).astype(int)
+
+    contrast = [abs(area(part, mode).astype(int) - below).mean() for part in (colors.body, colors.marker)]
+
+    assert max(contrast) > 50
+
+
+def test_marker_and_body_differ_in_grey() -> None:
+    mode = ColorMode(grey=True)
+
+    assert area(GREY.marker, mode).mean() - area(GREY.body, mode).mean() > 100
+
+
+@pytest.mark.parametrize(
+    ("rgb", "depth", "index"),
+    [
+        pytest.param(0x000000, PALETTE_256, 16, id="black"),
+        pytest.param(0xFFFFFF, PALETTE_256, 231, id="white"),
+        pytest.param(0xD0D0D0, PALETTE_256, 252, id="a grey of the ramp"),
+        pytest.param(0x005FD7, PALETTE_256, 26, id="a colour of the cube"),
+        pytest.param(0xFF0000, PALETTE_16, 1, id="red of 16"),
+        pytest.param(0xFFFFFF, PALETTE_16, 15, id="white of 16"),
+    ],
+)
+def test_palette_numbers(rgb: int, depth: int, index: int) -> None:
+    assert sgr_index(rgb, depth) == index
+
+
+@pytest.mark.parametrize("depth", [PALETTE_256, PALETTE_16])
+def test_reduced_colours_are_written_as_they_are(depth: int) -> None:
+    """Reducing what is already reduced changes nothing, so the code sent is the colour compared."""
+    rng = np.random.default_rng(1)
+    pixels = rng.integers(0, 256, (200, 3), np.uint8)
+    zero = np.full(200, 2)
+
+    once = reduce_pixels(pixels, zero, zero, ColorMode(depth))
+    codes = [sgr_index(int(r) << 16 | int(g) << 8 | int(b), depth) for r, g, b in once]
+
+    assert len(set(codes)) == len(np.unique(once, axis=0))

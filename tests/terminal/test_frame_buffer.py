@@ -1,0 +1,248 @@
+"""Only what differs is sent, and the terminal shows what was meant."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from io import StringIO
+from typing import Any
+
+import numpy as np
+import pyte
+import pytest
+from rich.console import Console
+from rich.segment import Segment
+from rich.style import Style
+from textual._compositor import ChopsUpdate, CompositorUpdate, InlineUpdate, LayoutUpdate
+from textual.app import App, ComposeResult
+from textual.geometry import Region
+from textual.strip import Strip
+
+from tuisim.terminal.cell_view import CellStrip, LinesView, PixelView
+from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256
+from tuisim.terminal.frame_buffer import FrameBuffer, TextMode
+from tuisim.terminal.glyphs import GLYPHS
+
+WIDTH, ROWS = 60, 12
+FULL, MODE_256, MODE_16 = TextMode(), TextMode(PALETTE_256), TextMode(PALETTE_16)
+MODE_8, PLAIN = TextMode(PALETTE_8), TextMode(MONO, is_ascii=True)
+STYLES = (
+    None,
+    Style(color="#ff0000"),
+    Style(color="#ff0000", bgcolor="#000080", bold=True),
+    Style(bgcolor="#000080", underline=True),
+    Style(color="#00ff00", reverse=True),
+    Style(bold=True, italic=True),
+)
+
+
+def sent(frame_buffer: FrameBuffer, update: CompositorUpdate, mode: TextMode = FULL) -> str:
+    codes = frame_buffer.codes(update, mode)
+    assert codes is not None
+    return codes
+
+
+def test_no_italics_where_they_would_be_reverse_video() -> None:
+    update = rows([Strip([Segment("a", Style(bold=True, italic=True))], 1)])
+
+    assert "\x1b[1;3m" in sent(FrameBuffer(), update)
+    assert "\x1b[1m" in sent(FrameBuffer(), update, TextMode(has_italics=False))
+
+
+def rows(*lines: Sequence[Strip]) -> LayoutUpdate:
+    """All of a screen."""
+    width = sum(strip.cell_length for strip in lines[0])
+    return LayoutUpdate(list(lines), Region(0, 0, width, len(lines)))
+
+
+def text(words: str, style: Style | None = None) -> Strip:
+    return Strip([Segment(words, style)])
+
+
+def shown(screen: pyte.Screen) -> list[list[tuple[object, ...]]]:
+    """What can be seen of each cell; of a blank no more than its ground, unless something is drawn there."""
+    cells: list[list[tuple[object, ...]]] = []
+    for y in range(screen.lines):
+        line = [screen.buffer[y][x] for x in range(screen.columns)]
+        cells.append([
+            (char.bg,) if char.data == " " and not (char.underscore or char.reverse) else char for char in line
+        ])  # fmt: skip
+    return cells
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "codes"),
+    [
+        pytest.param("aaaa", "aaaa", "", id="nothing"),
+        pytest.param("aaaa", "aaba", "\x1b[1;3Hb", id="one"),
+        pytest.param("aaaaaa", "baaaab", "\x1b[1;1Hbaaaab", id="a short way is written"),
+        pytest.param("aaaaaaaaaa", "baaaaaaaab", "\x1b[1;1Hb\x1b[8Cb", id="a long way is jumped"),
+        pytest.param("中文", "中国", "\x1b[1;3H国", id="wide"),
+        pytest.param("中文", "ab文", "\x1b[1;1Hab", id="wide to narrow"),
+        pytest.param("ab文", "中文", "\x1b[1;1H中", id="narrow to wide"),
+    ],
+)
+def test_only_what_differs_is_sent(before: str, after: str, codes: str) -> None:
+    frame_buffer = FrameBuffer()
+    sent(frame_buffer, rows([text(before)]))
+
+    assert sent(frame_buffer, rows([text(after)])) == codes
+
+
+@pytest.mark.parametrize(
+    ("strip", "mode", "codes"),
+    [
+        pytest.param(CellStrip([0xFF0000_FF0000] * 3), FULL, "\x1b[48;2;255;0;0m   \x1b[0m", id="even cells"),
+        pytest.param(
+            CellStrip([0xFF0000_0000FF] * 2), FULL, "\x1b[38;2;255;0;0;48;2;0;0;255m▀▀\x1b[0m", id="half blocks"
+        ),
+        pytest.param(CellStrip([0xFF0000_0000FF]), MODE_256, "\x1b[38;5;196;48;5;21m▀\x1b[0m", id="256 colours"),
+        pytest.param(CellStrip([0xFF0000_0000FF]), MODE_16, "\x1b[31;44m▀\x1b[0m", id="16 colours"),
+        pytest.param(CellStrip([0xFF4646_C80000]), MODE_16, "\x1b[91;41m▀\x1b[0m", id="two reds of 16"),
+        pytest.param(CellStrip([0xFF4646_0000FF]), MODE_8, "\x1b[31;44m▀\x1b[0m", id="8 colours"),
+        pytest.param(CellStrip([100 << 48 | 0xFFFFFF << 24]), PLAIN, f"{GLYPHS[100]}", id="no colours"),
+        pytest.param(
+            Strip([Segment("a", Style(color="#44505e", bgcolor="#10151c"))]),
+            MODE_8,
+            "\x1b[37;40ma\x1b[0m",
+            id="dim of 8",
+        ),
+        pytest.param(
+            Strip([Segment("a", Style(color="#ffffff", bgcolor="#2f4a63")), Segment("b", Style(bgcolor="#10151c"))]),
+            PLAIN,
+            "\x1b[7ma\x1b[0mb",
+            id="a highlight without colours",
+        ),
+        pytest.param(Strip([Segment("╭─ 0° · ä 中 ▶")]), PLAIN, "+- 0  . a ?? >", id="ASCII"),
+        pytest.param(
+            Strip([Segment("a b", Style(bold=True)), Segment(" "), Segment("c", Style(bold=True))]),
+            FULL,
+            "\x1b[1ma b c\x1b[0m",
+            id="blanks are alike",
+        ),
+        pytest.param(
+            Strip([Segment("a", Style(bold=True)), Segment("b")]), MODE_256, "\x1b[1ma\x1b[0mb", id="an attribute ends"
+        ),
+    ],
+)
+def test_a_colour_is_written_where_it_changes(strip: Strip, mode: TextMode, codes: str) -> None:
+    assert sent(FrameBuffer(), rows([strip]), mode) == f"\x1b[1;1H{codes}"
+
+
+def test_a_link_ends_where_its_text_ends() -> None:
+    linked = Strip([Segment("a", Style(link="http://b")), Segment("c")])
+
+    assert sent(FrameBuffer(), rows([linked])).endswith(";http://b\x1b\\a\x1b]8;;\x1b\\c")
+
+
+@pytest.mark.parametrize("mode", [FULL, MODE_256])
+def test_a_picture_below_a_dialog_is_the_picture(mode: TextMode) -> None:
+    """Textual makes plain segments of what lies under a dialog; that must not be sent again."""
+    cells = CellStrip([grey << 40 | grey << 32 | grey << 24 | grey << 16 | grey << 8 | grey for grey in range(8, 248)])
+    frame_buffer = FrameBuffer()
+    sent(frame_buffer, rows([cells]), mode)
+
+    assert sent(frame_buffer, rows([Strip(list(cells))]), mode) == ""
+
+
+def test_after_something_else_has_written_everything_is_sent_again() -> None:
+    frame_buffer = FrameBuffer()
+    sent(frame_buffer, rows([text("word")]))
+    frame_buffer.forget()
+
+    assert sent(frame_buffer, rows([text("word")])) == "\x1b[1;1Hword"
+
+
+def test_an_unknown_kind_of_update_is_left_to_textual() -> None:
+    frame_buffer = FrameBuffer()
+    sent(frame_buffer, rows([text("word")]))
+
+    assert frame_buffer.codes(InlineUpdate([text("else")]), FULL) is None
+    assert sent(frame_buffer, rows([text("word")])) == "\x1b[1;1Hword"
+
+
+def random_row(rng: random.Random) -> list[Strip]:
+    """A row of two strips, the right one from column 20 on."""
+    strips = []
+    for width in (20, 10):
+        words = "".join(rng.choice(["a", "b", " ", "─", "中"]) for _ in range(width))
+        cuts = sorted(rng.sample(range(width), 3))
+        parts = [words[first:last] for first, last in zip([0, *cuts], [*cuts, width], strict=True)]
+        whole = Strip([Segment(part, rng.choice(STYLES)) for part in parts])
+        strips.append(Strip(list(whole.adjust_cell_length(width))))
+    return strips
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_terminal_shows_what_textual_itself_would_have_sent(seed: int) -> None:
+    rng = random.Random(seed)
+    mine, own = pyte.Screen(30, 4), pyte.Screen(30, 4)
+    my_stream, own_stream = pyte.Stream(mine), pyte.Stream(own)
+    own_console = Console(file=StringIO(), force_terminal=True, color_system="truecolor", _environ={})
+    frame_buffer = FrameBuffer()
+    lines = [random_row(rng) for _ in range(4)]
+    for _ in range(8):
+        for y in rng.sample(range(4), 2):
+            lines[y] = random_row(rng)
+        update = rows(*lines)
+        my_stream.feed(sent(frame_buffer, update))
+        own_stream.feed(update.render_segments(own_console).replace("\n", "\r\n"))
+
+    assert shown(mine) == shown(own)
+
+
+def test_part_of_a_row_is_sent_in_its_place() -> None:
+    frame_buffer = FrameBuffer()
+    sent(frame_buffer, rows([text("left"), text("right")], [text("left"), text("right")]))
+    part = ChopsUpdate([{0: None, 4: None}, {0: None, 4: text("night")}], [(1, 4, 6)], [[4, 9], [4, 9]])
+
+    assert sent(frame_buffer, part) == "\x1b[2;5Hn"
+
+
+class Picture(App[None]):
+    CSS = "PixelView { width: 60; height: 12; } LinesView { width: 60; height: 3; }"
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.view, self.lines = PixelView(), LinesView()
+
+    def compose(self) -> ComposeResult:
+        yield self.view
+        yield self.lines
+
+
+def photo() -> np.ndarray[Any, np.dtype[np.uint8]]:
+    return np.random.default_rng(3).integers(0, 256, (2 * ROWS, WIDTH, 3), np.uint8)
+
+
+async def test_the_terminal_shows_a_picture_after_partial_updates() -> None:
+    app, frame_buffer = Picture(), FrameBuffer()
+    screen = pyte.Screen(80, 24)
+    stream = pyte.Stream(screen)
+    picture = photo()
+    rng = np.random.default_rng(4)
+    async with app.run_test(size=(80, 24)) as pilot:
+        app.view.set_picture(picture)
+        await pilot.pause()
+        compositor = app.screen._compositor
+        stream.feed(sent(frame_buffer, compositor.render_full_update()))
+        for _ in range(5):
+            picture = picture.copy()
+            for y, x in zip(rng.integers(0, 2 * ROWS, 12), rng.integers(0, WIDTH, 12), strict=True):
+                picture[y, x] = rng.integers(0, 256, 3)
+            app.view.set_picture(picture)
+            compositor._dirty_regions = {app.view.region}
+            update = compositor.render_partial_update()
+            assert update is not None
+            codes = sent(frame_buffer, update)
+            assert len(codes) < 12 * 60
+            stream.feed(codes)
+
+    # The picture in the colours of this terminal, whichever it is.
+    picture, region = app.view._shown, app.view.region
+    for y in range(ROWS):
+        for x in range(WIDTH):
+            char = screen.buffer[region.y + y][region.x + x]
+            top, bottom = picture[2 * y, x], picture[2 * y + 1, x]
+            assert char.bg == "".join(f"{channel:02x}" for channel in bottom)
+            assert char.data == " " or char.fg == "".join(f"{channel:02x}" for channel in top)

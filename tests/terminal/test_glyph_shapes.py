@@ -1,0 +1,65 @@
+"""Blocks, dots, lines and arcs as shapes in a cell of any size."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import pytest
+
+from tuisim.terminal.glyph_shapes import Area, Bend, Dot, GlyphShape, shapes_of
+
+SHAPES: dict[str, tuple[GlyphShape, ...] | None] = {
+    "█": (Area(0, 0, 8, 16),),
+    "▄": (Area(0, 8, 8, 16),),
+    "▏": (Area(0, 0, 1, 16),),
+    "▚": (Area(0, 0, 4, 8), Area(4, 8, 8, 16)),
+    "⠁": (Dot(2.0, 2.0, 1.4),),
+    "─": (Area(0, 7, 8, 8),),
+    "a": None,
+    "──": None,
+}
+"""In a cell of 8 × 16 pixels."""
+
+
+def painted(shapes: tuple[GlyphShape, ...] | None) -> set[tuple[int, int]]:
+    """Pixels that areas cover."""
+    areas = [shape for shape in shapes or () if isinstance(shape, Area)]
+    edges = [tuple(map(int, (at.left, at.top, at.right, at.bottom))) for at in areas]
+    return {(x, y) for left, top, right, bottom in edges for x in range(left, right) for y in range(top, bottom)}
+
+
+@pytest.mark.parametrize(("char", "shapes"), SHAPES.items(), ids=[hex(ord(char[0])) + char for char in SHAPES])
+def test_shapes_of_a_character(char: str, shapes: tuple[GlyphShape, ...] | None) -> None:
+    found = shapes_of(char, 8, 16)
+    if painted(shapes):
+        # Of how many areas it is made does not matter.
+        assert painted(found) == painted(shapes)
+    else:
+        assert found == shapes
+
+
+@pytest.mark.parametrize(("width", "height"), [(4, 8), (7, 15), (20, 41)])
+@pytest.mark.parametrize("char", "┼╬╋")
+def test_lines_that_cross_reach_all_edges(char: str, width: int, height: int) -> None:
+    found = painted(shapes_of(char, width, height))
+    assert {0, width - 1} <= {x for x, _ in found}
+    assert {0, height - 1} <= {y for _, y in found}
+    assert all(0 <= x < width and 0 <= y < height for x, y in found)
+
+
+def test_an_eighth_of_a_small_cell_is_a_pixel() -> None:
+    assert painted(shapes_of("▁", 3, 3)) == {(x, 2) for x in range(3)}
+    assert painted(shapes_of("▔", 3, 3)) == {(x, 0) for x in range(3)}
+
+
+def test_an_arc_ends_where_lines_of_the_next_cells_begin() -> None:
+    (arc,) = shapes_of("╭", 8, 16) or ()
+    assert isinstance(arc, Bend)
+    assert (arc.points[0], arc.points[-1]) == ((3.5, 16.0), (8.0, 7.5))
+
+
+@pytest.mark.parametrize(("char", "count"), [("┄", 3), ("┈", 4), ("╌", 2)])
+def test_dashes_have_gaps(char: str, count: int) -> None:
+    columns = sorted({x for x, _ in painted(shapes_of(char, 24, 24))})
+    gaps = sum(after - before > 1 for before, after in pairwise(columns))
+    assert gaps + 1 == count

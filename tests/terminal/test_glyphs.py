@@ -1,0 +1,61 @@
+"""The tables of block glyphs and dots."""
+
+from __future__ import annotations
+
+import unicodedata
+
+import numpy as np
+import pytest
+
+from tuisim.terminal.glyphs import GLYPHS, glyph_set
+from tuisim.terminal.picture_options import CellSet
+
+
+def shown(cells: CellSet) -> dict[str, str]:
+    """The points of each glyph, row by row from the upper left."""
+    glyphs = glyph_set(cells)
+    points = ["".join("#" if point else "." for point in covered) for covered in glyphs.covered]
+    return dict(zip((GLYPHS[number] for number in glyphs.numbers), points, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("cells", "glyph", "points"),
+    [
+        pytest.param(CellSet.HALF, "▀", "#.", id="upper half"),
+        pytest.param(CellSet.QUADRANT, "▛", "###.", id="quadrants 1 2 3"),
+        pytest.param(CellSet.QUADRANT, "▚", "#..#", id="a diagonal"),
+        pytest.param(CellSet.SEXTANT, "\N{BLOCK SEXTANT-1}", "#.....", id="sextant 1"),
+        pytest.param(CellSet.SEXTANT, "\N{BLOCK SEXTANT-12346}", "####.#", id="sextants 12346"),
+        pytest.param(CellSet.SEXTANT, "▌", "#.#.#.", id="the left half, which is older"),
+        # The names of octants are in The Unicode Standard 16.0, Symbols for Legacy Computing Supplement.
+        pytest.param(CellSet.OCTANT, "\U0001cd02", "###.....", id="octants 123"),
+        pytest.param(CellSet.OCTANT, "\U0001cde4", "#.######", id="octants 1345678"),
+        pytest.param(CellSet.OCTANT, "\U0001cea8", "#.......", id="octant 1, left half upper one quarter block"),
+        pytest.param(CellSet.OCTANT, "\U0001fb82", "##......", id="octants 12, upper one quarter block"),
+        pytest.param(CellSet.OCTANT, "▙", "#.#.####", id="a quadrant"),
+        pytest.param(CellSet.BRAILLE, "\N{BRAILLE PATTERN DOTS-1}", "#.......", id="dot 1"),
+        pytest.param(CellSet.BRAILLE, "\N{BRAILLE PATTERN DOTS-478}", ".#....##", id="dots 478"),
+    ],
+)
+def test_the_points_of_a_glyph(cells: CellSet, glyph: str, points: str) -> None:
+    assert shown(cells)[glyph] == points
+
+
+@pytest.mark.parametrize("cells", list(CellSet)[1:5])
+def test_every_split_of_a_cell_has_one_glyph(cells: CellSet) -> None:
+    glyphs = glyph_set(cells)
+    points = glyphs.rows * glyphs.cols
+    patterns = {tuple(row) for row in glyphs.covered} | {tuple(1 - row) for row in glyphs.covered}
+
+    assert len(glyphs.numbers) == 2 ** (points - 1) - 1 or cells is CellSet.BRAILLE
+    assert len(patterns) == 2**points - 2
+    assert (np.diff(glyphs.numbers) > 0).all()
+
+
+def test_sextants_are_named_by_their_points() -> None:
+    for glyph, points in shown(CellSet.SEXTANT).items():
+        name = unicodedata.name(glyph, "")
+        if name.startswith("BLOCK SEXTANT-"):
+            assert name.removeprefix("BLOCK SEXTANT-") == "".join(
+                str(at) for at, point in enumerate(points, 1) if point == "#"
+            )

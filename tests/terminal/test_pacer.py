@@ -1,0 +1,196 @@
+"""Frame pacing against terminals that answer at once, late, or never, and against slow lines."""
+
+from __future__ import annotations
+
+from collections import deque
+from math import inf
+
+import pytest
+
+from tuisim.terminal.pacer import MAX_ON_THE_WAY, PATIENCE_S, PROOF_S, Pacer
+
+TICK_S = 0.005
+FRAME_BYTES = 1_000
+
+
+class Clock:
+    def __init__(self) -> None:
+        self.now_s = 100.0
+
+    def __call__(self) -> float:
+        return self.now_s
+
+
+class Line:
+    """A terminal at the end of a line, and a pacer before it.
+
+    Args:
+        bytes_s: So much goes through.
+        round_trip_s: There and back.
+    """
+
+    def __init__(self, bytes_s: float = inf, round_trip_s: float = 0.002) -> None:
+        self.clock = Clock()
+        self.pacer = Pacer(20, clock=self.clock)
+        self.bytes_s, self.round_trip_s = bytes_s, round_trip_s
+        self.answers = True
+        self._free_s = 0.0
+        self._due_s: deque[float] = deque()
+
+    def send(self, size: int) -> None:
+        """The app paints."""
+        self._free_s = max(self._free_s, self.clock.now_s) + size / self.bytes_s
+        if self.pacer.painted(size) and self.answers:
+            self._due_s.append(self._free_s + self.round_trip_s)
+
+    @property
+    def backlog_s(self) -> float:
+        """So late would come what was sent now."""
+        return max(0.0, self._free_s - self.clock.now_s)
+
+    def drive(self, seconds: float, size: int = FRAME_BYTES) -> int:
+        """Draw as often as there may be a frame, each of some bytes; returns how many there were."""
+        drawn = 0
+        for _ in range(round(seconds / TICK_S)):
+            while self._due_s and self._due_s[0] <= self.clock.now_s:
+                self._due_s.popleft()
+                self.pacer.answered()
+            if self.pacer.ready():
+                drawn += 1
+                self.pacer.drawn()
+                self.send(size)
+            self.clock.now_s += TICK_S
+        return drawn
+
+
+@pytest.mark.parametrize(
+    ("bytes_s", "round_trip_s", "least", "most"),
+    [
+        pytest.param(inf, 0.002, 19, 21, id="at once"),
+        pytest.param(inf, 0.070, 19, 21, id="a little too late for the next frame"),
+        # Without more than one frame on the way there would be 8.
+        pytest.param(inf, 0.120, 15, 21, id="a long way"),
+        pytest.param(inf, 0.400, 6, 9, id="a very long way"),
+        pytest.param(16_000, 0.150, 10, 16, id="128 kbit/s"),
+        pytest.param(2_000, 0.150, 1, 2, id="16 kbit/s"),
+    ],
+)
+def test_frames_a_second(bytes_s: float, round_trip_s: float, least: int, most: int) -> None:
+    line = Line(bytes_s, round_trip_s)
+    line.drive(5.0)
+
+    assert least <= line.drive(10.0) / 10.0 <= most
+
+
+@pytest.mark.parametrize("first_paint", [1_000, 20_000, 60_000])
+@pytest.mark.parametrize("size", [1_000, 6_000], ids=["frames", "frames with a chart"])
+def test_a_key_is_answered_within_a_second_at_128_kbit_s(first_paint: int, size: int) -> None:
+    line = Line(bytes_s=16_000, round_trip_s=0.150)
+    line.send(first_paint)
+    line.drive(10.0, size)
+
+    worst_s = 0.0
+    for _ in range(200):
+        line.drive(0.05, size)
+        worst_s = max(worst_s, line.backlog_s)
+    assert worst_s + line.round_trip_s <= 1.0
+
+
+def test_three_late_answers_are_no_reason_to_give_up() -> None:
+    line = Line(round_trip_s=0.1)
+    line.drive(1.0)
+    line.round_trip_s = 3.0
+    line.drive(12.0)
+
+    # No more in each patience than may be on the way, and not 20 a second.
+    assert line.drive(10.0) <= MAX_ON_THE_WAY * 10.0 / PATIENCE_S
+
+
+def test_a_terminal_that_never_answers_is_drawn_for_all_the_same() -> None:
+    line = Line()
+    line.answers = False
+    assert line.drive(PROOF_S) <= 2.5 * PROOF_S
+    line.drive(1.0)
+
+    assert 19 <= line.drive(1.0) <= 21
+
+
+def test_a_late_answer_switches_pacing_on_again() -> None:
+    line = Line(bytes_s=16_000)
+    line.answers = False
+    line.drive(PROOF_S + 5.0, 2_000)
+    line.answers = True
+    line.pacer.answered()
+    line.drive(20.0, 2_000)
+
+    assert line.drive(10.0, 2_000) <= 85
+    assert line.backlog_s <= 0.5
+
+
+def test_a_lost_question_holds_it_up_but_once() -> None:
+    line = Line()
+    line.drive(1.0)
+    line.answers = False
+    line.drive(0.1)
+    line.answers = True
+    line.drive(PATIENCE_S + 0.5)
+
+    assert 19 <= line.drive(1.0) <= 21
+
+
+def test_what_is_no_frame_is_asked_about_only_if_it_is_large() -> None:
+    pacer = Pacer(20, clock=Clock())
+
+    assert [pacer.painted(size) for size in (100, 30_000, 100)] == [False, True, False]
+
+
+def test_nothing_is_asked_before_anything_is_painted() -> None:
+    pacer = Pacer(20, clock=Clock())
+    pacer.drawn()
+
+    assert pacer.ready() is False
+    assert pacer.painted(10)
+
+
+def test_an_answer_to_nothing_is_ignored() -> None:
+    pacer = Pacer(20, clock=Clock())
+    pacer.answered()
+    assert pacer.ready()
+
+
+@pytest.mark.parametrize(
+    ("line", "slow"),
+    [
+        pytest.param(Line(), False, id="local"),
+        pytest.param(Line(1e6, 0.150), False, id="quick but far"),
+        pytest.param(Line(10_000), True, id="a frame takes 0.1 s"),
+        pytest.param(Line(6_000, 0.150), True, id="slow and far"),
+    ],
+)
+def test_fine_frames_are_for_quick_links(line: Line, slow: bool) -> None:
+    line.drive(3.0)
+
+    assert line.pacer.is_slow is slow
+
+
+def test_a_link_is_slow_until_the_first_answer_and_quick_again_after_a_rest() -> None:
+    line = Line(10_000)
+    seen = [line.pacer.is_slow]
+    line.drive(3.0)
+    line.drive(3.0, size=10)
+
+    assert seen == [True]
+    assert not line.pacer.is_slow
+    assert line.pacer.is_idle
+
+
+def test_fine_frames_are_tried_less_and_less_often_on_a_link_that_does_not_carry_them() -> None:
+    line = Line(32_000, 0.150)
+    was_slow, tries = True, 0
+    for _ in range(600):
+        slow = line.pacer.is_slow
+        line.drive(0.1, size=FRAME_BYTES if slow else 5 * FRAME_BYTES)
+        tries += was_slow and not slow
+        was_slow = slow
+
+    assert 3 <= tries <= 6

@@ -1,0 +1,155 @@
+"""The app on terminals without Unicode or colours."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pyte
+import pytest
+
+import tuisim
+from tests.app.app_help import LOGS, ready, settings
+from tests.app.wires import on_wire, until_quiet, wire_of
+from tuisim.app.app import LabApp
+from tuisim.terminal import probe
+from tuisim.terminal.cells import MONO
+from tuisim.terminal.frame_buffer import as_ascii
+from tuisim.terminal.picture_mode import PictureMode, color_depth, picture_mode_for
+from tuisim.terminal.picture_options import CellSet
+from tuisim.terminal.probe import colors_without_asking
+
+SOURCES = [path for path in Path(tuisim.__file__).parent.rglob("*") if path.suffix in (".py", ".tcss")]
+
+
+def test_every_sign_of_the_app_has_one_in_ascii() -> None:
+    used = set("".join(path.read_text("utf-8") for path in SOURCES))
+
+    lost = {char for char in used if not char.isascii() and as_ascii(char) in ("", "?", "??")}
+    # Letters of other scripts appear in examples only.
+    assert not {char for char in lost if not char.isalpha()} - set("\u200b\ufeff")
+
+
+@pytest.mark.parametrize(
+    ("text", "plain"),
+    [
+        pytest.param("╭──╮│╰╯┼", "+--+|+++", id="frames"),
+        pytest.param("━┃═", "=#=", id="heavy frames"),
+        pytest.param("⠀⠁⣿", " .@", id="braille"),
+        pytest.param("90° 1 … 9 cut…", "90  1...9 c...", id="degrees and ellipses"),
+        pytest.param("é中✓", "e??v", id="letters"),
+    ],
+)
+def test_each_sign_keeps_its_width(text: str, plain: str) -> None:
+    assert as_ascii(text) == plain
+
+
+@pytest.mark.parametrize(
+    ("terminal", "colors"),
+    [("dumb", "none"), ("", "none"), ("vt100", "none"), ("vt220", "none"), ("linux", "8"), ("xterm-256color", "auto")],
+)
+def test_colours_of_a_kind_of_terminal(terminal: str, colors: str) -> None:
+    assert colors_without_asking({"TERM": terminal, "COLORTERM": "truecolor"}) == colors
+
+
+@pytest.mark.parametrize("terminal", ["vt52", "xterm-256color"])
+def test_terminfo_knows_which_terminals_have_no_colours(terminal: str) -> None:
+    code = f"from tuisim.terminal.probe import terminfo_has_colors; print(terminfo_has_colors({terminal!r}))"
+    # curses reads one entry a process.
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+
+    assert done.stdout.strip() == str(terminal == "xterm-256color")
+
+
+@pytest.mark.parametrize(
+    ("environment", "cells"),
+    [
+        pytest.param({"TERM": "vt220", "LANG": "C.UTF-8"}, CellSet.BRAILLE, id="utf-8"),
+        pytest.param({"TERM": "vt220", "LANG": "C"}, CellSet.ASCII, id="ascii"),
+        pytest.param({"TERM": "linux", "LANG": "C.UTF-8"}, CellSet.ASCII, id="no braille in its font"),
+    ],
+)
+def test_without_colours_no_blocks_are_taken(
+    environment: dict[str, str], cells: CellSet, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(probe, "first_environment", lambda: environment)
+    monkeypatch.setenv("TERM", environment["TERM"])
+    monkeypatch.setenv("NO_COLOR", "1")
+
+    assert picture_mode_for("auto", "auto").cells is cells
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("cells", "most"), [pytest.param(CellSet.ASCII, 0x7F, id="ascii"), pytest.param(CellSet.BRAILLE, 0x28FF, id="dots")]
+)
+async def test_without_colours_nothing_but_text_is_sent(
+    cells: CellSet, most: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    async with on_wire(LabApp(settings(LOGS), PictureMode(cells))) as pilot:
+        app = await ready(pilot)
+        await until_quiet(pilot)
+        await pilot.press("question_mark")
+        await until_quiet(pilot)
+        assert color_depth(app) == MONO
+        sent = "".join(wire_of(pilot).sent)
+
+    assert max(map(ord, sent)) <= most
+    assert "World" in sent
+    # The panel with the focus has another frame.
+    assert {CellSet.ASCII: "====", CellSet.BRAILLE: "━━━━"}[cells] in sent
+    styles = {code for codes in re.findall(r"\x1b\[([\d;]*)m", sent) for code in codes.split(";")}
+    assert styles <= {"", "0", "1", "2", "3", "4", "7", "9"}
+
+
+def _screen(sent: str) -> pyte.Screen:
+    screen = pyte.Screen(120, 40)
+    pyte.Stream(screen).feed(re.sub(r"\x1b\[[<>=?][0-9;]*[a-zA-Z]|\x1b\[[?>]?[0-9;]*\$p", "", sent))
+    return screen
+
+
+def _reversed_on(sent: str) -> list[str]:
+    """Return the texts in reverse video, by row."""
+    screen = _screen(sent)
+    rows = ("".join(screen.buffer[y][x].data for x in range(120) if screen.buffer[y][x].reverse) for y in range(40))
+    return [row.strip() for row in rows]
+
+
+@pytest.mark.quick_cases("the cursor in a field")
+@pytest.mark.parametrize(
+    ("keys", "lit"),
+    [
+        pytest.param(["ctrl+p", "down"], "Stop the program", id="an entry of the palette"),
+        pytest.param(["f10", "down"], "atom-one-light", id="a theme"),
+        # The field is bright, and its cursor dark.
+        pytest.param(["o", "x", "y", "z", "left", "left"], "xz", id="the cursor in a field"),
+    ],
+)
+async def test_without_colours_what_is_selected_is_seen(
+    keys: list[str], lit: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    async with on_wire(LabApp(settings(LOGS), PictureMode(CellSet.ASCII))) as pilot:
+        await ready(pilot)
+        for key in keys:
+            await pilot.press(key)
+            await until_quiet(pilot)
+        shown = _reversed_on("".join(wire_of(pilot).sent))
+
+    assert lit in shown
+
+
+async def test_in_ascii_without_colours_signs_point_where_the_robot_is_heading(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    async with on_wire(LabApp(settings(LOGS), PictureMode(CellSet.ASCII))) as pilot:
+        await ready(pilot)
+        await until_quiet(pilot)
+        shown = ["\n".join(_screen("".join(wire_of(pilot).sent)).display)]
+        await pilot.press(*["a"] * 36)
+        await until_quiet(pilot)
+        shown.append("\n".join(_screen("".join(wire_of(pilot).sent)).display))
+
+    assert [("O-" in text, "-O" in text) for text in shown] == [(True, False), (False, True)]

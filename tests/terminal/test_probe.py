@@ -1,0 +1,130 @@
+"""Which glyphs a terminal is known to show, and what of that is asked."""
+
+from __future__ import annotations
+
+import os
+import pty
+import sys
+import threading
+from collections.abc import Mapping
+
+import pytest
+
+from tests.running import PATIENCE_S
+from tuisim.terminal import probe
+from tuisim.terminal.picture_options import CellSet
+from tuisim.terminal.probe import best_cells, cells_of, cells_without_asking
+
+ATTRIBUTES = b"\x1b[?62;4c"
+
+
+@pytest.mark.parametrize(
+    ("name", "octant_cols", "cells"),
+    [
+        pytest.param("kitty(0.42.1)", 1, CellSet.OCTANT, id="kitty"),
+        pytest.param("kitty(0.26.5)", 1, CellSet.SEXTANT, id="an older kitty"),
+        pytest.param("foot(1.22.0)", 1, CellSet.OCTANT, id="foot"),
+        pytest.param("foot(1.13.1)", 1, CellSet.SEXTANT, id="an older foot"),
+        pytest.param("ghostty 1.2.3", 1, CellSet.OCTANT, id="ghostty"),
+        pytest.param("WezTerm 20240203-110809-5046fc22", 1, CellSet.SEXTANT, id="WezTerm"),
+        pytest.param("WezTerm 20200101-1", 1, CellSet.QUADRANT, id="a very old WezTerm"),
+        pytest.param("VTE(7000)", 1, CellSet.SEXTANT, id="VTE"),
+        pytest.param("XTerm(379)", 1, CellSet.QUADRANT, id="xterm draws with its font"),
+        pytest.param("tmux 3.5a", 1, CellSet.QUADRANT, id="tmux does not tell what is around it"),
+        pytest.param("kitty(0.42.1)", 0, CellSet.QUADRANT, id="octants are dropped on the way"),
+        pytest.param("kitty(0.42.1)", None, CellSet.QUADRANT, id="no position"),
+        pytest.param("kitty", 1, CellSet.QUADRANT, id="no version"),
+        pytest.param("", 1, CellSet.QUADRANT, id="no name"),
+    ],
+)
+def test_fine_glyphs_are_for_terminals_that_draw_them(name: str, octant_cols: int | None, cells: CellSet) -> None:
+    assert cells_of(name, octant_cols) is cells
+
+
+@pytest.mark.parametrize(
+    ("environment", "cells"),
+    [
+        pytest.param({"TERM": "dumb", "LANG": "en_GB.UTF-8"}, CellSet.ASCII, id="dumb"),
+        pytest.param({"LANG": "en_GB.UTF-8"}, CellSet.ASCII, id="no TERM"),
+        pytest.param({"TERM": "xterm", "LANG": "C"}, CellSet.ASCII, id="C"),
+        pytest.param({"TERM": "xterm", "LANG": "POSIX"}, CellSet.ASCII, id="POSIX"),
+        pytest.param({"TERM": "xterm", "LANG": "de_DE.ISO-8859-1"}, CellSet.ASCII, id="Latin 1"),
+        pytest.param({"TERM": "xterm", "LANG": "de_DE.UTF-8", "LC_ALL": "C"}, CellSet.ASCII, id="LC_ALL wins"),
+        pytest.param({"TERM": "linux", "LANG": "C.UTF-8"}, CellSet.HALF, id="the Linux console"),
+        pytest.param({"TERM": "xterm", "LANG": "C.utf8"}, None, id="UTF-8"),
+        pytest.param({"TERM": "xterm"}, None, id="no locale, as in a container"),
+    ],
+)
+def test_what_the_environment_decides(environment: Mapping[str, str], cells: CellSet | None) -> None:
+    assert cells_without_asking(environment) is cells
+
+
+class Answers:
+    """A terminal that gives some answers, each to the question that ends with its key."""
+
+    def __init__(self, answers: Mapping[bytes, bytes]) -> None:
+        self.answers = answers
+        self.outside, self.inside = pty.openpty()
+        self.seen = b""
+        self.reader = threading.Thread(target=self._read, daemon=True)
+        self.reader.start()
+
+    def _read(self) -> None:
+        try:
+            while data := os.read(self.outside, 1024):
+                self.seen += data
+                for question, answer in self.answers.items():
+                    if data.endswith(question):
+                        os.write(self.outside, answer)
+        except OSError:
+            pass
+
+    def close(self) -> None:
+        os.close(self.inside)
+        self.reader.join(PATIENCE_S)
+        os.close(self.outside)
+
+
+@pytest.mark.parametrize(
+    ("answers", "cells", "asks_name"),
+    [
+        pytest.param(
+            {b"[6n": b"\x1b[9;2R", b"[c": b"\x1bP>|kitty(0.42.1)\x1b\\" + ATTRIBUTES}, CellSet.OCTANT, True, id="kitty"
+        ),
+        pytest.param({b"[6n": b"\x1b[9;2R", b"[c": ATTRIBUTES}, CellSet.QUADRANT, True, id="no name"),
+        pytest.param({b"[6n": b"\x1b[9;1R"}, CellSet.QUADRANT, False, id="tmux 3.3a drops it"),
+        pytest.param({}, CellSet.QUADRANT, False, id="no answer at all"),
+    ],
+)
+def test_a_terminal_is_asked(
+    answers: Mapping[bytes, bytes], cells: CellSet, asks_name: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    terminal = Answers(answers)
+    monkeypatch.setenv("TERM", "xterm-256color")
+    monkeypatch.setattr(probe, "first_environment", lambda: {"LANG": "C.UTF-8"})
+    monkeypatch.setattr(probe, "ANSWER_S", PATIENCE_S if answers else 0.1)
+    with open(terminal.inside, "rb+", buffering=0, closefd=False) as tty:
+        monkeypatch.setattr(sys, "stdin", tty)
+        monkeypatch.setattr(sys, "stdout", tty)
+        found = best_cells()
+    terminal.close()
+
+    assert found is cells
+    assert (b"\x1b[>0q" in terminal.seen) is asks_name
+    # Nothing of the question stays on the screen.
+    assert terminal.seen.rstrip(b"\x1b[>0qc").endswith(b"\r\x1b[K") or asks_name
+
+
+def test_what_is_typed_while_the_terminal_is_asked_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = Answers({b"[6n": b"R\x1b[9;2R", b"[c": b"\x7f" + ATTRIBUTES + b"\x1b[A"})
+    monkeypatch.setenv("TERM", "xterm-256color")
+    monkeypatch.setattr(probe, "first_environment", lambda: {"LANG": "C.UTF-8"})
+    monkeypatch.setattr(probe, "ANSWER_S", PATIENCE_S)
+    probe.take_typed()
+    with open(terminal.inside, "rb+", buffering=0, closefd=False) as tty:
+        monkeypatch.setattr(sys, "stdin", tty)
+        monkeypatch.setattr(sys, "stdout", tty)
+        best_cells()
+    terminal.close()
+    assert probe.take_typed() == "R\x7f\x1b[A"
+    assert probe.take_typed() == ""

@@ -1,0 +1,34 @@
+"""Texts and lines that are too long say so."""
+
+from __future__ import annotations
+
+import pytest
+from rich.style import Style
+
+from tuisim.terminal.text_runs import cut, cut_line
+
+PLAIN, BOLD = Style(), Style(bold=True)
+
+
+@pytest.mark.parametrize(
+    ("text", "width", "shown"),
+    [("name", 4, "name"), ("names", 4, "nam…"), ("names", 1, "…"), ("names", 0, ""), ("", 0, "")],
+)
+def test_a_text_is_cut(text: str, width: int, shown: str) -> None:
+    assert cut(text, width) == shown
+
+
+@pytest.mark.parametrize(
+    ("texts", "shown"),
+    [
+        (["abc", "def"], ["abc", "def"]),
+        (["abc", "defgh"], ["abc", "de…"]),
+        (["abcdef", "g"], ["abcde…"]),
+        (["abc", "def   "], ["abc", "def   "]),
+        (["abcdefgh"], ["abcde…"]),
+    ],
+    ids=["fits", "in a piece", "between pieces", "blanks", "one piece"],
+)
+def test_a_line_is_cut(texts: list[str], shown: list[str]) -> None:
+    line = [(text, BOLD if at else PLAIN) for at, text in enumerate(texts)]
+    assert [text for text, _ in cut_line(line, 6)] == shown

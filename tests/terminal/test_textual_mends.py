@@ -1,0 +1,114 @@
+"""Every widget is told its size, what is gone leaves the screen; lists without room, clicks on gone options."""
+
+from __future__ import annotations
+
+import pyte
+import pytest
+from rich.style import Style
+from textual import events
+from textual.app import ComposeResult
+from textual.command import CommandList
+from textual.events import Click
+from textual.geometry import Size
+from textual.message import Message
+from textual.screen import Screen
+from textual.widget import Widget
+from textual.widgets import OptionList
+from textual.widgets._toast import Toast
+
+from tests.app.app_help import LOGS, ready, settings, until
+from tests.app.wires import on_wire, until_quiet, wire_of
+from tuisim.app.app import LabApp
+from tuisim.app.terminal_app import TerminalApp
+
+
+@pytest.fixture
+def told(monkeypatch: pytest.MonkeyPatch) -> dict[Widget, Size]:
+    """The size that each widget was last told; before each layout, somebody asks for the size of every widget."""
+    lay_out, post, sizes = Screen._refresh_layout, Widget.post_message, {}
+
+    def asked_for(screen: Screen[object], *words: object, **more: object) -> None:
+        screen._compositor.update_widgets(screen._dirty_widgets)
+        assert all(widget.size is not None for widget in screen.walk_children(Widget))
+        lay_out(screen, *words, **more)  # type: ignore[arg-type]
+
+    def posted(widget: Widget, message: Message) -> bool:
+        if isinstance(message, events.Resize):
+            sizes[widget] = message.size
+        return post(widget, message)
+
+    monkeypatch.setattr(Screen, "_refresh_layout", asked_for)
+    monkeypatch.setattr(Widget, "post_message", posted)
+    return sizes
+
+
+@pytest.mark.quick_cases("80x24")
+@pytest.mark.parametrize(
+    ("size", "last"),
+    [((80, 24), "instrumentation"), ((120, 40), "code"), ((200, 60), "chart")],
+    ids=["80x24", "120x40", "200x60"],
+)
+async def test_every_widget_is_told_its_size(size: tuple[int, int], last: str, told: dict[Widget, Size]) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.panel_area.shown(last) and app.panel_area.panels[last].is_mounted)
+        await pilot.pause()
+        laid_out = app.screen._compositor.full_map
+        widgets = [widget for panel in app.panel_area.panels.values() for widget in panel.walk_children(with_self=True)]
+        shown = {widget: laid_out[widget].region.size for widget in widgets if widget in laid_out}
+        assert len(shown) > 5
+        assert {widget: told.get(widget) for widget in shown} == shown
+
+
+class _Listed(TerminalApp):
+    def __init__(self, listed: OptionList) -> None:
+        super().__init__()
+        self._listed = listed
+
+    def compose(self) -> ComposeResult:
+        yield self._listed
+
+
+@pytest.mark.parametrize("key", ["pageup", "pagedown"])
+async def test_a_list_without_room_bears_the_keys_for_pages(key: str) -> None:
+    listed = OptionList("first", "second", "third")
+    async with _Listed(listed).run_test(size=(40, 12)) as pilot:
+        listed.highlighted = 1
+        listed.focus()
+        listed.styles.height = 2
+        await pilot.pause()
+        assert not listed.scrollable_content_region
+        await pilot.press(key)
+        assert listed.highlighted == 1
+
+
+@pytest.mark.parametrize("kind", [OptionList, CommandList])
+async def test_a_click_on_an_option_that_is_gone_does_nothing(kind: type[OptionList]) -> None:
+    listed = kind("first", "second")
+    async with _Listed(listed).run_test(size=(40, 12)) as pilot:
+        listed.highlighted = 0
+        for at, highlighted in ((2, 0), (1, 1)):
+            clicked = Style.from_meta({"option": at})
+            listed.post_message(Click(listed, 1, 1, 0, 0, 1, False, False, False, style=clicked))
+            await pilot.pause()
+            assert listed.highlighted == highlighted
+
+
+async def test_a_notice_that_is_gone_leaves_the_screen(told: dict[Widget, Size]) -> None:
+    async with on_wire(LabApp(settings(LOGS)), notifications=True) as pilot:
+        app = await ready(pilot)
+        await until_quiet(pilot)
+        terminal = pyte.Screen(120, 40)
+        stream = pyte.Stream(terminal)
+        app.notify("A notice", timeout=60)
+        await until_quiet(pilot)
+        stream.feed("".join(wire_of(pilot).sent))
+        assert "A notice" in "\n".join(terminal.display)
+        wire_of(pilot).sent.clear()
+        for toast in app.screen.query(Toast):
+            # What is drawn meanwhile is not known in the map of all widgets: it is made anew for who asks.
+            app.screen._compositor._full_map_invalidated = True
+            toast._expire()
+        await until_quiet(pilot)
+        stream.feed("".join(wire_of(pilot).sent))
+        assert "A notice" not in "\n".join(terminal.display)

@@ -1,0 +1,161 @@
+"""Lines of text with charts, whose canvases have pixels where the terminal can draw them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rich.segment import Segment
+from textual.geometry import Region
+from textual.strip import Strip
+
+from tuisim.charts.canvas import AXIS
+from tuisim.charts.plot_image import Plot, PlotInks, plot_image
+from tuisim.charts.text_chart import ChartPicture
+from tuisim.terminal.cell_view import JoinedStrip, LinesView, PictureStrip
+from tuisim.terminal.graphics.picture import Graphics, TilePicture
+from tuisim.terminal.picture_mode import Sharpness, picture_mode_of
+from tuisim.terminal.text_runs import Run
+
+if TYPE_CHECKING:
+    from tuisim.core.css_colors import Rgb
+    from tuisim.terminal.pixels import Pixels
+
+Lines = Sequence[Sequence[Run]]
+Paint = Callable[[bool], tuple[Lines, Sequence[tuple[int, ChartPicture]]]]
+
+_CURSOR: Rgb = 255, 255, 255
+_STILL_S = 1.0
+"""A chart that has not changed for this long stands still; while data arrive, it is drawn a few times a second."""
+
+
+class PlotStrip(JoinedStrip):
+    """A row of text and parts of a picture.
+
+    Args:
+        parts: Text and parts of one picture, from left to right.
+        spare: Returns the row with characters only, for what cannot show pixels.
+    """
+
+    __slots__ = ["_spare"]
+
+    def __init__(self, parts: Sequence[Strip], spare: Callable[[], Strip]) -> None:
+        super().__init__(parts)
+        self._spare = spare
+
+    def _make(self) -> list[Segment]:
+        return list(self._spare())
+
+    def _part(self, start: int, end: int) -> PlotStrip:
+        return PlotStrip(self._cut(start, end), lambda: self._spare().crop(start, end))
+
+
+class PlotView(LinesView):
+    """Shows lines of text, some of them with an image in place of a chart's canvas.
+
+    Args:
+        redraw: Draws everything again: with pixels or characters, as `graphics` says then.
+    """
+
+    def __init__(self, redraw: Callable[[], None]) -> None:
+        super().__init__()
+        self._draw_again = redraw
+        self._sharpness = Sharpness(self, self._refine, _STILL_S)
+        self._tiles: TilePicture | None = None
+        """The canvases, as large as the widget, while they are drawn with pixels."""
+        self._spans: dict[int, tuple[int, int]] = {}
+        """First column of the image in each of its rows, and the column behind it."""
+        self._spare_lines: Callable[[], Lines] = tuple
+        self._spare: Lines | None = None
+
+    @property
+    def graphics(self) -> Graphics | None:
+        """How pixels are drawn now; None for characters: they have fewer bytes on a slow link, and need no colours."""
+        picture_mode = picture_mode_of(self.app)
+        is_coarse = self.app.no_color or (picture_mode.is_slow() and not self._sharpness.is_still)
+        return None if is_coarse else picture_mode.graphics
+
+    def draw(self, paint: Paint) -> None:
+        """Show lines with charts.
+
+        Args:
+            paint: Returns all lines, and the charts, each with the row in which it begins; whether it is to leave the
+                canvases blank.
+        """
+        graphics = self.graphics
+        lines, pictures = paint(graphics is not None)
+        if graphics is not None:
+            self._spare_lines, self._spare = lambda: paint(False)[0], None
+            self._show(lines, pictures, graphics)
+        else:
+            self.set_lines(lines)
+            self._sharpness.changed(is_coarse=picture_mode_of(self.app).graphics is not None and not self.app.no_color)
+
+    def _show(self, lines: Lines, pictures: Sequence[tuple[int, ChartPicture]], graphics: Graphics) -> None:
+        plots = [(first + one.top, one.left - 1, one.plot) for first, one in pictures if one.plot]
+        spans = {top + row: (left, left + plot.size[1]) for top, left, plot in plots for row in range(plot.size[0])}
+        if self._tiles is None or self._tiles.graphics != graphics:
+            self._tiles, self._spans = TilePicture(graphics), {}
+        runs = self._tiles.put(self._image(plots, graphics.cell_points))
+        super().set_lines(lines)
+        if spans != self._spans:
+            self._spans = spans
+            super().redraw()
+        for row, _, _ in runs:
+            if row < len(self._text_strips):
+                self._text_strips[row] = None
+        if runs:
+            self.refresh(*[Region(col, row, length, 1) for row, col, length in runs])
+        self._sharpness.changed()
+
+    def _image(self, plots: Sequence[tuple[int, int, Plot]], cell: tuple[int, int]) -> Pixels:
+        (width, height), size = cell, self.size
+        image: Pixels = np.zeros((size.height * height, size.width * width, 3), np.uint8)
+        inks = PlotInks(self.ground_rgb, self._ink(AXIS.color.triplet if AXIS.color else None), self._ink(_CURSOR))
+        for top, left, plot in plots:
+            rows, cols = plot.size
+            curves = tuple(replace(curve, rgb=self._ink(curve.rgb)) for curve in plot.curves)
+            part = plot_image(replace(plot, curves=curves), cell, inks)
+            image[top * height : (top + rows) * height, left * width : (left + cols) * width] = part
+        return image
+
+    def _ink(self, own: Rgb | None) -> Rgb:
+        theme = picture_mode_of(self.app).theme
+        rgb = own or _CURSOR
+        return theme.text_rgb(rgb) if theme else rgb
+
+    def set_lines(self, lines: Lines) -> None:
+        """Show lines of characters."""
+        if self._tiles is not None:
+            self._tiles, self._spans = None, {}
+            super().redraw()
+        super().set_lines(lines)
+        self._sharpness.changed()
+
+    def _refine(self) -> bool:
+        self._draw_again()
+        return False
+
+    def redraw(self) -> None:
+        """Draw again: the app's glyphs or colours have changed."""
+        super().redraw()
+        self._draw_again()
+
+    def render_line(self, y: int) -> Strip:
+        """Return one row."""
+        strip = super().render_line(y)
+        if self._tiles is None or y not in self._spans or isinstance(strip, PlotStrip):
+            return strip
+        left, right = self._spans[y]
+        parts = strip.crop(0, left), PictureStrip(self._tiles.row(y)[left:right]), strip.crop(right)
+        made = PlotStrip(parts, partial(self._spare_line, y))
+        self._text_strips[y] = made
+        return made
+
+    def _spare_line(self, y: int) -> Strip:
+        if self._spare is None:
+            self._spare = self._spare_lines()
+        return self.strip_of(self._spare[y] if y < len(self._spare) else [])

@@ -1,0 +1,42 @@
+"""Screenshots: the cells of the whole screen, and their files."""
+
+from __future__ import annotations
+
+import io
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+from textual._context import visible_screen_stack
+from textual.app import App
+
+from tuisim.charts.files import write_whole
+from tuisim.logs.export import check_place
+from tuisim.terminal.cell_image import CellGrid, image_of_cells, row_of_cells, svg_of_cells
+
+
+def screen_cells(app: App[Any]) -> CellGrid:
+    """Return the cells of an app's screen, with its dialogs and notices."""
+    # As Textual's own `export_screenshot` does.
+    visible_screen_stack.set(app._background_screens)
+    strips = app.screen._compositor.render_strips()
+    width = app.screen.size.width
+    runs = ([(text, style) for text, style, control in strip if not control] for strip in strips)
+    return [row_of_cells(row, width) for row in runs]
+
+
+def save_screenshot(grid: CellGrid, folder: Path) -> tuple[Path, Path]:
+    """Write a screen as SVG and PNG; return the two files, which are new.
+
+    Raises:
+        ExportError: they cannot be written.
+    """
+    names = ((folder / f"tuisim-{number}.svg", folder / f"tuisim-{number}.png") for number in count(1))
+    svg, png = next(pair for pair in names if not any(path.exists() for path in pair))
+    for path in (svg, png):
+        check_place(path)
+    content = io.BytesIO()
+    image_of_cells(grid).save(content, "png", optimize=True)
+    write_whole(svg, svg_of_cells(grid, "tuisim").encode())
+    write_whole(png, content.getvalue())
+    return svg, png

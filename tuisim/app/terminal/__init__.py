@@ -1,1 +1,0 @@
-"""The terminal: driver, frame buffer, pacing and cells."""

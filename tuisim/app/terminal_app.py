@@ -1,0 +1,516 @@
+"""Base of the apps: suspend, resume and shutdown; sending only changes; the minimum terminal size."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import re
+import signal
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from textwrap import wrap
+from typing import Any, ClassVar, cast
+
+from rich.cells import cell_len
+from rich.console import Console, ConsoleRenderable, RichCast
+from rich.control import Control
+from rich.segment import Segment
+from textual import events, on
+from textual import screen as textual_screen
+from textual._compositor import CompositorUpdate
+from textual._styles_cache import StylesCache
+from textual.app import App, ScreenStackError
+from textual.color import Color
+from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
+from textual.css.query import NoMatches
+from textual.driver import Driver
+from textual.filter import LineFilter
+from textual.geometry import Size
+from textual.screen import Screen
+from textual.selection import Selection
+from textual.theme import Theme, ThemeProvider
+from textual.widget import Widget, WidgetError
+from textual.widgets import OptionList
+from textual.worker import Worker, WorkerFailed
+
+from tuisim.app import background
+from tuisim.app.action import ActionHost, with_keys_of
+from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
+from tuisim.app.screenshot import save_screenshot, screen_cells
+from tuisim.app.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors
+from tuisim.charts.traces import TRACE_COLORS
+from tuisim.config.files import Scalar
+from tuisim.config.user_config import CELL_SET, SETTINGS, THEME, load_config
+from tuisim.errors import SIGNALLED, ConfigError, TuisimError
+from tuisim.terminal import input_order, textual_mends
+from tuisim.terminal.cell_view import RowsView
+from tuisim.terminal.cells import PALETTE_256
+from tuisim.terminal.driver import TerminalDriver, run_in_foreground
+from tuisim.terminal.environment import in_browser, is_multiplexer, offer
+from tuisim.terminal.frame_buffer import FrameBuffer, TextMode
+from tuisim.terminal.graphics.choice import graphics_of
+from tuisim.terminal.picture_mode import PictureMode, choose_colors, color_depth, picture_mode_for
+from tuisim.terminal.picture_options import AUTO, NO_PIXELS, CellSet
+from tuisim.terminal.queries import (
+    ATTRIBUTES_QUERY,
+    CELL_SIZE_QUERY,
+    KITTY_QUESTIONS,
+    AnswerParser,
+    TerminalAnswered,
+    TerminalFacts,
+    cell_size_px,
+)
+from tuisim.terminal.textual_internals import is_leaving
+from tuisim.terminal.textual_mends import ThoroughCompositor
+
+_CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
+
+
+class Sanitize(LineFilter):
+    """Removes control characters from everything that is drawn."""
+
+    def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
+        """Return the segments, with the same width as before."""
+        if all(segment.text.isprintable() or segment.control for segment in segments):
+            return segments
+        return [
+            segment if segment.control else Segment(_CONTROLS.sub(_blank, segment.text), segment.style)
+            for segment in segments
+        ]
+
+
+def _blank(match: re.Match[str]) -> str:
+    return " " * cell_len(match[0])
+
+
+MINIMUM = Size(40, 12)
+"""Minimum size of the terminal: panels and dialogs are unreadable below it."""
+
+
+def is_too_small(size: Size) -> bool:
+    """Return whether a terminal is too small for the apps."""
+    return size.width < MINIMUM.width or size.height < MINIMUM.height
+
+
+def laid_out(size: Size) -> Size:
+    """Return the size that panels and dialogs are laid out for: at least the minimum."""
+    return Size(max(size.width, MINIMUM.width), max(size.height, MINIMUM.height))
+
+
+def _wordings(size: Size) -> Iterator[str]:
+    """Yield the versions of the message, the longest first."""
+    needed = f"{MINIMUM.width}×{MINIMUM.height}"
+    has = f"{size.width}×{size.height}"
+    yield f"Too small: tuisim needs {needed} or more, and this terminal has {has}. Enlarge it, or press q to quit."
+    yield f"Too small: tuisim needs {needed}, this terminal has {has}."
+    yield f"Too small: needs {needed}"
+    yield "Too small"
+
+
+def message_lines(size: Size) -> list[str]:
+    """Return the lines of the message that a terminal is too small: the longest version that fits."""
+    for wording in _wordings(size):
+        lines = wrap(wording, max(size.width, 1), break_long_words=False)
+        if len(lines) <= size.height and all(len(line) <= size.width for line in lines):
+            return lines
+    return ["!"]
+
+
+def _message_codes(size: Size) -> str:
+    lines = message_lines(size)
+    top = (size.height - len(lines)) // 2
+    rows = (Control.move_to(0, top + at).segment.text + line for at, line in enumerate(lines))
+    return "\x1b[0m\x1b[2J" + "".join(rows)
+
+
+class Palette(CommandPalette, ClosesOnce[None]):
+    """Textual's command palette, as one of the app's screens that close once."""
+
+    def is_ready_for(self, event: events.Event) -> bool:
+        """Return whether what a key is meant for is there: the commands that were found, unless it is typed."""
+        types = isinstance(event, events.Key) and (event.is_printable or event.key in ("escape", "backspace"))
+        return super().is_ready_for(event) and (types or not any(map(self._is_search, self.workers)))
+
+    def _is_search(self, worker: Worker[Any]) -> bool:
+        return worker.node is self and worker.group == self._GATHER_COMMANDS_GROUP and not worker.is_finished
+
+    def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
+        """Let waiting keys go on once the commands are found."""
+        if event.worker.is_finished:
+            self.app.post_message(self.Changed())
+
+    def _on_click(self, event: events.Click) -> None:  # type: ignore[override]
+        # Where the terminal was until it became smaller there is nothing any more to be found.
+        if not self.region.contains(event.screen_x, event.screen_y):
+            event.prevent_default()
+
+
+def theme_list() -> Palette:
+    """Return Textual's list of themes."""
+    return Palette(providers=[ThemeProvider], placeholder="Search for themes…")
+
+
+class ActionProvider(Provider):
+    """Provides the actions of the screen that the palette opens above, else those of the app."""
+
+    def _offers(self) -> Iterator[tuple[str, Callable[[], None], str]]:
+        """Yield the title of each action, a call that runs it, and the text below the title."""
+        host = self.screen if isinstance(self.screen, ActionHost) else self.app
+        if isinstance(host, ActionHost):
+            for action in host.ACTIONS.values():
+                yield action.title, partial(host.action_act, action.id), f"{action.group} · key {action.key_label}"
+
+    async def discover(self) -> Hits:
+        """Yield every action, before anything is typed."""
+        for title, do, text in self._offers():
+            yield DiscoveryHit(title, do, help=text)
+
+    async def search(self, query: str) -> Hits:
+        """Yield the actions with a matching title."""
+        matcher = self.matcher(query)
+        for title, do, text in self._offers():
+            if (score := matcher.match(title)) > 0:
+                yield Hit(score, matcher.highlight(title), do, help=text)
+
+
+class TerminalApp(App[None]):
+    """An app that restores the terminal, even when it is stopped or terminated from outside."""
+
+    TITLE = "tuisim"
+    NOTIFICATION_TIMEOUT = 4
+    # The palette offers the app's own actions: Textual's help, zoom and themes would be a second set of them.
+    COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = {ActionProvider}
+
+    def __init__(self, picture_mode: PictureMode | None = None) -> None:
+        super().__init__(driver_class=_driver_class())
+        self._filters.append(Sanitize())
+        # They take the code for italics for that of reverse video.
+        self._has_italics = not is_multiplexer(os.environ.get("TERM", ""))
+        self.frame_buffer = FrameBuffer()
+        self.picture_mode = picture_mode or PictureMode()
+        """How pictures are drawn."""
+        self.pixels = AUTO
+        """One of `PIXELS`."""
+        self._left_pixels: str | None = None
+        """`pixels` before the user switched to characters with a key; None if the user has not."""
+        self.terminal_facts = TerminalFacts()
+        self.too_small: Size | None = None
+        """Size of a terminal that is too small, else None."""
+        self._input = input_order.InputOrder(self, self._give, self._waits)
+        for theme in (HIGH_CONTRAST, LIGHT):
+            self.register_theme(theme)
+        for name in UNUSED_THEMES:
+            self.unregister_theme(name)
+        if (chosen := str(load_config().value(THEME))) in self.available_themes:
+            self.theme = chosen
+        self._take_theme()
+
+    def on_mount(self) -> None:
+        self.theme_changed_signal.subscribe(self, self._theme_changed)
+        self.set_class(color_depth(self) < PALETTE_256 or bool(self.no_color), "-few-colors")
+
+    def _take_theme(self) -> None:
+        is_own = self.theme == OWN_THEME
+        self.picture_mode.theme = theme = None if is_own else ThemeColors(self.current_theme, TRACE_COLORS)
+        filters = [one for one in self._filters if not isinstance(one, ThemeColors)]
+        # Before the filter for terminals without colours, which leaves no colour to be replaced.
+        self._filters = [theme, *filters] if theme else filters
+
+    def _theme_changed(self, theme: Theme) -> None:
+        """Draw everything in the colours of another theme, and keep the choice."""
+        self._take_theme()
+        if theme.name != load_config().value(THEME):
+            self.keep_setting(THEME, None if theme.name == OWN_THEME else theme.name)
+        for screen in self.screen_stack:
+            for view in screen.query(RowsView):
+                view.redraw()
+        self.call_later(self.action_redraw)
+
+    async def on_event(self, event: events.Event) -> None:
+        """Lay out for the minimum size at least; ignore clicks on cells outside the terminal."""
+        if isinstance(event, events.Resize):
+            was, self.too_small = self.too_small, event.size if is_too_small(event.size) else None
+            if self.too_small:
+                event = events.Resize(laid_out(event.size), laid_out(event.size))
+            if was != self.too_small:
+                # The layout may stay the same, and would not be drawn then.
+                self.call_later(self.action_redraw)
+        elif isinstance(event, (events.InputEvent, events.Paste)):
+            if not self._ignores(event):
+                await (self._give if event.is_forwarded else self._input.take)(event)
+            return
+        await super().on_event(event)
+
+    async def _give(self, event: events.Event) -> None:
+        """Handle what the user does; it may have had to wait for what came before."""
+        if not self._ignores(event):
+            await super().on_event(event)
+
+    def _waits(self, event: events.Event) -> bool:
+        """Return whether the topmost screen is still being opened, so that it would lose a key."""
+        top = self.screen_stack[-1] if self.screen_stack else None
+        return isinstance(top, ClosesOnce) and not top.is_ready_for(event)
+
+    def _ignores(self, event: events.Event) -> bool:
+        """Return whether to ignore an event of the user: nothing can handle it, or its target is invisible or was just
+        removed."""
+        if is_leaving(self):
+            return True
+        if not isinstance(event, events.MouseEvent):
+            return False
+        # Nobody can aim at what is not drawn yet.
+        if self.too_small is not None or self._is_opening:
+            return True
+        if not isinstance(event, events.MouseDown):
+            return False
+        # Until the next layout a screen still finds a removed widget, and fails when a selection begins there.
+        widget, _ = self.screen.get_widget_and_offset_at(event.x, event.y)
+        return widget is not None and not widget.is_attached
+
+    @on(ClosesOnce.Changed)
+    async def give_waiting_keys(self) -> None:
+        """Pass the keys that were pressed while a screen was being opened to the topmost screen."""
+        await self._input.go_on()
+
+    @property
+    def _is_opening(self) -> bool:
+        top = self.screen_stack[-1] if self.screen_stack else None
+        return isinstance(top, ClosesOnce) and not top.is_ready
+
+    def _display(self, screen: Screen[Any], renderable: ConsoleRenderable | RichCast | str | None) -> None:
+        # Textual writes what this returns; if it would write nothing, nothing is displayed either.
+        update: object = renderable
+        codes: str | None = None
+        if isinstance(screen, ClosesOnce) and screen.is_closed:
+            # A screen that was closed while being mounted still tries to draw itself.
+            renderable = None
+        elif self.too_small and renderable is not None:
+            renderable = cast(ConsoleRenderable, _Codes(_message_codes(self.too_small)))
+            self.frame_buffer.forget()
+        elif isinstance(update, CompositorUpdate) and self._writes:
+            codes = self.frame_buffer.codes(update, self.text_mode)
+            if codes is not None:
+                renderable = cast(ConsoleRenderable, _Codes(codes)) if codes else None
+        super()._display(screen, renderable)
+        if codes:
+            self.painted(len(codes))
+
+    def keep_setting(self, path: str, value: Scalar | None) -> None:
+        """Write a setting that applies already to `config.toml`; None for the usual one."""
+        from tuisim.config.user_config_file import save_setting
+
+        try:
+            save_setting(SETTINGS[path], value)
+        except ConfigError as error:
+            self.notify(f"The choice applies to this session only: {error}", severity="warning", markup=False)
+
+    def choose_cells(self, chosen: str) -> None:
+        """Draw every picture with another set of glyphs; `AUTO` or the name of a set."""
+        self.picture_mode.choose(chosen)
+        self._choose_graphics()
+        self.redraw_pictures()
+
+    def choose_pixels(self, pixels: str) -> None:
+        """Draw every picture with real pixels or with glyphs; one of `PIXELS`."""
+        self.pixels, self._left_pixels = pixels, None
+        self._choose_graphics()
+
+    @property
+    def has_pixels(self) -> bool:
+        """Whether pictures are drawn with pixels, or were until the user switched to characters."""
+        return self.picture_mode.graphics is not None or self._left_pixels is not None
+
+    def action_switch_pixels(self) -> None:
+        """Draw pictures with characters in place of pixels, or again with pixels; for this session."""
+        if self._left_pixels is not None:
+            self.choose_pixels(self._left_pixels)
+        elif self.picture_mode.graphics is not None:
+            before = self.pixels
+            self.choose_pixels(NO_PIXELS)
+            self._left_pixels = before
+            words = with_keys_of(self, "Drawn with characters: {pixels} brings the pixels back")
+            self.notify(words, markup=False)
+        else:
+            self.notify("This terminal draws no pixels, as far as it tells", markup=False)
+
+    def painted(self, size: int) -> None:
+        """Called with the number of characters after an update was sent to the terminal."""
+
+    @property
+    def text_mode(self) -> TextMode:
+        """What the terminal supports."""
+        is_ascii = self.picture_mode.cells is CellSet.ASCII
+        return TextMode(color_depth(self), is_ascii, has_italics=self._has_italics)
+
+    @property
+    def _writes(self) -> bool:
+        return self._running and not (self._closed or self._batch_count or self.is_headless or self._driver is None)
+
+    @on(events.DescendantFocus)
+    def still_cursor(self, event: events.DescendantFocus) -> None:
+        """Stop the cursor from blinking: an idle app sends nothing."""
+        if hasattr(event.widget, "cursor_blink"):
+            event.widget.cursor_blink = False
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Send everything again: a resized terminal has cut or moved its content."""
+        self.frame_buffer.forget()
+        self._choose_graphics()
+        if self.terminal_facts.attributes and self._driver is not None:
+            # Zoom changes the size of the terminal and of its cells.
+            AnswerParser.is_asked = True
+            self._driver.write(CELL_SIZE_QUERY + ATTRIBUTES_QUERY)
+
+    def on_ready(self) -> None:
+        if self.is_headless:
+            return
+        loop = asyncio.get_running_loop()
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            # The exit code that a shell shows for a program ended by the signal.
+            loop.add_signal_handler(number, partial(self.exit, return_code=SIGNALLED + number))
+        if isinstance(self._driver, TerminalDriver):
+            loop.add_signal_handler(signal.SIGTSTP, self.action_suspend_process)
+
+    def on_terminal_answered(self, event: TerminalAnswered) -> None:
+        """Draw with pixels if the terminal can; ask a terminal that may know kitty's protocol for it."""
+        if event.facts.asks_for_kitty and self._driver is not None:
+            AnswerParser.is_asked = True
+            self._driver.write(KITTY_QUESTIONS)
+        drew = self.picture_mode.graphics
+        self.terminal_facts = event.facts
+        self._choose_graphics()
+        if event.facts.kitty_error and drew is not None and self.picture_mode.graphics is None:
+            self.notify(
+                f"The terminal cannot show a picture ({event.facts.kitty_error}): drawn with characters instead",
+                severity="warning", markup=False,
+            )  # fmt: skip
+
+    def _choose_graphics(self) -> None:
+        size_px = cell_size_px(self._driver.fileno) if isinstance(self._driver, TerminalDriver) else None
+        # Who has chosen glyphs wants to see them; pixels have colours.
+        is_without = self.picture_mode.chosen != AUTO or self.no_color
+        wanted = NO_PIXELS if self.pixels == AUTO and is_without else self.pixels
+        found = graphics_of(self.terminal_facts, wanted, size_px)
+        if found != self.picture_mode.graphics:
+            self.picture_mode.graphics = found
+            self.redraw_pictures()
+            self.call_after_refresh(self.situation_changed)
+
+    def situation_changed(self) -> None:
+        """Called when other keys are available."""
+
+    def redraw_pictures(self) -> None:
+        """Draw all pictures again: with pixels or glyphs, as `picture_mode` says now."""
+        for screen in self.screen_stack:
+            for view in screen.query(RowsView):
+                view.redraw()
+
+    @on(Driver.SignalResume)
+    def action_redraw(self) -> None:
+        """Redraw the whole screen: something else has written over it, such as the shell while the app was stopped."""
+        self.frame_buffer.forget()
+        self.refresh(layout=True)
+
+    def action_save_screen(self) -> None:
+        """Save the whole screen as SVG and PNG, in the working directory."""
+
+        def saved(files: tuple[Path, Path]) -> None:
+            svg, png = files
+            self.notify(f"Saved {svg.name} and {png.name} in {png.parent}", markup=False)
+            offer(self, svg, png)
+
+        work = partial(save_screenshot, screen_cells(self), Path.cwd())
+        background.run(self, work, saved, lambda error: self.notify(str(error), severity="error", markup=False))
+
+    def action_suspend_process(self) -> None:
+        if isinstance(self._driver, TerminalDriver):
+            self.suspending()
+            if not self._driver.stop_as_job():
+                self.notify("tuisim cannot be suspended: no shell could resume it", markup=False)
+        elif in_browser():
+            self.notify("tuisim cannot be suspended in a browser", markup=False)
+
+    def run_in_terminal(self, command: Sequence[str]) -> None:
+        """Give the terminal to another program until it ends.
+
+        Raises:
+            TuisimError: the app has no terminal to give, or the program cannot start.
+        """
+        if not isinstance(self._driver, TerminalDriver):
+            raise TuisimError(f"{command[0]} needs a terminal, and here is none to give it, as in a browser")
+        self.suspending()
+        with self._driver.lent():
+            try:
+                run_in_foreground(command)
+            except OSError as error:
+                raise TuisimError(f"{command[0]} cannot start: {error.strerror or error}") from None
+
+    def suspending(self) -> None:
+        """Called before the app stops, or gives its terminal away."""
+
+    def action_command_palette(self) -> None:
+        """Open the command palette, unless it or a dialog is open: its commands would open dialogs above that one."""
+        if self.use_command_palette and not isinstance(self.screen, (Dialog, Palette)) and not is_leaving(self):
+            self.push_screen(Palette())
+
+    async def _shutdown(self) -> None:
+        # The app may be shut down without `exit`: it is leaving, too.
+        self._exit = True
+        await super()._shutdown()
+
+    def _handle_exception(self, error: Exception) -> None:
+        # During the shutdown nothing can be mounted, what was being mounted is removed before it is complete, and at
+        # its end there is no screen.
+        cause = error.error if isinstance(error, WorkerFailed) else error
+        if not (is_leaving(self) and isinstance(cause, (WidgetError, NoMatches, ScreenStackError))):
+            super()._handle_exception(error)
+
+
+class _Codes(CompositorUpdate):
+    """An update that is codes already."""
+
+    def __init__(self, codes: str) -> None:
+        self._codes = codes
+
+    def render_segments(self, console: Console) -> str:
+        """Return the codes."""
+        return self._codes
+
+
+def text_selection(widget: Widget) -> Selection | None:
+    """Return what is selected of a widget; nothing in a screen without styles: it is not drawn yet, or is gone."""
+    screen = widget.screen
+    return screen.selections.get(widget) if "screen--selection" in screen._component_styles else None
+
+
+# A screen makes its compositor itself, and the palette its list.
+textual_screen.Compositor = ThoroughCompositor  # type: ignore[attr-defined]
+OptionList._on_click = textual_mends.click  # type: ignore[method-assign, assignment]
+OptionList._move_page = textual_mends.move_page  # type: ignore[method-assign, assignment]
+Widget.text_selection = property(text_selection)  # type: ignore[assignment]
+Widget._message_loop_exit = input_order.end_messages  # type: ignore[method-assign, assignment]
+# Otherwise the cache of this method keeps what it is a method of: the drawn rows of a thousand widgets that are gone.
+StylesCache.get_inner_outer = classmethod(StylesCache.get_inner_outer)  # type: ignore[method-assign, arg-type, assignment]
+
+
+def _driver_class() -> type[Driver]:
+    """Return the driver for what shows the app: a browser or a terminal."""
+    if not in_browser():
+        return TerminalDriver
+    # Most apps run in a terminal.
+    from tuisim.terminal.browser_driver import BrowserDriver
+
+    return BrowserDriver
+
+
+def picture_mode_at_start(cells: str | None, colors: str) -> PictureMode:
+    """Return how an app that starts draws pictures.
+
+    Args:
+        cells: The option of the command line, if there is one; else `config.toml` decides.
+        colors: The colour depth of the terminal; `AUTO` asks the terminal.
+    """
+    most_colors = choose_colors(colors)
+    return replace(picture_mode_for(cells, str(load_config().value(CELL_SET))), most_colors=most_colors)

@@ -1,0 +1,152 @@
+"""Themes: the app's own colours in the colours of the theme that was chosen.
+
+Style sheet and panels name the colours of one dark design. Under any other theme each of them is replaced while a line
+is drawn: greys by the same step between the theme's background and its text, colours with a role by the theme's colour
+for that role, and others by the same hue as light or dark as the background needs.
+"""
+
+from __future__ import annotations
+
+import colorsys
+from collections.abc import Sequence
+from functools import lru_cache
+
+from rich.color import Color as RichColor
+from rich.segment import Segment
+from rich.style import Style
+from textual.color import Color
+from textual.filter import LineFilter
+from textual.theme import BUILTIN_THEMES, Theme
+
+from tuisim.terminal.pixels import Rgb
+
+OWN_THEME = "textual-dark"
+"""Under it the app's colours are as they are."""
+UNUSED_THEMES = ("ansi-dark", "ansi-light")
+"""They have no colours of their own to compute with."""
+
+HIGH_CONTRAST = Theme(
+    "high-contrast", primary="#00d7ff", secondary="#00d7ff", accent="#ffff00", warning="#ffff00", error="#ff8080",
+    success="#80ff80", foreground="#ffffff", background="#000000", surface="#000000", panel="#000000", dark=True,
+)  # fmt: skip
+LIGHT = Theme(
+    "light", primary="#0050a0", secondary="#0050a0", accent="#8a5a00", warning="#8a5a00", error="#b00020",
+    success="#006a3a", foreground="#101418", background="#f0f3f6", surface="#e6eaee", panel="#dde3e9", dark=False,
+)  # fmt: skip
+
+
+def theme_names() -> list[str]:
+    """Return the names of the themes that can be chosen."""
+    return [*(name for name in BUILTIN_THEMES if name not in UNUSED_THEMES), HIGH_CONTRAST.name, LIGHT.name]
+
+
+OWN_COLORS = frozenset({
+    "#101010", "#10151c", "#18202a", "#1c242e", "#1c2733", "#263545", "#2a333d", "#2c4a2c", "#2f4a63", "#2f4a66",
+    "#2f4a68", "#2f5f8f", "#44505e", "#4a4f57", "#5f6f80", "#5fafff", "#6a7a8c", "#6c7a89", "#6e1f28", "#7c8b9a",
+    "#7f8fa1", "#87afff", "#87d7af", "#87d7ff", "#8c99a6", "#8fa0b2", "#9fb0c3", "#9fd3ff", "#a6d189", "#a8a8a8",
+    "#b8c4d0", "#d7a0ff", "#d7af5f", "#d8d8d8", "#d8dee6", "#e8e8e8", "#ff6e6e", "#ff8787", "#ffaf5f", "#ffaf6e",
+    "#ffd75f", "#ffd866", "#ffffff",
+})  # fmt: skip
+"""Every colour that the style sheet and the panels name; those of Textual's own widgets follow the theme already."""
+_ROLES = {"#5fafff": "primary", "#ffd75f": "warning", "#ff6e6e": "error", "#87d7af": "success"}
+_DARKEST = 0.086
+"""Lightness of the dark design's background."""
+_LEAST_CONTRAST, _HIGH_CONTRAST = 4.5, 7.0
+"""Of text, as WCAG 2.2 asks for: https://www.w3.org/TR/WCAG22/#contrast-minimum and #contrast-enhanced."""
+_GREYISH = 60
+"""Colours whose channels differ by less belong to the design's greys."""
+
+
+class ThemeColors(LineFilter):
+    """Replaces the app's own colours by those of a theme.
+
+    Args:
+        theme: The theme.
+        traces: Colours of lines of charts, which are own ones, too.
+    """
+
+    def __init__(self, theme: Theme, traces: Sequence[Rgb] = ()) -> None:
+        super().__init__()
+        self._background = Color.parse(theme.background or ("#121212" if theme.dark else "#e0e0e0"))
+        self._foreground = Color.parse(theme.foreground or ("#e0e0e0" if theme.dark else "#101010"))
+        self._contrast = _HIGH_CONTRAST if theme.name == HIGH_CONTRAST.name else _LEAST_CONTRAST
+        roles = {own: getattr(theme, role) or own for own, role in _ROLES.items()}
+        own = {Color.parse(name).rgb for name in OWN_COLORS} | set(traces)
+        self._replaced = {rgb: self._replacement(rgb) for rgb in own}
+        self._replaced |= {Color.parse(name).rgb: Color.parse(color).rgb for name, color in roles.items()}
+        self._style = lru_cache(maxsize=4096)(self._themed)
+
+    def rgb(self, own: Rgb) -> Rgb:
+        """Return the colour in place of one of the app's own; any other is returned as it is."""
+        return self._replaced.get(own, own)
+
+    def text_rgb(self, own: Rgb) -> Rgb:
+        """Return the colour of text or lines in one of the app's own colours: it can be read on the background."""
+        new = self.rgb(own)
+        return self._legible(new, self._background.rgb, is_line=own == _LINE) if own in self._replaced else new
+
+    def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
+        """Return the segments in the theme's colours."""
+        return [
+            segment if segment.style is None or segment.control else Segment(segment.text, self._style(segment.style))
+            for segment in segments
+        ]
+
+    def _replacement(self, rgb: Rgb) -> Rgb:
+        hue, lightness, saturation = colorsys.rgb_to_hls(*(channel / 255 for channel in rgb))
+        step = min(max((lightness - _DARKEST) / (1 - _DARKEST), 0.0), 1.0)
+        if max(rgb) - min(rgb) < _GREYISH:
+            return self._background.blend(self._foreground, step).rgb
+        dark, light = (colorsys.rgb_to_hls(*end.normalized)[1] for end in (self._background, self._foreground))
+        red, green, blue = colorsys.hls_to_rgb(hue, dark + step * (light - dark), saturation)
+        return round(255 * red), round(255 * green), round(255 * blue)
+
+    def _themed(self, style: Style) -> Style:
+        fore, back = _rgb_of(style.color), _rgb_of(style.bgcolor)
+        # No own background is white: a white one shows what a sensor sees.
+        new_fore, new_back = fore and self.rgb(fore), back and (back if back == _WHITE else self.rgb(back))
+        if new_fore and fore in self._replaced:
+            new_fore = self._legible(new_fore, new_back or self._background.rgb, is_line=fore == _LINE)
+        if (new_fore, new_back) == (fore, back):
+            return style
+        changed = Style(
+            color=RichColor.from_rgb(*new_fore) if new_fore else None,
+            bgcolor=RichColor.from_rgb(*new_back) if new_back else None,
+        )
+        return style + changed
+
+    def _legible(self, rgb: Rgb, on: Rgb, is_line: bool) -> Rgb:
+        """Return a colour moved toward black or white until it can be read."""
+        ground, color = Color(*on), Color(*rgb)
+        least = 1.5 if is_line and self._contrast < _HIGH_CONTRAST else self._contrast
+        away = Color(255, 255, 255) if _light_of(ground) < 0.18 else Color(0, 0, 0)
+        for step in range(11):
+            moved = color.blend(away, step / 10)
+            if contrast(moved, ground) >= least:
+                return moved.rgb
+        return away.rgb
+
+
+_WHITE = (255, 255, 255)
+_LINE = Color.parse("#44505e").rgb
+"""Frames need not be as strong as text."""
+
+
+def _rgb_of(color: RichColor | None) -> Rgb | None:
+    if color is None or color.triplet is None:
+        return None
+    red, green, blue = color.triplet
+    return red, green, blue
+
+
+def _light_of(color: Color) -> float:
+    """Return the relative luminance of a colour."""
+    channels = (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color.normalized)
+    red, green, blue = channels
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue
+
+
+def contrast(one: Color, other: Color) -> float:
+    """Return the contrast of two colours, 1 to 21."""
+    light, dark = sorted((_light_of(one), _light_of(other)), reverse=True)
+    return (light + 0.05) / (dark + 0.05)

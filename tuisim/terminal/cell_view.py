@@ -1,0 +1,553 @@
+"""Widgets that repaint only the cells that changed, one for images, one for text; strips of half-block cells."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from rich.color import Color
+from rich.segment import Segment
+from rich.style import Style
+from textual.app import ComposeResult
+from textual.color import Color as TextualColor
+from textual.events import MouseEvent
+from textual.filter import LineFilter
+from textual.geometry import Region
+from textual.strip import Strip
+from textual.widget import Widget
+
+from tuisim.terminal.cells import MONO, ColorMode, changed_cells, changed_runs, reduce_cells, reduce_pixels
+from tuisim.terminal.fitted_cells import CellIndex, Cells, all_cells, fit_cells
+from tuisim.terminal.glyphs import GLYPHS, GlyphSet, glyph_set, half_block_of
+from tuisim.terminal.graphics.picture import Graphics, PictureCell, TilePicture
+from tuisim.terminal.mono import mono_cells
+from tuisim.terminal.picture_mode import BLOCKS, PictureMode, Sharpness, color_depth, picture_mode_of
+from tuisim.terminal.picture_options import CellSet
+from tuisim.terminal.pixels import CellPoints
+from tuisim.terminal.text_runs import Run, cut_line
+
+if TYPE_CHECKING:
+    from tuisim.terminal.pixels import Pixels
+
+_TEXT_GAP = 8
+"""This many unchanged characters cost less than a new cursor position and style."""
+
+
+class RowsView(Widget):
+    """A widget that stores its own rows."""
+
+    ALLOW_SELECT = False
+
+    @cached_property
+    def picture_mode(self) -> PictureMode:
+        """How the app draws pictures."""
+        return picture_mode_of(self.app)
+
+    @property
+    def ground_rgb(self) -> tuple[int, int, int]:
+        """Background colour of the widget."""
+        own, theme = self.background_colors[1].rgb, self.picture_mode.theme
+        return theme.rgb(own) if theme else own
+
+    def redraw(self) -> None:
+        """Draw again: the app's glyphs or colours have changed."""
+        self.refresh()
+
+    def render_lines(self, crop: Region) -> list[Strip]:
+        """Return the rows of a region, bypassing Textual's cache, which would rebuild whole rows."""
+        return _cut([self.render_line(y) for y in crop.line_range], crop, self.size.width, self.rich_style)
+
+
+REFINED_CELLS = 100
+"""Cells that become fine in one step on a slow link."""
+QUICKLY_REFINED_CELLS = 400
+"""Cells that become fine in one step on a link that is not known to be slow."""
+
+
+class PixelView(RowsView):
+    """Shows an image in cells of two colours."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._raw: Pixels | None = None
+        self._square: Pixels | None = None
+        """The image, if its pixels are square."""
+        self._shown: Pixels = np.empty((0, 0, 3), np.uint8)
+        self._cells: Cells = np.empty((0, 0), np.int64)
+        self._coarse: npt.NDArray[np.bool_] = np.empty((0, 0), bool)
+        """The cells that are drawn as half blocks, to be refined."""
+        self._glyphs = glyph_set(CellSet.HALF)
+        self._tiles: TilePicture | None = None
+        """The image, while it is drawn with pixels."""
+        self._sharpness = Sharpness(self, self._refine_some)
+        self._strips: list[Strip | None] = []
+        self._signs: Mapping[tuple[int, int], int] = {}
+        """Cells above those of the image, by row and column."""
+
+    @property
+    def color_mode(self) -> ColorMode:
+        """The colours that the terminal supports."""
+        return ColorMode(color_depth(self.app), bool(self.app.no_color))
+
+    @property
+    def cell_set(self) -> CellSet:
+        """The glyphs of the app."""
+        return self.picture_mode.cells
+
+    @property
+    def graphics(self) -> Graphics | None:
+        """How pixels are drawn; None for cells."""
+        return self.picture_mode.graphics
+
+    def cell_for(self, graphics: Graphics | None) -> CellPoints:
+        """Return the points of an image in a cell; `graphics` is None for the app's glyphs."""
+        if graphics is not None:
+            width_px, height_px = graphics.cell_px
+            return CellPoints(*graphics.cell_points, height_px / width_px)
+        glyphs = glyph_set(self.cell_set)
+        return CellPoints(glyphs.cols, glyphs.rows)
+
+    def set_picture(self, picture: Pixels) -> None:
+        """Show an image of square pixels, two in a cell; only cells that differ are repainted."""
+        self._square = picture
+        if (graphics := self.graphics) is not None:
+            width, height = graphics.cell_points
+            self._show_pixels(_in_halves(picture, width, height), graphics)
+            return
+        if self.cell_set in BLOCKS:
+            self._show(picture, CellSet.HALF)
+            return
+        fine = glyph_set(self.cell_set)
+        self._show(picture.repeat(fine.rows // 2, axis=0).repeat(fine.cols, axis=1), self.cell_set)
+
+    def set_fine_picture(self, picture: Pixels, graphics: Graphics | None = None, *, stands: bool = False) -> None:
+        """Show an image with the points of `cell_for(graphics)`; only cells that differ are repainted.
+
+        Args:
+            picture: The image.
+            graphics: How its pixels are drawn; None for the app's glyphs.
+            stands: Whether the image will stand still, so that its glyphs are drawn finely also on a slow link.
+        """
+        if graphics is not None:
+            self._show_pixels(picture, graphics)
+        else:
+            self._show(picture, self.cell_set, stands)
+
+    @property
+    def is_coarse(self) -> bool:
+        """Whether glyphs are drawn as half blocks, to be refined."""
+        return bool(self._coarse.any())
+
+    def _show_pixels(self, picture: Pixels, graphics: Graphics) -> None:
+        if self._tiles is None or self._tiles.graphics != graphics:
+            self._tiles = TilePicture(graphics)
+            self._forget_cells()
+        runs = self._tiles.put(picture, self.picture_mode.is_slow())
+        rows, _ = self._tiles.size
+        self._sharpness.changed(is_coarse=self._tiles.is_coarse)
+        if len(self._strips) != rows:
+            self._strips = [None] * rows
+            self.refresh()
+        else:
+            self._refresh_runs(runs)
+
+    def _refresh_runs(self, runs: Iterable[tuple[int, int, int]]) -> None:
+        """Draw cells anew, as (row, first column, number of cells)."""
+        regions = []
+        for row, col, length in runs:
+            self._strips[row] = None
+            regions.append(Region(col, row, length, 1))
+        if regions:
+            self.refresh(*regions)
+
+    def _forget_cells(self) -> None:
+        self._cells, self._strips = np.empty((0, 0), np.int64), []
+        self._coarse = np.empty((0, 0), bool)
+
+    def _show(self, picture: Pixels, cell_set: CellSet, stands: bool = False) -> None:
+        if self._tiles is not None:
+            self._tiles = None
+            self._forget_cells()
+        old, was = self._shown, self._cells
+        fine, mode = glyph_set(cell_set), self.color_mode
+        self._reduce(picture, mode)
+        shape = len(picture) // fine.rows, picture.shape[1] // fine.cols
+        as_before = was.shape == shape and old.shape == picture.shape and fine is self._glyphs
+        at = changed_cells(old, self._shown, fine) if as_before else all_cells(*shape)
+        if as_before and stands and self.is_coarse:
+            changed = self._coarse.copy()
+            changed[at] = True
+            rows, cols = np.nonzero(changed)
+            at = rows, cols
+        self._glyphs = fine
+        has_finer = cell_set in BLOCKS and cell_set != CellSet.HALF
+        is_coarse = has_finer and not stands and self.picture_mode.is_slow()
+        if not as_before:
+            self._coarse = np.zeros(shape, bool)
+        self._coarse[at] = is_coarse
+        cells = was.copy() if as_before else np.empty(shape, np.int64)
+        glyphs = half_block_of(cell_set) if is_coarse else fine
+        cells[at] = self._fitted(glyphs, mode, at, was[at] if as_before else None)
+        self._put(cells)
+        self._sharpness.changed(is_coarse=self.is_coarse)
+
+    def _fitted(self, glyphs: GlyphSet, mode: ColorMode, at: CellIndex, before: Cells | None) -> Cells:
+        if mode.depth == MONO:
+            return mono_cells(self._shown, glyphs, at, self.cell_set)
+        return reduce_cells(fit_cells(self._shown, glyphs, at, before), mode)
+
+    def _put(self, cells: Cells) -> None:
+        if cells.shape != self._cells.shape:
+            self._cells, self._strips = cells, [None] * len(cells)
+            self.refresh()
+            return
+        runs = changed_runs(self._cells, cells)
+        self._cells = cells
+        self._refresh_runs(runs)
+
+    def _refine_some(self) -> bool:
+        """Draw some of the coarse cells fine; return whether more are coarse."""
+        count = REFINED_CELLS if self.picture_mode.is_slow() else QUICKLY_REFINED_CELLS
+        if self._tiles is not None:
+            self._refresh_runs(self._tiles.refine(count))
+            return self._tiles.is_coarse
+        self._refine_glyphs(count)
+        return self.is_coarse
+
+    def _refine_glyphs(self, count: int) -> None:
+        rows, cols = np.nonzero(self._coarse)
+        at = rows[:count], cols[:count]
+        self._coarse[at] = False
+        cells = self._cells.copy()
+        cells[at] = self._fitted(self._glyphs, self.color_mode, at, None)
+        self._put(cells)
+
+    def redraw(self) -> None:
+        """Draw the image again: the app's glyphs or colours have changed."""
+        self._raw = None
+        if self._square is not None:
+            self.set_picture(self._square)
+
+    def clear_picture(self) -> None:
+        """Clear the image."""
+        if self._strips:
+            self._raw = self._square = self._tiles = None
+            self._forget_cells()
+            self.refresh()
+
+    def _reduce(self, picture: Pixels, mode: ColorMode) -> None:
+        """Dither an image where the terminal has few colours, if it differs from the last one."""
+        if not mode.dithers:
+            self._raw = self._shown = picture
+            return
+        if self._raw is None or self._raw.shape != picture.shape:
+            shown = np.empty_like(picture)
+            rows, cols = np.indices(picture.shape[:2]).reshape(2, -1)
+        else:
+            shown = self._shown.copy()
+            rows, cols = np.nonzero((self._raw != picture).any(axis=2))
+        shown[rows, cols] = reduce_pixels(picture[rows, cols], rows, cols, mode)
+        self._shown, self._raw = shown, picture
+
+    def render_line(self, y: int) -> Strip:
+        """Return one row."""
+        if y >= len(self._strips):
+            return self._blank()
+        strip = self._strips[y]
+        if strip is None:
+            strip = CellStrip(self._row(y)) if self._tiles is None else PictureStrip(self._tiles.row(y))
+            self._strips[y] = strip
+        return strip
+
+    def _row(self, y: int) -> list[int]:
+        cells: list[int] = self._cells[y].tolist()
+        for (row, col), cell in self._signs.items():
+            if row == y and 0 <= col < len(cells):
+                cells[col] = cell
+        return cells
+
+    def set_signs(self, signs: Mapping[tuple[int, int], int]) -> None:
+        """Show other cells above those of the image, by row and column; not above pixels."""
+        rows, cols = self._cells.shape
+        changed = {at for at, _ in self._signs.items() ^ signs.items()}
+        self._signs = signs
+        self._refresh_runs((row, col, 1) for row, col in changed if 0 <= row < rows and 0 <= col < cols)
+
+    def _blank(self) -> Strip:
+        # A strip without a style would break Textual's filter for terminals without colours.
+        strip = Strip.blank(self.size.width, self.rich_style)
+        for line_filter in self.app.get_line_filters():
+            strip = strip.apply_filter(line_filter, self.background_colors[1])
+        return strip
+
+
+class LinesView(RowsView):
+    """Shows lines of styled text; only characters that differ are repainted."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._lines: list[Sequence[Run]] = []
+        self._text_strips: list[Strip | None] = []
+
+    def set_lines(self, lines: Sequence[Sequence[Run]]) -> None:
+        """Show lines from the top; a line that is too long ends in an ellipsis."""
+        width = self.size.width
+        old, self._lines = self._lines, [cut_line(line, width) if width else line for line in lines]
+        if len(old) != len(self._lines):
+            self._text_strips = [None] * len(self._lines)
+            self.refresh()
+            return
+        regions = []
+        for y, (before, now) in enumerate(zip(old, self._lines, strict=True)):
+            if before != now:
+                self._text_strips[y] = None
+                regions += [Region(x, y, length, 1) for x, length in _changes(before, now)]
+        if regions:
+            self.refresh(*regions)
+
+    def notify_style_update(self) -> None:
+        """Drop the rows when colours change."""
+        super().notify_style_update()
+        self._text_strips = [None] * len(self._lines)
+
+    def redraw(self) -> None:
+        """Draw again: the app's colours have changed."""
+        self._text_strips = [None] * len(self._lines)
+        self.refresh()
+
+    def render_line(self, y: int) -> Strip:
+        """Return one row."""
+        if y >= len(self._text_strips):
+            return self.strip_of([])
+        strip = self._text_strips[y]
+        if strip is None or strip.cell_length != self.size.width:
+            strip = self._text_strips[y] = self.strip_of(self._lines[y])
+        return strip
+
+    def strip_of(self, line: Sequence[Run]) -> Strip:
+        """Return a line as a row of the widget."""
+        base = self.rich_style
+        whole = Strip([Segment(text, base + style) for text, style in line if text])
+        segments = list(whole.adjust_cell_length(self.size.width, base))
+        # Code that bypasses Textual's style cache has to apply its filters itself.
+        for line_filter in self.app.get_line_filters():
+            segments = line_filter.apply(segments, self.background_colors[1])
+        return Strip(segments, self.size.width)
+
+
+class LinesPanel(Widget):
+    """A widget whose content is lines of text, drawn again for each size."""
+
+    DEFAULT_CSS = "LinesPanel > LinesView { width: 1fr; height: 1fr; }"
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._text = LinesView()
+
+    def compose(self) -> ComposeResult:
+        yield self._text
+
+    def on_resize(self) -> None:
+        self.call_after_refresh(self._redraw)
+
+    def _redraw(self) -> None:
+        """Draw the lines for the current size."""
+
+    def cell_at(self, event: MouseEvent) -> tuple[int, int]:
+        """Return column and row of the mouse in the text."""
+        origin = self._text.region
+        return int(event.screen_x) - origin.x, int(event.screen_y) - origin.y
+
+
+def _cut(strips: list[Strip], crop: Region, width: int, style: Style) -> list[Strip]:
+    first, last = crop.column_span
+    if first == 0 and last == width:
+        return [strip if strip.cell_length == width else strip.adjust_cell_length(width, style) for strip in strips]
+    return [strip.crop_extend(first, last, style) for strip in strips]
+
+
+def _spread(line: Sequence[Run]) -> list[tuple[str, Style]]:
+    return [(char, style) for text, style in line for char in text]
+
+
+def _changes(before: Sequence[Run], now: Sequence[Run]) -> list[tuple[int, int]]:
+    """Return the columns at which two lines differ, as (first, length)."""
+    old, new = _spread(before), _spread(now)
+    blank = (" ", Style.null())
+    width = max(len(old), len(new))
+    old += [blank] * (width - len(old))
+    new += [blank] * (width - len(new))
+    runs: list[tuple[int, int]] = []
+    for x in range(width):
+        if old[x] == new[x]:
+            continue
+        if runs and x - sum(runs[-1]) < _TEXT_GAP:
+            runs[-1] = (runs[-1][0], x + 1 - runs[-1][0])
+        else:
+            runs.append((x, 1))
+    return runs
+
+
+@lru_cache(maxsize=8192)
+def _segment(cell: int) -> Segment:
+    fore, back = Color.from_rgb(*_channels(cell >> 24 & 0xFFFFFF)), Color.from_rgb(*_channels(cell & 0xFFFFFF))
+    return Segment(GLYPHS[cell >> 48] if fore != back else " ", Style(color=fore, bgcolor=back))
+
+
+def _channels(rgb: int) -> tuple[int, int, int]:
+    return rgb >> 16, rgb >> 8 & 255, rgb & 255
+
+
+class LazyStrip(Strip):
+    """A row whose segments are created only on demand."""
+
+    __slots__ = ["_made"]
+
+    # The base class's caches are omitted: every method that uses one is overridden here.
+    def _begin(self, count: int) -> None:
+        self._made: list[Segment] | None = None
+        self._cell_length = self._cell_count = count
+        self._link_ids = set()
+        self._render_cache = None
+
+    @property
+    def _segments(self) -> list[Segment]:  # type: ignore[override]  # a slot of the base class
+        if self._made is None:
+            self._made = self._make()
+        return self._made
+
+    @abstractmethod
+    def _make(self) -> list[Segment]:
+        """Return its segments."""
+
+    def _plain(self) -> Strip:
+        return Strip(self._segments, self.cell_length)
+
+    def __bool__(self) -> bool:
+        return bool(self._cell_length)
+
+    def crop(self, start: int, end: int | None = None) -> Strip:
+        """Return the part from `start` up to `end`."""
+        length = self.cell_length
+        start, end = max(0, start), length if end is None else min(length, end)
+        return self if start == 0 and end == length else self._part(start, max(start, end))
+
+    @abstractmethod
+    def _part(self, start: int, end: int) -> LazyStrip:
+        """Return the part from `start` up to `end`, both inside it."""
+
+    def divide(self, cuts: Iterable[int]) -> Sequence[Strip]:
+        """Return the strips between the cuts, the first one from column 0."""
+        pieces, at = [], 0
+        for cut in cuts:
+            if cut <= self.cell_length:
+                pieces.append(self.crop(at, cut))
+                at = cut
+        return pieces
+
+    def adjust_cell_length(self, cell_length: int, style: Style | None = None) -> Strip:
+        """Return the strip cropped or padded to a length."""
+        return self if cell_length == self.cell_length else self._plain().adjust_cell_length(cell_length, style)
+
+    def crop_extend(self, start: int, end: int, style: Style | None) -> Strip:
+        """Return the strip between two columns, padded where it is too short."""
+        return self.crop(start, end) if end <= self.cell_length else self._plain().crop_extend(start, end, style)
+
+    def apply_filter(self, filter: LineFilter, background: TextualColor) -> Strip:  # noqa: A002  # the base class's name
+        """Return the strip with a filter of Textual applied."""
+        return self._plain().apply_filter(filter, background)
+
+    def apply_style(self, style: Style) -> Strip:
+        """Return the strip with a style laid over it."""
+        return self._plain().apply_style(style)
+
+    def apply_offsets(self, x: int, y: int) -> Strip:
+        """Return the strip unchanged: a picture cannot be selected as text."""
+        return self
+
+
+class JoinedStrip(LazyStrip):
+    """A row of several strips, each of which stays what it is.
+
+    Args:
+        parts: From left to right.
+    """
+
+    __slots__ = ["parts"]
+
+    def __init__(self, parts: Sequence[Strip]) -> None:
+        self.parts = [part for part in parts if part.cell_length]
+        self._begin(sum(part.cell_length for part in self.parts))
+
+    def _make(self) -> list[Segment]:
+        return [segment for part in self.parts for segment in part]
+
+    def _part(self, start: int, end: int) -> JoinedStrip:
+        return JoinedStrip(self._cut(start, end))
+
+    def _cut(self, start: int, end: int) -> list[Strip]:
+        """Return the parts between two columns."""
+        cut, at = [], 0
+        for part in self.parts:
+            cut.append(part.crop(max(start - at, 0), max(min(end - at, part.cell_length), 0)))
+            at += part.cell_length
+        return cut
+
+
+class CellStrip(LazyStrip):
+    """A row of half-block cells, see `terminal.fitted_cells.Cells`.
+
+    Args:
+        cells: One number per cell.
+    """
+
+    __slots__ = ["cells"]
+
+    def __init__(self, cells: Sequence[int]) -> None:
+        self.cells = cells
+        """One number per cell."""
+        self._begin(len(cells))
+
+    def _make(self) -> list[Segment]:
+        return [_segment(cell) for cell in self.cells]
+
+    def _part(self, start: int, end: int) -> CellStrip:
+        return CellStrip(self.cells[start:end])
+
+
+class PictureStrip(CellStrip):
+    """A row of cells that are parts of a picture.
+
+    Args:
+        parts: The parts, of one row of one picture.
+    """
+
+    __slots__ = ["parts"]
+
+    def __init__(self, parts: Sequence[PictureCell]) -> None:
+        self.parts = parts
+        self._begin(len(parts))
+
+    @property
+    def cells(self) -> Sequence[int]:  # type: ignore[override]  # a slot of the base class
+        """The cells as half blocks."""
+        if not self.parts:
+            return ()
+        first = self.parts[0]
+        return first.picture.half_blocks(first.row)[first.col : first.col + len(self.parts)]
+
+    def _part(self, start: int, end: int) -> PictureStrip:
+        return PictureStrip(self.parts[start:end])
+
+
+def _in_halves(picture: Pixels, width: int, height: int) -> Pixels:
+    """Return an image of two pixels in a cell with so many points across and down a cell."""
+    upper, lower = picture[0::2].repeat(height // 2, axis=0), picture[1::2].repeat(height - height // 2, axis=0)
+    cols = picture.shape[1]
+    halves = (upper.reshape(-1, height // 2, cols, 3), lower.reshape(-1, height - height // 2, cols, 3))
+    points: Pixels = np.concatenate(halves, axis=1).reshape(-1, cols, 3).repeat(width, axis=1)
+    return points

@@ -1,0 +1,190 @@
+"""Cells: the difference between two frames, and terminals' colours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from tuisim.terminal.fitted_cells import CellIndex, Cells, packed_rgb
+from tuisim.terminal.glyphs import GlyphSet
+
+if TYPE_CHECKING:
+    from tuisim.terminal.pixels import Pixels
+
+MERGE_GAP = 3
+"""Unchanged cells between two runs that are cheaper to send again than to jump over."""
+
+
+def changed_cells(old: Pixels, new: Pixels, glyphs: GlyphSet) -> CellIndex:
+    """Return the cells in which two pictures of the same shape differ."""
+    cols = new.shape[1] // glyphs.cols
+    row_bytes = new.shape[1] * 3
+    # Four bytes at a time; a word may belong to two cells.
+    word = np.uint32 if new.nbytes % 4 == 0 else np.uint16
+    first = np.flatnonzero(_words(new, word) != _words(old, word)) * word().itemsize
+    changed = np.zeros((len(new) // glyphs.rows, cols), bool)
+    for at in (first, first + word().itemsize - 1):
+        changed[at // (row_bytes * glyphs.rows), at % row_bytes // (3 * glyphs.cols)] = True
+    at_rows, at_cols = np.nonzero(changed)
+    return at_rows, at_cols
+
+
+def _words(picture: Pixels, word: type[np.unsignedinteger]) -> npt.NDArray[np.unsignedinteger]:
+    return np.ascontiguousarray(picture).ravel().view(word)
+
+
+def changed_runs(old: Cells, new: Cells, gap: int = MERGE_GAP) -> list[tuple[int, int, int]]:
+    """Return the runs of cells that differ between two frames of the same shape.
+
+    Args:
+        old: The frame on the screen.
+        new: The next frame.
+        gap: Runs with fewer unchanged cells than this between them are joined.
+
+    Returns:
+        (row, first column, number of cells), from the top left.
+    """
+    rows, cols = np.nonzero(old != new)
+    if not len(rows):
+        return []
+    # A run ends where the row changes or the next changed cell is too far away.
+    breaks = np.flatnonzero((np.diff(rows) != 0) | (np.diff(cols) > gap))
+    firsts = np.concatenate(([0], breaks + 1))
+    lasts = np.concatenate((breaks, [len(rows) - 1]))
+    return list(
+        zip(rows[firsts].tolist(), cols[firsts].tolist(), (cols[lasts] - cols[firsts] + 1).tolist(), strict=True)
+    )
+
+
+TRUECOLOR, PALETTE_256, PALETTE_16, PALETTE_8, MONO = 1 << 24, 256, 16, 8, 2
+"""Colour depths, as numbers of colours; the two of `MONO` are those of the terminal itself."""
+
+_CUBE = (0, 95, 135, 175, 215, 255)
+_GREYS = tuple(range(8, 248, 10))
+
+_STANDARD = np.array(
+    [
+        (0, 0, 0), (200, 0, 0), (0, 190, 0), (205, 160, 0), (0, 0, 225), (195, 0, 195), (0, 185, 195), (205, 205, 205),
+        (110, 110, 110), (255, 70, 70), (70, 255, 70), (255, 250, 70), (85, 110, 255), (255, 80, 255), (80, 255, 255),
+        (255, 255, 255),
+    ],
+    np.int32,
+)  # fmt: skip
+"""The 16 colours roughly as common terminals show them; no two agree exactly."""
+
+_BAYER = np.array([[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]])
+_DITHER = 24.0
+"""Half of the smallest step between two greys of the 16: more would put dots on pure white."""
+
+_LUMA = np.array([0.299, 0.587, 0.114], np.float32)
+
+
+@dataclass(frozen=True, slots=True)
+class ColorMode:
+    """The colours that the terminal supports."""
+
+    depth: int = TRUECOLOR
+    grey: bool = False
+    """Colours are unwanted (NO_COLOR)."""
+
+    @property
+    def dithers(self) -> bool:
+        """Whether there are so few colours that shades between them are dithered."""
+        return MONO < self.depth < PALETTE_256
+
+
+def reduce_cells(cells: Cells, mode: ColorMode) -> Cells:
+    """Return cells in colours that the terminal supports."""
+    if mode.depth == MONO or (mode.depth >= TRUECOLOR and not mode.grey):
+        return cells
+    colors = np.stack((cells >> 24, cells), axis=-1)[..., None] >> np.array([16, 8, 0]) & 255
+    flat = colors.reshape(-1, 3).astype(np.uint8)
+    reduced = packed_rgb(_nearest(_greyed(flat, mode), mode.depth).astype(np.int64).T).reshape(*cells.shape, 2)
+    return cells >> 48 << 48 | reduced[..., 0] << 24 | reduced[..., 1]
+
+
+def _greyed(pixels: Pixels, mode: ColorMode) -> Pixels:
+    if not mode.grey:
+        return pixels
+    return np.repeat(np.rint(pixels @ _LUMA).astype(np.uint8)[:, None], 3, axis=1)
+
+
+def _nearest(pixels: Pixels, depth: int) -> Pixels:
+    """Return the nearest colours of a palette."""
+    if depth >= TRUECOLOR:
+        return pixels
+    if depth >= PALETTE_256:
+        return _palette_rgb()[_nearest_256(pixels.astype(np.int32))]
+    return _STANDARD[_nearest_16(pixels.astype(np.int32), depth)].astype(np.uint8)
+
+
+def reduce_pixels(pixels: Pixels, rows: npt.NDArray[np.intp], cols: npt.NDArray[np.intp], mode: ColorMode) -> Pixels:
+    """Return pixels in colours that the terminal supports.
+
+    With 16 colours, shades between them are dithered, so that a pale band on white does not vanish.
+
+    Args:
+        pixels: Shape (n, 3).
+        rows: The picture row of each, shape (n,); the dither pattern depends on it.
+        cols: The picture column of each, shape (n,).
+        mode: The colours that the terminal supports.
+
+    Returns:
+        Shape (n, 3).
+    """
+    pixels = _greyed(pixels, mode)
+    if not mode.dithers:
+        return _nearest(pixels, mode.depth)
+    # Strong colours are close enough to one of the 16; dithering would only spoil them.
+    paleness = 1 - (pixels.max(axis=1).astype(np.float32) - pixels.min(axis=1)) / 255
+    if mode.depth == PALETTE_8:
+        return _dithered_8(pixels, (_BAYER[rows % 4, cols % 4] + 0.5) / 16, paleness)
+    offset = (_BAYER[rows % 4, cols % 4] - 7.5) / 8 * _DITHER * paleness
+    return _nearest(np.clip(pixels + offset[:, None], 0, 255).astype(np.uint8), mode.depth)
+
+
+_SHARES_8 = ((40, 128, 211, 220, 255), (0.0, 0.5, 0.75, 0.875, 1.0))
+"""The share of white in a grey among 8 colours, which have no other grey; what is nearly black, as the ground of a
+panel, gets no dots."""
+
+
+def _dithered_8(pixels: Pixels, thresholds: npt.NDArray[np.float64], paleness: npt.NDArray[np.float32]) -> Pixels:
+    """Return pale pixels as black and white, each in a share that tells it from other greys; others as the nearest."""
+    white = np.interp(pixels @ _LUMA, *_SHARES_8) > thresholds
+    dithered = np.where(white[:, None], _STANDARD[7], _STANDARD[0])
+    return np.where((paleness > 0.75)[:, None], dithered, _nearest(pixels, PALETTE_8)).astype(np.uint8)
+
+
+def sgr_index(rgb: int, depth: int) -> int:
+    """Return the palette number nearest to 0xRRGGBB: 16 to 255, or 0 to 15 for a depth of 16."""
+    color = np.array([[rgb >> 16, rgb >> 8 & 255, rgb & 255]], np.int32)
+    return int((_nearest_256(color) if depth >= PALETTE_256 else _nearest_16(color, depth))[0])
+
+
+@lru_cache(maxsize=1)
+def _palette_rgb() -> Pixels:
+    """Return the 256 colours; the first 16 are never used."""
+    cube = [(red, green, blue) for red in _CUBE for green in _CUBE for blue in _CUBE]
+    return np.array([(0, 0, 0)] * 16 + cube + [(grey,) * 3 for grey in _GREYS], np.uint8)
+
+
+def _nearest_256(pixels: npt.NDArray[np.int32]) -> npt.NDArray[np.intp]:
+    levels = np.array(_CUBE, np.int32)
+    steps = np.searchsorted((levels[1:] + levels[:-1]) / 2, pixels)
+    cube = 16 + steps @ np.array([36, 6, 1])
+    grey = np.clip(np.rint((pixels.mean(axis=1) - 8) / 10), 0, 23).astype(np.intp)
+    cube_error = ((levels[steps] - pixels) ** 2).sum(axis=1)
+    grey_error = ((8 + 10 * grey[:, None] - pixels) ** 2).sum(axis=1)
+    nearest: npt.NDArray[np.intp] = np.where(grey_error < cube_error, 232 + grey, cube)
+    return nearest
+
+
+def _nearest_16(pixels: npt.NDArray[np.int32], depth: int = PALETTE_16) -> npt.NDArray[np.intp]:
+    # Green weighs most and blue least, as in human vision.
+    errors = ((pixels[:, None, :] - _STANDARD[:depth]) ** 2) @ np.array([3, 5, 2])
+    nearest: npt.NDArray[np.intp] = errors.argmin(axis=1)
+    return nearest

@@ -1,0 +1,198 @@
+"""The terminal of an app: lent to other programs, asked what it can do, and survived if it is lost."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from encodings import utf_8
+from io import TextIOWrapper
+from pathlib import Path
+from typing import TextIO, cast
+
+from textual.app import App
+from textual.drivers import linux_driver
+from textual.drivers.linux_driver import LinuxDriver
+
+from tuisim.terminal.graphics import kitty
+from tuisim.terminal.picture_mode import picture_mode_of
+from tuisim.terminal.picture_options import Protocol
+from tuisim.terminal.probe import SILENT, take_typed
+from tuisim.terminal.queries import QUESTIONS, AnswerParser
+from tuisim.terminal.textual_internals import is_leaving
+
+_LOST = 128 + signal.SIGHUP
+"""The exit code of an app whose terminal is gone, as if the shell had told it."""
+
+
+class ResilientOutput:
+    """Terminal output that accepts writes even after the terminal is gone, for example after a lost connection.
+
+    Textual writes from a thread of its own. That thread would end at the first failed write, and the app, which has to
+    write a little more before it can shut down, would wait for it for ever.
+
+    Args:
+        file: The output.
+    """
+
+    def __init__(self, file: TextIO) -> None:
+        self._file = file
+        self.gone = False
+        """Whether a write has failed; later output is dropped."""
+
+    def write(self, text: str) -> int:
+        """Write a text, or drop it. Return its length."""
+        if not self.gone:
+            try:
+                self._file.write(text)
+            except OSError:
+                self._lose()
+        return len(text)
+
+    def flush(self) -> None:
+        """Flush the output."""
+        if not self.gone:
+            try:
+                self._file.flush()
+            except OSError:
+                self._lose()
+
+    def _lose(self) -> None:
+        # Data left in the file's buffer would fail again when Python ends, and change the exit code.
+        with suppress(OSError), Path(os.devnull).open("wb") as nothing:
+            os.dup2(nothing.fileno(), self._file.fileno())
+            self._file.flush()
+        self.gone = True
+
+    def fileno(self) -> int:
+        """Return the file descriptor."""
+        return self._file.fileno()
+
+
+class InputDecoder(utf_8.IncrementalDecoder):
+    """Decodes what the terminal sends: bytes that are no UTF-8, as from a faulty line, must not end the app."""
+
+    def __init__(self) -> None:
+        super().__init__("replace")
+
+    def decode(self, data: bytes, final: bool = False) -> str:  # type: ignore[override]
+        """Return the characters that are complete.
+
+        Raises:
+            EOFError: the terminal is gone; it would be read again and again, in vain.
+        """
+        if not data and not final and not sys.stdin.isatty():
+            raise EOFError
+        return super().decode(data, final)
+
+
+def run_in_foreground(command: Sequence[str]) -> None:
+    """Run a program in this terminal until it ends.
+
+    Raises:
+        OSError: it cannot start.
+    """
+    program = subprocess.Popen(command)
+    # What is typed to interrupt the program also reaches this process.
+    handlers = {number: signal.signal(number, signal.SIG_IGN) for number in (signal.SIGINT, signal.SIGQUIT)}
+    try:
+        program.wait()
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+
+
+class TerminalDriver(LinuxDriver):
+    """Textual's driver with an output that survives the loss of its terminal, and asks what the terminal can do."""
+
+    def __init__(
+        self, app: App[object], *, debug: bool = False, mouse: bool = True, size: tuple[int, int] | None = None
+    ) -> None:
+        super().__init__(app, debug=debug, mouse=mouse, size=size)
+        self._file = cast(TextIOWrapper, ResilientOutput(cast(TextIO, self._file)))
+        self._is_lent = False
+        """Whether the terminal belongs to the shell or another program."""
+        self._was_continued = False
+        """Whether it has been continued since."""
+
+    def run_input_thread(self) -> None:
+        """Take in what is typed; end the app when the terminal is gone."""
+        try:
+            for message in AnswerParser().feed(take_typed()):
+                self.process_message(message)
+            super().run_input_thread()
+        except (EOFError, OSError):
+            # Not every shell tells its jobs.
+            self._app.call_later(self._app.exit, return_code=_LOST)
+
+    def start_application_mode(self) -> None:
+        """Take the terminal over, and ask what it can do."""
+        super().start_application_mode()  # type: ignore[no-untyped-call]
+        if os.environ.get("TERM", "") not in SILENT:
+            self.write(QUESTIONS)
+            self.flush()
+
+    def stop_application_mode(self) -> None:
+        """Leave the terminal, and nothing in its memory."""
+        graphics = picture_mode_of(self._app).graphics
+        if graphics is not None and graphics.protocol is Protocol.KITTY:
+            self.write(kitty.through_tmux(kitty.DELETE_ALL) if graphics.in_tmux else kitty.DELETE_ALL)
+        super().stop_application_mode()
+
+    @contextmanager
+    def lent(self) -> Iterator[None]:
+        """Give the terminal back for a while: to the shell while the app is stopped, or to another program."""
+        # Were the terminal taken over again by a stop from outside that ends meanwhile, it would be taken from them.
+        self._is_lent = True
+        self.suspend_application_mode()
+        handler = signal.signal(signal.SIGTSTP, signal.SIG_DFL)
+        try:
+            yield
+        finally:
+            signal.signal(signal.SIGTSTP, handler)
+            self._is_lent = False
+            if os.isatty(self.fileno):
+                self._must_signal_resume = True
+                self.resume_application_mode()
+            else:
+                # The terminal was lost meanwhile, and nobody reads from it who would notice.
+                self._app.exit(return_code=_LOST)
+
+    def stop_as_job(self) -> bool:
+        """Restore the terminal and stop the whole process group; resume when the shell says so.
+
+        Textual stops with a signal that cannot be ignored, even without a shell that could resume the app. The signal
+        for job control is dropped in that case.
+
+        Returns:
+            Whether the app was stopped, and has resumed.
+        """
+        with self.lent():
+            self._was_continued = False
+            os.kill(0, signal.SIGTSTP)
+            return self._was_continued
+
+    def _sigcont_application(self, *_: object) -> None:
+        if self._is_lent:
+            self._was_continued = True
+        elif self._auto_restart and not self._loop.is_closed():
+            # The signal may come while the app holds the lock of its output, which is not to be taken twice.
+            self._loop.call_soon_threadsafe(self._take_terminal_again)
+
+    def _take_terminal_again(self) -> None:
+        # The signal also arrives when the terminal is lost, so that nothing can resume, and after a stop without
+        # preparation, where the former reader and writer must end before they are started again.
+        if is_leaving(self._app) or not self._auto_restart or not os.isatty(self.fileno):
+            return
+        if self._writer_thread is not None and self._writer_thread.is_alive():
+            self.suspend_application_mode()
+            self._must_signal_resume = True
+        self.resume_application_mode()
+
+
+# The driver makes its parser and its decoder itself.
+linux_driver.XTermParser = AnswerParser  # type: ignore[attr-defined]
+linux_driver.getincrementaldecoder = lambda _: InputDecoder  # type: ignore[attr-defined, assignment]

@@ -1,0 +1,140 @@
+"""Cells: a glyph in two colours fitted to the points of a picture."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from tuisim.terminal.glyphs import GlyphSet
+
+if TYPE_CHECKING:
+    from tuisim.terminal.pixels import Pixels
+
+Cells = npt.NDArray[np.int64]
+"""Shape (rows, columns): the glyph's number in `GLYPHS` in bits 48 to 62, the colour of the points that it covers in
+bits 24 to 47, that of the others in bits 0 to 23, each 0xRRGGBB."""
+
+_FLAT = 3
+"""Points whose channels differ by no more than this are one colour."""
+_KEPT_LAB = 2.0
+"""A cell keeps its glyph if that is further from its points, as the square of a colour difference, by no more than
+this for each of them."""
+_OTHER = 1e9
+"""Added to the distance of a point of the other group; more than any distance."""
+_AT_ONCE = 1024
+"""Cells that are fitted in one step, to limit memory."""
+
+
+CellIndex = tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]
+"""The rows and columns of some cells."""
+
+
+def all_cells(rows: int, cols: int) -> CellIndex:
+    """Return every cell of a picture."""
+    at_rows, at_cols = np.indices((rows, cols)).reshape(2, -1)
+    return at_rows, at_cols
+
+
+def fit_cells(picture: Pixels, glyphs: GlyphSet, at: CellIndex, before: Cells | None = None) -> Cells:
+    """Return the glyphs and colours that show some cells of a picture best.
+
+    Args:
+        picture: A whole number of cells, each with the points of the glyphs.
+        glyphs: The glyphs to choose from.
+        at: Which cells.
+        before: What they show now, shape (n,): a glyph that is as good as the best one stays.
+
+    Returns:
+        Shape (n,).
+    """
+    rows, cols = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
+    points = picture.reshape(rows, glyphs.rows, cols, glyphs.cols, 3).transpose(4, 1, 3, 0, 2)
+    cells: Cells = np.empty(len(at[0]), np.int64)
+    for first in range(0, len(cells), _AT_ONCE):
+        some = slice(first, first + _AT_ONCE)
+        chosen = points[..., at[0][some], at[1][some]].reshape(3, glyphs.rows * glyphs.cols, -1)
+        cells[some] = _fitted(chosen, glyphs, None if before is None else before[some] >> 48)
+    return cells
+
+
+def _fitted(points: npt.NDArray[np.uint8], glyphs: GlyphSet, before: npt.NDArray[np.int64] | None) -> Cells:
+    """Return the cells for points of shape (3, points of a cell, n); `before` are the numbers of their glyphs."""
+    packed = packed_rgb(points.astype(np.int64))
+    if len(packed) == 2:
+        # The two points are the two colours.
+        halves: Cells = packed[0] << 24 | packed[1]
+        return halves
+    cells: Cells = packed[0] << 24 | packed[0]
+    uneven = np.flatnonzero((points.max(axis=1) - points.min(axis=1)).max(axis=0) > _FLAT)
+    lab = _lab(points[..., uneven])
+    chosen = _best_glyphs(lab, glyphs, None if before is None else before[uneven])
+    fore, back = _typical(lab, glyphs.covered[chosen].T)
+    cells[uneven] = glyphs.numbers[chosen] << 48 | packed[fore, uneven] << 24 | packed[back, uneven]
+    return cells
+
+
+def _typical(lab: npt.NDArray[np.float32], covered: npt.NDArray[np.float32]) -> list[npt.NDArray[np.intp]]:
+    """Return the point of each cell's two groups that is nearest to the mean of its group.
+
+    It is a colour of the picture; the mean of three colours is often none, and looks blurred.
+    """
+    found: list[npt.NDArray[np.intp]] = []
+    for share in (covered, 1 - covered):
+        mean = (lab * share).sum(axis=1, keepdims=True) / share.sum(axis=0)
+        found.append((np.square(lab - mean).sum(axis=0) + _OTHER * (share < 0.5)).argmin(axis=0))
+    return found
+
+
+def _best_glyphs(
+    lab: npt.NDArray[np.float32], glyphs: GlyphSet, before: npt.NDArray[np.int64] | None
+) -> npt.NDArray[np.intp]:
+    """Return which glyph splits the points of each cell into the two most even groups.
+
+    The search is exhaustive: with the points relative to their mean, the sum of those that a glyph covers gives the
+    variance that the split explains.
+    """
+    size = lab.shape[1]
+    # One product for each channel: they are too small for the library to start threads.
+    sums = np.matmul(glyphs.covered, lab - lab.mean(axis=1, keepdims=True))
+    count = glyphs.covered.sum(axis=1)[:, None]
+    explained = np.square(sums, out=sums).sum(axis=0) * (1 / count + 1 / (size - count))
+    best: npt.NDArray[np.intp] = explained.argmax(axis=0)
+    if before is None:
+        return best
+    at = np.arange(len(best))
+    kept = np.searchsorted(glyphs.numbers, before).clip(max=len(glyphs.numbers) - 1)
+    was_here = glyphs.numbers[kept] == before
+    as_good = explained[kept, at] >= explained[best, at] - _KEPT_LAB * size
+    return np.where(was_here & as_good, kept, best)
+
+
+def packed_rgb(colors: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    """Return 0xRRGGBB of colours of shape (3, …)."""
+    packed: npt.NDArray[np.int64] = colors[0] << 16 | colors[1] << 8 | colors[2]
+    return packed
+
+
+@lru_cache(maxsize=1)
+def _linear() -> npt.NDArray[np.float32]:
+    """Return the light of each sRGB value."""
+    value = np.arange(256) / 255
+    return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4).astype(np.float32)
+
+
+_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]], np.float32) / np.array(
+    [[0.9505], [1.0], [1.089]], np.float32
+)
+"""From linear sRGB to XYZ, relative to white (D65)."""
+_FROM_ROOTS = np.array([[0, 116, 0], [500, -500, 0], [0, 200, -200]], np.float32)
+"""From the cube roots of XYZ to L*a*b*, but for the 16 that is subtracted from every L*."""
+
+
+def _lab(points: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
+    """Return colours of shape (3, …) in CIE L*a*b*, where distances are about as large as they look."""
+    xyz = _XYZ @ _linear()[points].reshape(3, -1)
+    root = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16 / 116)
+    lab: npt.NDArray[np.float32] = (_FROM_ROOTS @ root).reshape(points.shape)
+    return lab

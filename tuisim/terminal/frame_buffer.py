@@ -1,0 +1,393 @@
+"""The terminal's content cell by cell, so that only cells that differ are sent.
+
+Textual sends a widget's row from its left edge up to a changed cell, and the whole screen several times while a dialog
+opens. This module compares each update with what was sent before, and reduces it to the fewest codes: a colour only
+where it changes, a cursor jump over unchanged cells.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import lru_cache, partial
+from typing import NamedTuple
+from weakref import WeakSet, finalize
+
+from rich.cells import cell_len, split_graphemes
+from rich.color import Color, ColorSystem
+from rich.style import Style
+from textual._compositor import ChopsUpdate, CompositorUpdate, LayoutUpdate
+from textual.strip import SGR_STYLES, Strip
+
+from tuisim.terminal.cell_view import CellStrip, JoinedStrip, PictureStrip
+from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR, sgr_index
+from tuisim.terminal.glyphs import GLYPHS
+from tuisim.terminal.graphics.picture import PictureCell, TilePicture
+
+_SEEN_ON_BLANKS = frozenset({"4", "7", "9", "21", "51", "52", "53"})
+"""Attributes that are visible on a blank: underline, reverse, strike, frame, overline."""
+_UPPER_HALF = "▀"
+_REWRITTEN = 4
+"""Rewriting this many unchanged characters costs no more than a jump over them."""
+
+
+_SYSTEMS = {
+    TRUECOLOR: ColorSystem.TRUECOLOR, PALETTE_256: ColorSystem.EIGHT_BIT, PALETTE_16: ColorSystem.STANDARD,
+    PALETTE_8: ColorSystem.STANDARD,
+}  # fmt: skip
+
+
+class TextMode(NamedTuple):
+    """What a terminal supports."""
+
+    depth: int = TRUECOLOR
+    """How many colours."""
+    is_ascii: bool = False
+    """Whether it shows ASCII only."""
+    has_italics: bool = True
+    """Whether the code for italics means italics."""
+
+
+class CellLook(NamedTuple):
+    """The style of a cell, as parts of SGR codes."""
+
+    attributes: tuple[str, ...] = ()
+    foreground: str = "39"
+    """Empty where it is invisible."""
+    background: str = "49"
+    link: str = ""
+
+
+Cell = tuple[str, CellLook | PictureCell]
+"""Character and style of a cell; the right half of a wide character is empty, and so is a part of a picture."""
+
+
+class FrameBuffer:
+    """The screen as it was sent."""
+
+    def __init__(self) -> None:
+        self._rows: dict[int, list[Cell | None]] = {}
+        self._pictures: WeakSet[TilePicture] = WeakSet()
+        """Those that have been drawn, and still are in use."""
+        self._gone: list[Callable[[], str]] = []
+        """What returns the codes that delete pictures that are no longer in use."""
+
+    def forget(self) -> None:
+        """Assume nothing about the terminal's content: the next update is sent completely."""
+        self._rows.clear()
+        for picture in self._pictures:
+            picture.forget()
+
+    def codes(self, update: CompositorUpdate, mode: TextMode) -> str | None:
+        """Return the codes that update the terminal, empty if it shows the update already.
+
+        Args:
+            update: The update from Textual.
+            mode: What the terminal supports.
+
+        Returns:
+            None for an unknown kind of update; the terminal's content is unknown after it.
+        """
+        pen = _Pen()
+        if isinstance(update, LayoutUpdate):
+            pieces = _pieces_of_all(update)
+        elif isinstance(update, ChopsUpdate):
+            pieces = _pieces_of_part(update)
+        else:
+            self.forget()
+            return None
+        places: dict[TilePicture, list[tuple[int, int, PictureCell]]] = {}
+        for y, x, strip in pieces:
+            for col, cell in self._put(pen, y, x, _cells(strip, mode)):
+                places.setdefault(cell.picture, []).append((y, col, cell))
+        for picture in places:
+            if picture not in self._pictures:
+                self._pictures.add(picture)
+                finalize(picture, self._gone.append, picture.images()).atexit = False
+        drawn = "".join(picture.draw(some, partial(self._shows, picture)) for picture, some in places.items())
+        return pen.finish() + drawn + self._deleted()
+
+    def _deleted(self) -> str:
+        gone = [self._gone.pop() for _ in range(len(self._gone))]
+        return "".join(codes() for codes in gone)
+
+    def _shows(self, picture: TilePicture, y: int, x: int) -> bool:
+        """Return whether a cell of the screen is a part of a picture."""
+        row = self._rows.get(y, ())
+        cell = row[x] if x < len(row) else None
+        return cell is not None and isinstance(cell[1], PictureCell) and cell[1].picture is picture
+
+    def _put(self, pen: _Pen, y: int, first: int, cells: Sequence[Cell]) -> Iterator[tuple[int, PictureCell]]:
+        """Write cells that differ; yield the column and the cell of those that are a part of a picture."""
+        row = self._rows.setdefault(y, [])
+        if (lacking := first + len(cells) - len(row)) > 0:
+            row += [None] * lacking
+        for x, cell in enumerate(cells, first):
+            if row[x] != cell:
+                text, look = cell
+                if isinstance(look, PictureCell):
+                    yield x, look
+                else:
+                    pen.write(x, y, text, look, row)
+                row[x] = cell
+
+
+def _pieces_of_all(update: LayoutUpdate) -> Iterator[tuple[int, int, Strip]]:
+    """Yield row, column and strip of the whole screen."""
+    for y, strips in enumerate(update.strips, update.region.y):
+        x = update.region.x
+        for strip in strips:
+            yield y, x, strip
+            x += strip.cell_length
+
+
+def _pieces_of_part(update: ChopsUpdate) -> Iterator[tuple[int, int, Strip]]:
+    """Yield row, column and strip of the parts that may have changed."""
+    for y, first, last in update.spans:
+        for end, (x, strip) in zip(update.chop_ends[y], update.chops[y].items(), strict=False):
+            if strip is None or x >= last or end <= first:
+                continue
+            if isinstance(strip, CellStrip):
+                left, right = max(x, first), min(end, last)
+                yield y, left, strip.crop(left - x, right - x)
+            else:
+                # To the end of the row: a part could begin or end in the middle of a wide character.
+                yield y, x, strip.crop(0, end - x)
+
+
+def _cells(strip: Strip, mode: TextMode) -> Sequence[Cell]:
+    if isinstance(strip, JoinedStrip):
+        return [cell for part in strip.parts for cell in _cells(part, mode)]
+    if isinstance(strip, PictureStrip):
+        return [
+            ("", cell) if cell.half_block is None else _image_cell(cell.half_block, mode.depth) for cell in strip.parts
+        ]
+    if isinstance(strip, CellStrip):
+        return [_image_cell(cell, mode.depth) for cell in strip.cells]
+    return [cell for text, style, control in strip if not control for cell in _written(text, style, mode)]
+
+
+@lru_cache(maxsize=16384)
+def _image_cell(cell: int, depth: int) -> Cell:
+    if depth == MONO:
+        glyph = GLYPHS[cell >> 48]
+        return glyph, CellLook((), "" if glyph == " " else "39")
+    fore, back = _rgb_codes(cell >> 24 & 0xFFFFFF, depth)[0], _rgb_codes(cell & 0xFFFFFF, depth)[1]
+    return (" ", CellLook((), "", back)) if _is_same(fore, back) else (GLYPHS[cell >> 48], CellLook((), fore, back))
+
+
+def _is_same(fore: str, back: str) -> bool:
+    """Return whether the codes of a foreground and a background are those of one color."""
+    return fore[1:] == back[1:] if ";" in fore else fore.isdigit() and str(int(fore) + 10) == back
+
+
+@lru_cache(maxsize=8192)
+def _rgb_codes(rgb: int, depth: int) -> tuple[str, str]:
+    """Return the codes that set a colour as foreground and as background."""
+    if depth >= TRUECOLOR:
+        channels = f"{rgb >> 16};{rgb >> 8 & 255};{rgb & 255}"
+        return f"38;2;{channels}", f"48;2;{channels}"
+    number = sgr_index(rgb, depth)
+    if depth >= PALETTE_256:
+        return f"38;5;{number}", f"48;5;{number}"
+    # The bright ones are 90 to 97 and 100 to 107.
+    shade = number if number < PALETTE_8 else number + 52
+    return str(30 + shade), str(40 + shade)
+
+
+@lru_cache(maxsize=4096)
+def _written(text: str, style: Style | None, mode: TextMode) -> tuple[Cell, ...]:
+    look = _look(style, mode.depth)
+    if not mode.has_italics and _ITALIC in look.attributes:
+        look = look._replace(attributes=tuple(code for code in look.attributes if code != _ITALIC))
+    if mode.is_ascii:
+        text = as_ascii(text)
+    if text.isascii():
+        return tuple(_simplest(char, look) for char in text)
+    cells: list[Cell] = []
+    for start, end, width in split_graphemes(text)[0]:
+        if width:
+            cells += [_simplest(text[start:end], look), *[("", look)] * (width - 1)]
+    return tuple(cells)
+
+
+def _simplest(text: str, look: CellLook) -> Cell:
+    """Return the cell that looks the same with the fewest codes."""
+    if text == _UPPER_HALF and _is_same(look.foreground, look.background) and not look.attributes:
+        text = " "
+    if text == " " and _SEEN_ON_BLANKS.isdisjoint(look.attributes):
+        return text, look._replace(attributes=(), foreground="")
+    return text, look
+
+
+@lru_cache(maxsize=4096)
+def _look(style: Style | None, depth: int) -> CellLook:
+    if style is None:
+        return CellLook()
+    shown = style._attributes & style._set_attributes
+    attributes = tuple(code for bit, code in enumerate(SGR_STYLES) if shown & 1 << bit)
+    link = f"id={style._link_id};{style.link}" if style.link else ""
+    if depth == MONO:
+        return CellLook(_without_colors(attributes, style), link=link)
+    foreground, background = _color_codes(style.color, depth)[0], _color_codes(style.bgcolor, depth)[1]
+    return CellLook(attributes, foreground, background, link)
+
+
+_LIT = 50.0
+"""A background brighter than this, of 255, is a highlight, and not that of a panel or dialog."""
+_REVERSE, _ITALIC = "7", "3"
+
+
+def _without_colors(attributes: tuple[str, ...], style: Style) -> tuple[str, ...]:
+    """Return the attributes of a style, and reverse video where only its background makes it stand out."""
+    background = style.bgcolor.triplet if style.bgcolor else None
+    if background is None or _REVERSE in attributes:
+        return attributes
+    red, green, blue = background
+    return (*attributes, _REVERSE) if 0.3 * red + 0.59 * green + 0.11 * blue > _LIT else attributes
+
+
+_SEEN_ON_BLACK = 120
+"""Text and lines whose channels add up to more are not black."""
+
+
+def _color_codes(color: Color | None, depth: int) -> tuple[str, str]:
+    if color is None:
+        return "39", "49"
+    if depth == PALETTE_8 and color.triplet is not None and sum(color.triplet) > _SEEN_ON_BLACK:
+        # The nearest of so few is black too often, and black on black is nothing.
+        number = sgr_index(int.from_bytes(color.triplet, "big"), depth) or 7
+        return str(30 + number), _rgb_codes(int.from_bytes(color.triplet, "big"), depth)[1]
+    if color.triplet is not None and depth in (PALETTE_8, PALETTE_256):
+        # The same reduction as in images; otherwise an image under a dialog would be resent in nearly identical
+        # colours.
+        return _rgb_codes(int.from_bytes(color.triplet, "big"), depth)
+    least = color.downgrade(_SYSTEMS[depth])
+    return ";".join(least.get_ansi_codes()), ";".join(least.get_ansi_codes(foreground=False))
+
+
+class _Pen:
+    """Writes cells, and tracks the terminal's cursor and current style.
+
+    Begins and ends with the terminal's default style.
+    """
+
+    def __init__(self) -> None:
+        self._parts: list[str] = []
+        self._look = CellLook()
+        self._x = self._y = -1
+
+    def write(self, x: int, y: int, text: str, look: CellLook, row: Sequence[Cell | None]) -> None:
+        """Write a cell of a row whose other cells are final."""
+        if not text:
+            # The left half of the character covers it.
+            return
+        if (x, y) != (self._x, self._y):
+            self._go(x, y, row)
+        self._take(look)
+        self._parts.append(text)
+        # Terminals disagree on the width of anything but a single narrow character.
+        self._x = x + 1 if text.isascii() or (len(text) == 1 and cell_len(text) == 1) else -1
+        self._y = y
+
+    def _go(self, x: int, y: int, row: Sequence[Cell | None]) -> None:
+        if y != self._y or not 0 <= self._x < x:
+            self._parts.append(f"\x1b[{y + 1};{x + 1}H")
+            return
+        between = row[self._x : x]
+        if len(between) <= _REWRITTEN and all(self._writes(cell) for cell in between):
+            self._parts += [cell[0] for cell in between if cell]
+        else:
+            self._parts.append(f"\x1b[{x - self._x}C")
+
+    def _writes(self, cell: Cell | None) -> bool:
+        """Return whether a cell can be written without a code."""
+        if cell is None or isinstance(cell[1], PictureCell) or not cell[0]:
+            return False
+        return cell[0].isascii() and not any(self._changes(cell[1]))
+
+    def _changes(self, look: CellLook) -> Iterable[str]:
+        """Yield the codes that switch to a style."""
+        now = self._look
+        kept: tuple[str, ...] = now.attributes
+        if not look.foreground:
+            # A blank looks the same bold or not.
+            if not _SEEN_ON_BLANKS.isdisjoint(kept):
+                yield "0"
+                now, kept = CellLook(), ()
+        elif kept != look.attributes:
+            if not set(kept) <= set(look.attributes):
+                yield "0"
+                now, kept = CellLook(), ()
+            yield from (code for code in look.attributes if code not in kept)
+        if look.foreground and look.foreground != now.foreground:
+            yield look.foreground
+        if look.background != now.background:
+            yield look.background
+
+    def _take(self, look: CellLook) -> None:
+        if look.link != self._look.link:
+            self._parts.append(f"\x1b]8;{look.link or ';'}\x1b\\")
+        if changes := list(self._changes(look)):
+            self._parts.append(f"\x1b[{';'.join(changes)}m")
+        attributes, foreground = look.attributes, look.foreground
+        if not foreground:
+            begun = changes[:1] == ["0"]
+            attributes, foreground = ((), "39") if begun else (self._look.attributes, self._look.foreground)
+        self._look = CellLook(attributes, foreground, look.background, look.link)
+
+    def finish(self) -> str:
+        """Return everything that was written."""
+        if self._look.link:
+            self._parts.append("\x1b]8;;\x1b\\")
+        if self._look != CellLook():
+            self._parts.append("\x1b[0m")
+        return "".join(self._parts)
+
+
+_SIGNS = {
+    "·": ".", "•": "*", "…": "~", "×": "x", "°": " ", "±": "~", "–": "-", "—": "-", "−": "-", "⌀": "D", "Δ": "d",
+    "←": "<", "↑": "^", "→": ">", "↓": "v", "◀": "<", "▲": "^", "△": "^", "▶": ">", "▸": ">", "▼": "v", "▽": "v",
+    "●": "*", "○": "o", "◆": "*", "◇": "o", "■": "#", "□": "o", "▮": "#", "█": "#", "✓": "v", "✗": "x", "♪": "~",
+    "⏎": "E", "↵": "E", "⇧": "S", "⌫": "B", "‘": "'", "’": "'", "“": '"', "”": '"', "░": ".", "▒": ":", "▓": "%",
+    "▀": '"', "↕": "|", "‹": "<", "›": ">",
+    "▄": "_", "▌": "[", "▐": "]", "▁": "_", "▔": "~", "▏": "|", "▕": "|", "⌷": "#",
+}  # fmt: skip
+_ELLIPSIS = re.compile(r" … |…  |[A-Za-z0-9]{2}…")
+"""An ellipsis with the blanks beside it, or the end of a word that was cut, which three dots replace."""
+_BY_DOTS = " .':;+*#@"
+
+
+def as_ascii(text: str) -> str:
+    """Return a text of the same width in ASCII."""
+    return text if text.isascii() else "".join(map(_as_ascii, _ELLIPSIS.sub("...", text)))
+
+
+@lru_cache(maxsize=4096)
+def _as_ascii(char: str) -> str:
+    if char.isascii():
+        return char
+    if (sign := _SIGNS.get(char)) is not None:
+        return sign
+    code = ord(char)
+    if 0x2800 <= code < 0x2900:
+        return _BY_DOTS[(code - 0x2800).bit_count()]
+    if 0x2500 <= code < 0x2580:
+        return _line(unicodedata.name(char))
+    if 0x2580 <= code < 0x25A0:
+        return "#"
+    plain = unicodedata.normalize("NFKD", char)[0]
+    return plain if plain.isascii() and cell_len(char) == 1 else "?" * cell_len(char)
+
+
+def _line(name: str) -> str:
+    """Return the sign for a line of a frame."""
+    if "DIAGONAL" in name:
+        return "X" if "CROSS" in name else "/" if "UPPER RIGHT TO LOWER LEFT" in name else "\\"
+    across = any(word in name for word in ("HORIZONTAL", "LEFT", "RIGHT"))
+    upright = any(word in name for word in ("VERTICAL", "UP", "DOWN"))
+    if across and upright:
+        return "+"
+    heavy = "HEAVY" in name or "DOUBLE" in name
+    return ("=" if heavy else "-") if across else ("#" if heavy else "|")

@@ -1,0 +1,182 @@
+"""Block elements, box drawing and braille as shapes, so that neighbouring cells join without gaps in any font.
+
+Sources: The Unicode Standard 16.0, code charts Box Drawing (U+2500), Block Elements (U+2580) and Braille Patterns
+(U+2800). The names of box drawing characters say which arms they have and how thick these are.
+"""
+
+from __future__ import annotations
+
+import math
+import unicodedata
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TypeAlias
+
+from tuisim.terminal.glyphs import block_patterns
+
+
+@dataclass(frozen=True, slots=True)
+class Area:
+    """A rectangle, in pixels from the upper left corner of the cell."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+    opacity: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Dot:
+    """A disc."""
+
+    x: float
+    y: float
+    radius: float
+
+
+@dataclass(frozen=True, slots=True)
+class Bend:
+    """A line through points."""
+
+    points: tuple[tuple[float, float], ...]
+    width: float
+
+
+GlyphShape: TypeAlias = Area | Dot | Bend
+
+_EIGHTHS: Mapping[str, tuple[int, int, int, int]] = {
+    "▀": (0, 0, 8, 4), "▐": (4, 0, 8, 8), "▔": (0, 0, 8, 1), "▕": (7, 0, 8, 8),
+    **{chr(0x2580 + rows): (0, 8 - rows, 8, 8) for rows in range(1, 9)},
+    **{chr(0x2590 - columns): (0, 0, columns, 8) for columns in range(1, 8)},
+}  # fmt: skip
+"""Left, top, right and bottom of rectangles in eighths of the cell."""
+
+_SHADES = {"░": 0.25, "▒": 0.5, "▓": 0.75}
+
+_BOX, _BRAILLE = range(0x2500, 0x2580), range(0x2800, 0x2900)
+_BRAILLE_PLACES = ((0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (0, 3), (1, 3))
+"""Column and row of the dots 1 to 8."""
+
+_ARC_POINTS = 9
+
+
+@lru_cache(maxsize=4096)
+def shapes_of(char: str, width: int, height: int) -> tuple[GlyphShape, ...] | None:
+    """Return what a character draws in a cell of some pixels; None for characters that a font draws."""
+    if len(char) != 1:
+        return None
+    if found := _EIGHTHS.get(char):
+        left, top, right, bottom = found
+        return (_area(left / 8, top / 8, right / 8, bottom / 8, width, height),)
+    if char in _SHADES:
+        return (Area(0, 0, width, height, _SHADES[char]),)
+    if char in block_patterns():
+        rows, bits = block_patterns()[char]
+        parts = [(at % 2, at // 2) for at in range(2 * rows) if bits >> at & 1]
+        return tuple(_area(x / 2, y / rows, (x + 1) / 2, (y + 1) / rows, width, height) for x, y in parts)
+    if ord(char) in _BRAILLE:
+        dots = [place for bit, place in enumerate(_BRAILLE_PLACES) if ord(char) >> bit & 1]
+        radius = min(width / 4, height / 8) * 0.7
+        return tuple(Dot((x + 0.5) * width / 2, (y + 0.5) * height / 4, radius) for x, y in dots)
+    if ord(char) in _BOX:
+        return tuple(_box_shapes(unicodedata.name(char).removeprefix("BOX DRAWINGS ").split(), width, height))
+    return None
+
+
+def _area(left: float, top: float, right: float, bottom: float, width: int, height: int) -> Area:
+    """Return a rectangle, given in shares of the cell, on whole pixels."""
+    x = [math.floor(share * width + 0.5) for share in (left, right)]
+    y = [math.floor(share * height + 0.5) for share in (top, bottom)]
+    # An eighth of a small cell is at least a pixel.
+    if x[0] == x[1]:
+        x = [x[0], x[0] + 1] if left < 0.5 else [x[0] - 1, x[0]]
+    if y[0] == y[1]:
+        y = [y[0], y[0] + 1] if top < 0.5 else [y[0] - 1, y[0]]
+    return Area(x[0], y[0], x[1], y[1])
+
+
+_SIDES = {"UP": ("UP",), "DOWN": ("DOWN",), "LEFT": ("LEFT",), "RIGHT": ("RIGHT",),
+          "VERTICAL": ("UP", "DOWN"), "HORIZONTAL": ("LEFT", "RIGHT")}  # fmt: skip
+_LIGHT, _HEAVY, _DOUBLE = "LIGHT", "HEAVY", "DOUBLE"
+_WEIGHTS = {"LIGHT": _LIGHT, "SINGLE": _LIGHT, "HEAVY": _HEAVY, "DOUBLE": _DOUBLE}
+_DASHES = {"DOUBLE": 2, "TRIPLE": 3, "QUADRUPLE": 4}
+
+
+def _thickness(width: int) -> int:
+    return max(1, round(width / 8))
+
+
+def _box_shapes(words: list[str], width: int, height: int) -> Iterator[GlyphShape]:
+    """Yield the shapes of a box drawing character by the words of its name."""
+    thick = _thickness(width)
+    if "DIAGONAL" in words:
+        rising = ((0.0, float(height)), (float(width), 0.0))
+        falling = ((0.0, 0.0), (float(width), float(height)))
+        yield from (
+            Bend(line, thick)
+            for line, said in ((rising, ["UPPER", "RIGHT"]), (falling, ["UPPER", "LEFT"]))
+            if "CROSS" in words or words[2:4] == said
+        )
+    elif "ARC" in words:
+        yield _arc("RIGHT" in words, "DOWN" in words, width, height, thick)
+    elif "DASH" in words:
+        yield from _dashes(_DASHES[words[1]], "VERTICAL" in words, thick * (2 if words[0] == _HEAVY else 1),
+                           width, height)  # fmt: skip
+    else:
+        yield from _arms(_arms_of(words), width, height, thick)
+
+
+def _arms_of(words: list[str]) -> dict[str, str]:
+    """Return the weight of each arm."""
+    arms: dict[str, str] = {}
+    weight = ""
+    parts = " ".join(words).split(" AND ")
+    for part in parts:
+        named = part.split()
+        weight = next((_WEIGHTS[word] for word in named if word in _WEIGHTS), weight)
+        arms |= {side: weight for word in named for side in _SIDES.get(word, ())}
+    return arms
+
+
+def _arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> Iterator[Area]:
+    """Yield the arms of lines that meet in the middle of the cell."""
+    middle = {"x": (width - thick) // 2, "y": (height - thick) // 2}
+    # A double line is two light ones, the width of one apart.
+    strips = {_LIGHT: ((0, thick),), _HEAVY: ((-thick // 2, 2 * thick),), _DOUBLE: ((-thick, thick), (thick, thick))}
+
+    def edges(sides: tuple[str, str], axis: str) -> tuple[int, int]:
+        """Where the lines of two opposite arms begin and end across."""
+        found = [strip for side in sides if side in arms for strip in strips[arms[side]]] or [(0, thick)]
+        return middle[axis] + min(at for at, _ in found), middle[axis] + max(at + size for at, size in found)
+
+    columns, rows = edges(("UP", "DOWN"), "x"), edges(("LEFT", "RIGHT"), "y")
+    for side, weight in arms.items():
+        for at, size in strips[weight]:
+            if side in ("UP", "DOWN"):
+                left = middle["x"] + at
+                yield Area(left, 0 if side == "UP" else rows[0], left + size, rows[1] if side == "UP" else height)
+            else:
+                top = middle["y"] + at
+                yield Area(
+                    0 if side == "LEFT" else columns[0], top, columns[1] if side == "LEFT" else width, top + size
+                )
+
+
+def _arc(right: bool, down: bool, width: int, height: int, thick: int) -> Bend:
+    x, y = (width - thick) // 2 + thick / 2, (height - thick) // 2 + thick / 2
+    end_x, end_y = (float(width) if right else 0.0), (float(height) if down else 0.0)
+    radius = min(abs(end_x - x), abs(end_y - y))
+    across, along = math.copysign(radius, end_x - x), math.copysign(radius, end_y - y)
+    turns = [at * math.pi / 2 / (_ARC_POINTS - 1) for at in range(_ARC_POINTS)]
+    curve = [(x + across * (1 - math.cos(turn)), y + along * (1 - math.sin(turn))) for turn in turns]
+    return Bend(((x, end_y), *curve, (end_x, y)), thick)
+
+
+def _dashes(count: int, upright: bool, thick: int, width: int, height: int) -> Iterator[Area]:
+    length, across = (height, width) if upright else (width, height)
+    start = (across - thick) // 2
+    for at in range(count):
+        first, last = round(at * length / count), round((at + 0.6) * length / count)
+        yield Area(start, first, start + thick, last) if upright else Area(first, start, last, start + thick)

@@ -1,0 +1,78 @@
+"""The graphics protocol of kitty, with placeholders: images that appear wherever certain characters are.
+
+Dialogs, panels and terminal multiplexers handle such a character like any other one.
+
+Reference: https://sw.kovidgoyal.net/kitty/graphics-protocol/#unicode-placeholders
+"""
+
+from __future__ import annotations
+
+import zlib
+from base64 import b64encode
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tuisim.terminal.pixels import Pixels
+
+
+TERMINALS: Mapping[str, str] = {
+    "kitty": "https://sw.kovidgoyal.net/kitty/graphics-protocol/#unicode-placeholders (since 0.28)",
+    "ghostty": "https://ghostty.org/docs/features (kitty graphics protocol with Unicode placeholders)",
+}
+"""Terminals that have placeholders, by name, and where that is written."""
+PLACEHOLDER = "\U0010eeee"
+DIACRITICS = "\u0305\u030d\u030e\u0310\u0312\u033d\u033e\u033f"
+"""They follow a placeholder, and say which row and column of the image it shows; the first ones of the protocol."""
+MOST_CELLS = len(DIACRITICS)
+"""Most rows and columns of an image."""
+QUERY_IMAGE = 31
+QUERY = f"\x1b_Gi={QUERY_IMAGE},s=1,v=1,a=q,U=1,t=d,f=24;AAAA\x1b\\"
+"""Asks whether a terminal knows the protocol with placeholders; the answer ends in `OK` then.
+
+A terminal without placeholders ignores the whole command, as kitty 0.26 does, and gives no answer.
+"""
+_CHUNK = 4096
+"""Most characters of data in one command."""
+_COMPRESSION = 1
+
+
+def encode(picture: Pixels, image: int, cols: int, rows: int, *, answers_errors: bool = True) -> str:
+    """Return the codes that make a picture known; it is seen at its placeholders.
+
+    Args:
+        picture: Shape (height, width, 3).
+        image: Its number, from 1 to 0xFFFFFF; an image that had this number is gone.
+        cols: Number of cells across, at most `MOST_CELLS`.
+        rows: Number of cells from top to bottom, at most `MOST_CELLS`.
+        answers_errors: Whether the terminal answers if it cannot show the picture.
+    """
+    data = b64encode(zlib.compress(picture.tobytes(), _COMPRESSION)).decode()
+    chunks = [data[at : at + _CHUNK] for at in range(0, len(data), _CHUNK)]
+    quiet = 1 if answers_errors else 2
+    keys = f"a=T,U=1,q={quiet},f=24,o=z,i={image},s={picture.shape[1]},v={picture.shape[0]},c={cols},r={rows},"
+    parts = []
+    for at, chunk in enumerate(chunks, 1):
+        parts.append(f"\x1b_G{keys}m={int(at < len(chunks))};{chunk}\x1b\\")
+        keys = ""
+    return "".join(parts)
+
+
+DELETE_ALL = "\x1b_Ga=d,d=A,q=2\x1b\\" + f"\x1b_Ga=d,d=R,x=1,y={0xFFFFFF},q=2\x1b\\"
+"""Deletes all images and their data: those that were placed on the screen, and by number, since kitty 0.33, those at
+placeholders, which are not placed anywhere."""
+
+
+def delete(image: int) -> str:
+    """Return the codes that delete an image and its data."""
+    return f"\x1b_Ga=d,d=I,q=2,i={image}\x1b\\"
+
+
+def placeholder(col: int, row: int) -> str:
+    """Return the text of a cell that shows a part of an image; its foreground colour is the number of the image."""
+    return PLACEHOLDER + DIACRITICS[row] + DIACRITICS[col]
+
+
+def through_tmux(codes: str) -> str:
+    """Return codes that tmux passes on to its terminal, if it is allowed to."""
+    return "\x1bPtmux;" + codes.replace("\x1b", "\x1b\x1b") + "\x1b\\"

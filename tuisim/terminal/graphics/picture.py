@@ -1,0 +1,341 @@
+"""A picture in the cells of a terminal, of which only cells that have changed are sent."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import count, groupby
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from tuisim.terminal.graphics import iterm, kitty, sixel
+from tuisim.terminal.picture_options import Protocol
+
+if TYPE_CHECKING:
+    from tuisim.terminal.pixels import Pixels
+
+
+@dataclass(frozen=True, slots=True)
+class Graphics:
+    """How to draw pixels in this terminal."""
+
+    protocol: Protocol
+    cell_px: tuple[int, int]
+    """Width and height of a cell."""
+    in_tmux: bool = False
+    """Whether tmux has to pass codes on."""
+
+    @property
+    def scale(self) -> int:
+        """How many pixels of the terminal, across and down, are one point of a picture: more would take too long."""
+        return max(1, -(-self.cell_px[0] // MOST_POINTS))
+
+    @property
+    def cell_points(self) -> tuple[int, int]:
+        """How many points of a picture a cell has across and from top to bottom."""
+        width_px, height_px = self.cell_px
+        if self.protocol is Protocol.SIXEL and (width_px % self.scale or height_px % self.scale):
+            # It cannot be scaled by the terminal.
+            return width_px, height_px
+        return max(width_px // self.scale, 1), max(height_px // self.scale, 1)
+
+
+MOST_POINTS = 12
+"""Most points of a picture across a cell."""
+
+
+class PictureCell(NamedTuple):
+    """A part of a picture, as large as a cell. Two are equal if they look the same."""
+
+    picture: TilePicture
+    row: int
+    col: int
+    version: int
+    """Number of its last change."""
+    half_block: int | None = None
+    """What is drawn in place of its pixels, see `fitted_cells.Cells`: on a slow link it has far fewer bytes."""
+
+
+class Rectangle(NamedTuple):
+    """Some cells of a picture; `bottom` and `right` are behind the last ones."""
+
+    top: int
+    left: int
+    bottom: int
+    right: int
+
+    @property
+    def area(self) -> int:
+        """The number of cells."""
+        return (self.bottom - self.top) * (self.right - self.left)
+
+    def joined(self, other: Rectangle) -> Rectangle:
+        """Return the smallest rectangle around both."""
+        return Rectangle(
+            min(self.top, other.top), min(self.left, other.left),
+            max(self.bottom, other.bottom), max(self.right, other.right),
+        )  # fmt: skip
+
+
+class TilePicture:
+    """A picture that changes.
+
+    Args:
+        graphics: How it is drawn.
+    """
+
+    def __init__(self, graphics: Graphics) -> None:
+        self.graphics = graphics
+        self._points: Pixels = np.empty((0, 0, 3), np.uint8)
+        self._versions = np.empty((0, 0), np.int64)
+        self._coarse: Mask = np.zeros((0, 0), bool)
+        self._changes = 0
+        self._first_image = 1 + next(_COUNT) % _MOST_PICTURES * _MOST_IMAGES
+        self._tiles: dict[tuple[int, int], tuple[int, int]] = {}
+        """The version and the image of each tile that the terminal has, by row and column of its first cell."""
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Its rows and columns of cells."""
+        rows, cols = self._versions.shape
+        return rows, cols
+
+    @property
+    def is_coarse(self) -> bool:
+        """Whether cells are drawn as half blocks, to be refined."""
+        return bool(self._coarse.any())
+
+    def put(self, points: Pixels, coarse: bool = False) -> list[Run]:
+        """Show other points.
+
+        Args:
+            points: `Graphics.cell_points` for each cell.
+            coarse: Whether to draw the cells that change as half blocks.
+
+        Returns:
+            Runs of changed cells: row, first column, number of cells. All rows if the size has changed.
+        """
+        width, height = self.graphics.cell_points
+        rows, cols = len(points) // height, points.shape[1] // width
+        self._changes += 1
+        if points.shape != self._points.shape:
+            self._versions = np.full((rows, cols), self._changes)
+            self._coarse = np.full((rows, cols), coarse)
+            self._points = points
+            return [(row, 0, cols) for row in range(rows)]
+        differs = (points != self._points).reshape(rows, height, cols, width * 3).any(axis=(1, 3))
+        if self.graphics.protocol is Protocol.KITTY and differs.any():
+            differs = _whole_tiles(differs)
+        self._versions[differs] = self._changes
+        self._coarse[differs] = coarse
+        self._points = points
+        return _runs(differs)
+
+    def refine(self, cells: int) -> list[Run]:
+        """Draw the pixels of about so many of the cells that are drawn as half blocks.
+
+        Returns:
+            Runs of changed cells: row, first column, number of cells.
+        """
+        rows, cols = np.nonzero(self._coarse)
+        some: Mask = np.zeros(self._coarse.shape, bool)
+        some[rows[:cells], cols[:cells]] = True
+        if self.graphics.protocol is Protocol.KITTY:
+            some = _whole_tiles(some)
+        self._coarse[some] = False
+        return _runs(some)
+
+    def half_blocks(self, row: int) -> list[int]:
+        """Return the cells of a row as half blocks (see `terminal.fitted_cells.Cells`), for what cannot show pixels."""
+        width, height = self.graphics.cell_points
+        points = self._points[row * height : (row + 1) * height].astype(np.float32)
+        upper, lower = (half.reshape(len(half), -1, width, 3).mean(axis=(0, 2)) for half in np.array_split(points, 2))
+        packed = [np.rint(half).astype(np.int64) @ (1 << 16, 1 << 8, 1) for half in (upper, lower)]
+        cells: list[int] = (packed[0] << 24 | packed[1]).tolist()
+        return cells
+
+    def forget(self) -> None:
+        """Assume that the terminal has nothing of it, but perhaps images under the numbers of its tiles."""
+        for tile, (_, image) in self._tiles.items():
+            self._tiles[tile] = _NEVER, image
+
+    def images(self) -> Callable[[], str]:
+        """Return what returns the codes that delete everything of it that the terminal has, also after its end."""
+        return partial(_deleted, self.graphics, self._tiles)
+
+    def row(self, row: int) -> list[PictureCell]:
+        """Return the cells of a row."""
+        versions, coarse = self._versions[row].tolist(), self._coarse[row]
+        blocks = self.half_blocks(row) if coarse.any() else []
+        return [
+            PictureCell(self, row, col, version, blocks[col] if is_coarse else None)
+            for col, (version, is_coarse) in enumerate(zip(versions, coarse.tolist(), strict=True))
+        ]
+
+    def draw(self, places: Sequence[tuple[int, int, PictureCell]], is_shown: Callable[[int, int], bool]) -> str:
+        """Return the codes that draw some cells.
+
+        Args:
+            places: Row and column of the screen, and the cell.
+            is_shown: Whether a cell of the screen, by row and column, shows its part of this picture.
+        """
+        by_offset = groupby(
+            sorted(places, key=lambda at: (at[0] - at[2].row, at[1] - at[2].col)),
+            key=lambda at: (at[0] - at[2].row, at[1] - at[2].col),
+        )
+        return "".join(
+            self._draw_at(down, right, [cell for _, _, cell in some], is_shown) for (down, right), some in by_offset
+        )
+
+    def _draw_at(
+        self, down: int, right: int, cells: Sequence[PictureCell], is_shown: Callable[[int, int], bool]
+    ) -> str:
+        if self.graphics.protocol is Protocol.KITTY:
+            return self._placeholders(down, right, cells)
+        changed = np.zeros(self._versions.shape, bool)
+        for cell in cells:
+            if cell.row < len(changed) and cell.col < changed.shape[1]:
+                changed[cell.row, cell.col] = True
+
+        def may_draw(some: Rectangle) -> bool:
+            return all(
+                is_shown(row + down, col + right)
+                for row in range(some.top, some.bottom)
+                for col in range(some.left, some.right)
+            )
+
+        return "".join(
+            f"\x1b[{one.top + down + 1};{one.left + right + 1}H{self._encoded(one)}"
+            for one in rectangles(changed, may_draw)
+        )
+
+    def _part(self, some: Rectangle) -> Pixels:
+        width, height = self.graphics.cell_points
+        return self._points[some.top * height : some.bottom * height, some.left * width : some.right * width]
+
+    def _encoded(self, some: Rectangle) -> str:
+        points = self._part(some)
+        if self.graphics.protocol is Protocol.ITERM:
+            return iterm.encode(points, some.right - some.left, some.bottom - some.top)
+        scale = self.graphics.cell_px[0] // self.graphics.cell_points[0]
+        return sixel.encode(points.repeat(scale, axis=0).repeat(scale, axis=1) if scale > 1 else points)
+
+    # Kitty
+
+    def _placeholders(self, down: int, right: int, cells: Sequence[PictureCell]) -> str:
+        """Return the codes that send the tiles of some cells, and draw the placeholders of those that changed."""
+        tiles = {(cell.row // _TILE_ROWS * _TILE_ROWS, cell.col // _TILE_COLS * _TILE_COLS) for cell in cells}
+        parts, stale = [], []
+        for tile in sorted(tiles):
+            codes, old = self._send(tile)
+            parts.append(codes)
+            stale += old
+        cursor, pen = (-1, -1), 0
+        for cell in sorted(cells, key=lambda one: (one.row, one.col)):
+            top, left = cell.row // _TILE_ROWS * _TILE_ROWS, cell.col // _TILE_COLS * _TILE_COLS
+            _, image = self._tiles[top, left]
+            if (cell.row, cell.col) != cursor:
+                parts.append(f"\x1b[{cell.row + down + 1};{cell.col + right + 1}H")
+            if image != pen:
+                parts.append(f"\x1b[38;2;{image >> 16};{image >> 8 & 255};{image & 255}m")
+            parts.append(kitty.placeholder(cell.col - left, cell.row - top))
+            cursor, pen = (cell.row, cell.col + 1), image
+        parts.append("\x1b[0m")
+        parts += [self._passed_on(kitty.delete(image)) for image in stale]
+        return "".join(parts) + self._drop_tiles()
+
+    def _send(self, tile: tuple[int, int]) -> tuple[str, list[int]]:
+        """Return the codes that send a tile if the terminal does not have it, and images that are no longer needed."""
+        top, left = tile
+        some = Rectangle(top, left, min(top + _TILE_ROWS, self.size[0]), min(left + _TILE_COLS, self.size[1]))
+        version = int(self._versions[some.top : some.bottom, some.left : some.right].max())
+        had = self._tiles.get(tile)
+        if had is not None and had[0] == version:
+            return "", []
+        # Two images in turn: the old one is seen until its placeholders have been replaced.
+        number = self._first_image + 2 * (top // _TILE_ROWS * _MOST_TILES + left // _TILE_COLS)
+        image = number + 1 if had is not None and had[1] == number else number
+        self._tiles[tile] = version, image
+        cols, rows = some.right - some.left, some.bottom - some.top
+        # What comes back through tmux would be taken for keys.
+        codes = kitty.encode(self._part(some), image, cols, rows, answers_errors=not self.graphics.in_tmux)
+        return self._passed_on(codes), [had[1]] if had is not None else []
+
+    def _drop_tiles(self) -> str:
+        """Return the codes that delete the tiles beyond its size."""
+        rows, cols = self.size
+        beyond = {tile: kept for tile, kept in self._tiles.items() if tile[0] >= rows or tile[1] >= cols}
+        for tile in beyond:
+            del self._tiles[tile]
+        return _deleted(self.graphics, beyond)
+
+    def _passed_on(self, codes: str) -> str:
+        return _passed_on(self.graphics, codes)
+
+
+def _passed_on(graphics: Graphics, codes: str) -> str:
+    return kitty.through_tmux(codes) if graphics.in_tmux else codes
+
+
+def _deleted(graphics: Graphics, tiles: Mapping[tuple[int, int], tuple[int, int]]) -> str:
+    return "".join(_passed_on(graphics, kitty.delete(image)) for _, image in tiles.values())
+
+
+Run = tuple[int, int, int]
+"""Row, first column and number of some cells of a picture."""
+
+Mask = np.ndarray[tuple[int, int], np.dtype[np.bool_]]
+"""Some cells of a picture, shape (rows, columns)."""
+
+_TILE_ROWS, _TILE_COLS = 4, 8
+_NEVER = -1
+"""The version of a tile that the terminal does not have."""
+_COUNT = count()
+_MOST_PICTURES, _MOST_IMAGES = 255, 1 << 16
+"""Numbers of images have 24 bits; each picture has its own."""
+_MOST_TILES = 256
+"""Most tiles in a row."""
+_JOIN_CELLS = 6
+"""Rectangles are joined if at most this many unchanged cells come with it: each costs some codes of its own."""
+
+
+def _whole_tiles(changed: Mask) -> Mask:
+    """Return all cells of the tiles in which a cell has changed: another image has another number."""
+    rows, cols = changed.shape
+    filled = np.pad(changed, ((0, -rows % _TILE_ROWS), (0, -cols % _TILE_COLS)))
+    tiles = filled.reshape(filled.shape[0] // _TILE_ROWS, _TILE_ROWS, -1, _TILE_COLS).any(axis=(1, 3))
+    whole: Mask = tiles.repeat(_TILE_ROWS, axis=0).repeat(_TILE_COLS, axis=1)[:rows, :cols]
+    return whole
+
+
+def rectangles(changed: Mask, may_draw: Callable[[Rectangle], bool]) -> list[Rectangle]:
+    """Return rectangles that together contain all changed cells, from top to bottom.
+
+    Args:
+        changed: Shape (rows, columns).
+        may_draw: Whether all cells of a rectangle may be drawn.
+    """
+    found: list[Rectangle] = []
+    for run in _row_runs(changed):
+        for at, other in enumerate(found):
+            both = run.joined(other)
+            if other.bottom >= run.top and both.area <= run.area + other.area + _JOIN_CELLS and may_draw(both):
+                found[at] = both
+                break
+        else:
+            found.append(run)
+    return found
+
+
+def _runs(changed: Mask) -> list[Run]:
+    return [(one.top, one.left, one.right - one.left) for one in _row_runs(changed)]
+
+
+def _row_runs(changed: Mask) -> Iterator[Rectangle]:
+    """Yield the runs of changed cells in each row."""
+    edges = np.diff(np.pad(changed, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+    firsts, ends = np.nonzero(edges == 1), np.nonzero(edges == -1)
+    for row, first, end in zip(firsts[0].tolist(), firsts[1].tolist(), ends[1].tolist(), strict=True):
+        yield Rectangle(row, first, row + 1, end)

@@ -1,0 +1,87 @@
+"""Sixel: a picture as a string of characters for six pixels each.
+
+Reference: DEC, VT330/VT340 Programmer Reference Manual, volume 2 (Graphics Programming), chapter 14.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from tuisim.terminal.pixels import Pixels
+
+
+BAND_PX = 6
+"""A character stands for this many pixels, one below the other."""
+MOST_COLORS = 256
+"""Number of colours that every terminal with sixel supports."""
+PERCENT = 100
+"""Largest value of a colour channel."""
+_BEGIN, _END = "\x1bP0;1q", "\x1b\\"
+"""Pixels that are not drawn keep their colour."""
+_FIRST_CHARACTER = 63
+_SHORT_RUN = 3
+"""A run of more equal characters than this is shorter as a number."""
+
+
+def encode(picture: Pixels) -> str:
+    """Return the codes that draw a picture at the cursor. Where the cursor is after them differs among terminals.
+
+    Args:
+        picture: Shape (height, width, 3); with more than `MOST_COLORS` colours, the nearest of a palette are taken.
+    """
+    height_px, width_px = picture.shape[:2]
+    colors, numbers = _palette(picture)
+    parts = [f'{_BEGIN}"1;1;{width_px};{height_px}']
+    parts += [_definition(number, color) for number, color in enumerate(colors)]
+    parts += ["-".join(_band(numbers[top : top + BAND_PX]) for top in range(0, height_px, BAND_PX)), _END]
+    return "".join(parts)
+
+
+def _palette(picture: Pixels) -> tuple[list[tuple[int, ...]], npt.NDArray[np.intp]]:
+    """Return the colours of a picture, and which of them each pixel has, shape (height, width)."""
+    packed = picture.astype(np.int32) @ np.array([1 << 16, 1 << 8, 1], np.int32)
+    found, numbers = np.unique(packed, return_inverse=True)
+    if len(found) > MOST_COLORS:
+        return _reduced(picture)
+    return [(color >> 16, color >> 8 & 255, color & 255) for color in found.tolist()], numbers.reshape(packed.shape)
+
+
+def _reduced(picture: Pixels) -> tuple[list[tuple[int, ...]], npt.NDArray[np.intp]]:
+    # Imported on demand: most pictures have few colours.
+    from PIL import Image
+
+    image = Image.fromarray(picture).quantize(MOST_COLORS, dither=Image.Dither.NONE)
+    channels = image.getpalette() or []
+    colors = [tuple(channels[at : at + 3]) for at in range(0, len(channels), 3)]
+    return colors, np.asarray(image, np.intp)
+
+
+def _definition(number: int, color: tuple[int, ...]) -> str:
+    red, green, blue = (round(channel * PERCENT / 255) for channel in color)
+    return f"#{number};2;{red};{green};{blue}"
+
+
+def _band(numbers: npt.NDArray[np.intp]) -> str:
+    """Return up to six rows of pixels, one colour after the other."""
+    colors, places = np.unique(numbers, return_inverse=True)
+    rows, cols = numbers.shape
+    bits = np.repeat(1 << np.arange(rows), cols)
+    at = places.ravel() * cols + np.tile(np.arange(cols), rows)
+    columns = np.bincount(at, bits, len(colors) * cols).astype(np.intp).reshape(len(colors), cols)
+    # Where a run begins, and in the first column.
+    begins = np.diff(columns, axis=1, prepend=-1) != 0
+    owners, starts = np.nonzero(begins)
+    values = columns[begins]
+    lengths = np.diff(starts, append=cols)
+    last = np.flatnonzero(np.diff(owners, append=len(colors)))
+    # What draws nothing at the end of a colour is left out.
+    lengths[last] = np.where(values[last] == 0, 0, cols - starts[last])
+    lines: list[list[str]] = [[f"#{color}"] for color in colors.tolist()]
+    characters = map(chr, (values + _FIRST_CHARACTER).tolist())
+    for owner, character, length in zip(owners.tolist(), characters, lengths.tolist(), strict=True):
+        lines[owner].append(character * length if length <= _SHORT_RUN else f"!{length}{character}")
+    return "$".join(map("".join, lines))

@@ -1,0 +1,165 @@
+"""How pictures are drawn on the terminal: with which glyphs, and how fine at the moment."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from textual import constants
+from textual.app import App
+from textual.timer import Timer
+from textual.widget import Widget
+
+from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR
+from tuisim.terminal.environment import in_browser
+from tuisim.terminal.graphics.picture import Graphics
+from tuisim.terminal.picture_options import AUTO, CellSet
+from tuisim.terminal.pixels import Rgb
+from tuisim.terminal.probe import best_cells, colors_without_asking
+
+BLOCKS = frozenset({CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT})
+"""The sets whose glyphs fill their cells."""
+
+
+class Recoloring(Protocol):
+    """Colours in place of an app's own ones, as of a theme."""
+
+    def rgb(self, own: Rgb) -> Rgb:
+        """Return the colour in place of one of the app's own; any other is returned as it is."""
+
+    def text_rgb(self, own: Rgb) -> Rgb:
+        """Return the colour of text or lines in one of the app's own colours: it can be read on the background."""
+
+
+@dataclass(slots=True)
+class PictureMode:
+    """How an app draws pictures."""
+
+    cells: CellSet = CellSet.HALF
+    chosen: str = AUTO
+    """What the user has chosen: `AUTO`, or the name of a set."""
+    best: CellSet = CellSet.HALF
+    """The finest set that the terminal is known to show."""
+    graphics: Graphics | None = None
+    """How pixels are drawn; None to draw cells."""
+    most_colors: int = TRUECOLOR
+    """The user's limit."""
+    theme: Recoloring | None = None
+    """The colours in place of the app's own ones; None for those."""
+    is_slow: Callable[[], bool] = lambda: False
+    """Whether the link to the terminal is too slow for fine cells now."""
+    is_idle: Callable[[], bool] = lambda: True
+    """Whether the terminal has shown everything that was sent."""
+
+    def choose(self, chosen: str) -> None:
+        """Switch to a set, or to the best one for `AUTO`."""
+        self.chosen, self.cells = chosen, self.best if chosen == AUTO else CellSet(chosen)
+
+
+def choose_colors(colors: str) -> int:
+    """Set the colour depth of the terminal; `auto` leaves the choice to Textual. Return the most colours to use."""
+    if colors == "auto":
+        colors = colors_without_asking(os.environ)
+    system = {"truecolor": "truecolor", "256": "256", "16": "standard", "8": "standard"}.get(colors)
+    if system:
+        # Textual reads the environment when it is imported, before the settings are known.
+        constants.COLOR_SYSTEM = system  # type: ignore[misc]
+    if colors == "none":
+        os.environ["NO_COLOR"] = "1"
+    return PALETTE_8 if colors == "8" else TRUECOLOR
+
+
+def picture_mode_for(given: str | None, kept: str) -> PictureMode:
+    """Return how an app that starts draws pictures.
+
+    Args:
+        given: The set, or `AUTO`, that the user asks for now, if any.
+        kept: What the user has asked for before, perhaps on another terminal.
+    """
+    chosen = given or kept
+    # As Textual decides it.
+    has_colors = "NO_COLOR" not in os.environ
+    if in_browser():
+        best = CellSet.QUADRANT if has_colors else CellSet.BRAILLE
+    else:
+        best = best_cells(ask=chosen == AUTO, has_colors=has_colors)
+    if given is None and (best is CellSet.ASCII or (not has_colors and chosen in BLOCKS)):
+        # Chosen on another terminal.
+        chosen = AUTO
+    return PictureMode(best if chosen == AUTO else CellSet(chosen), chosen, best)
+
+
+_DEPTHS = {"standard": PALETTE_16, "windows": PALETTE_16, "256": PALETTE_256}
+"""Number of colours by the name of Rich's colour system."""
+
+
+def color_depth(app: App[Any]) -> int:
+    """Return the number of colours that an app draws with; full colour if the terminal does not say.
+
+    Blocks without colours are drawn in greys; dots and signs need none at all.
+    """
+    picture_mode = picture_mode_of(app)
+    if app.no_color and picture_mode.cells not in BLOCKS:
+        return MONO
+    return min(_DEPTHS.get(app.console.color_system or "", TRUECOLOR), picture_mode.most_colors)
+
+
+def shows_ascii(app: App[Any]) -> bool:
+    """Return whether an app draws with ASCII only."""
+    return picture_mode_of(app).cells is CellSet.ASCII
+
+
+def picture_mode_of(app: App[Any]) -> PictureMode:
+    """Return how an app draws pictures."""
+    found = getattr(app, "picture_mode", None)
+    return found if isinstance(found, PictureMode) else PictureMode()
+
+
+REFINE_S = 0.1
+"""Time between two steps in which a coarse picture becomes fine."""
+_STILL_S = 0.3
+
+
+class Sharpness:
+    """Draws the picture of a widget more finely as soon as that is possible.
+
+    Args:
+        widget: Provides the timer.
+        refine: Draws some of the picture more finely; returns whether more is to be done.
+        still_s: A picture that has not changed for this long stands still.
+    """
+
+    def __init__(self, widget: Widget, refine: Callable[[], bool], still_s: float = _STILL_S) -> None:
+        self._widget = widget
+        self._refine = refine
+        self._still_s = still_s
+        self._timer: Timer | None = None
+        self._is_coarse = False
+        self._changed_s = 0.0
+
+    @property
+    def is_still(self) -> bool:
+        """Whether the picture stands still."""
+        return time.monotonic() - self._changed_s >= self._still_s
+
+    def changed(self, *, is_coarse: bool = False) -> None:
+        """Note that the picture was drawn; `is_coarse` if it is to be drawn more finely as soon as that is possible."""
+        self._changed_s, self._is_coarse = time.monotonic(), is_coarse
+        if is_coarse and self._timer is None:
+            self._timer = self._widget.set_interval(REFINE_S, self._step)
+
+    def _step(self) -> None:
+        picture_mode = picture_mode_of(self._widget.app)
+        if not picture_mode.is_idle() or (picture_mode.is_slow() and not self.is_still):
+            return
+        if self._is_coarse:
+            self._is_coarse = False
+            has_more = self._refine()
+            # What it has drawn may be coarse again.
+            self._is_coarse = self._is_coarse or has_more
+        if not self._is_coarse and self._timer is not None:
+            self._timer.stop()
+            self._timer = None

@@ -1,0 +1,31 @@
+"""Pictures as arrays of pixels, and how many of them a character cell holds."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+Pixels: TypeAlias = npt.NDArray[np.uint8]
+"""A picture, shape (rows, columns, 3): red, green and blue."""
+Rgb: TypeAlias = tuple[int, int, int]
+"""Red, green and blue, 0 to 255."""
+
+
+class CellPoints(NamedTuple):
+    """The pixels of a picture in a character cell."""
+
+    cols: int = 1
+    rows: int = 2
+    aspect: float = 2.0
+    """Height of the cell, as a multiple of its width."""
+
+    @property
+    def tall(self) -> float:
+        """Height of a pixel, as a multiple of its width."""
+        return self.aspect * self.cols / self.rows
+
+
+SQUARE = CellPoints()
+"""Two square pixels, one above the other."""

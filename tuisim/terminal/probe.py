@@ -1,0 +1,271 @@
+"""Which glyphs the terminal shows: what its environment says, and what it answers before the app starts.
+
+No terminal tells whether its font has a glyph. One that does not know a character drops it, as tmux 3.3a does, or draws
+a box. So fine glyphs are taken only from terminals that are known to draw them themselves, without a font.
+"""
+
+from __future__ import annotations
+
+import curses
+import os
+import re
+import select
+import sys
+import termios
+import time
+import tty
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from tuisim.terminal.environment import has_all_colors, is_multiplexer
+from tuisim.terminal.picture_options import AUTO, CellSet
+from tuisim.terminal.queries import (
+    ANSWER,
+    ATTRIBUTES_QUERY,
+    KITTY_QUESTIONS,
+    NAME_QUERY,
+    QUESTIONS,
+    TerminalFacts,
+    facts_in,
+)
+
+ANSWER_S = 0.4
+"""Longest time to wait for an answer."""
+_OCTANT = "\U0001cd02"
+WIDTH_QUERY = f"\r{_OCTANT}\x1b[6n"
+"""Prints an octant at the left edge and asks for the position of the cursor."""
+_CLEAR = "\r\x1b[K"
+_POSITION = re.compile(rb"\x1b\[\d+;(\d+)R")
+_NAME_AND_VERSION = re.compile(r"([A-Za-z0-9]+)[ (/-]*v?([\d.-]*)")
+
+_PLAIN = ("", "dumb", "unknown")
+"""Kinds of terminals that nothing is known about."""
+
+Version = tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """Since which version a terminal draws glyphs itself."""
+
+    sextants: Version
+    octants: Version | None
+    source: str
+
+
+TERMINALS: Mapping[str, Drawn] = {
+    "kitty": Drawn((0, 20), (0, 40), "https://sw.kovidgoyal.net/kitty/changelog/"),
+    "foot": Drawn((1, 9), (1, 21), "https://codeberg.org/dnkl/foot/src/branch/master/CHANGELOG.md"),
+    "ghostty": Drawn((1, 0), (1, 2), "https://ghostty.org/docs/install/release-notes/1-2-0"),
+    "WezTerm": Drawn((20220319,), None, "https://wezterm.org/changelog.html"),
+    "VTE": Drawn((6600,), None, "https://gitlab.gnome.org/GNOME/vte/-/blob/master/src/minifont.cc"),
+}
+"""By the name that a terminal answers to XTVERSION. A version that is missing here gets quadrants; `--cells`, or the
+test card in the app, chooses any other set."""
+
+
+def cells_of(name: str, octant_cols: int | None) -> CellSet:
+    """Return the finest set that a terminal with UTF-8 is known to show.
+
+    Args:
+        name: What it answered to XTVERSION; empty if nothing.
+        octant_cols: By how many columns an octant moved its cursor; None if it did not answer.
+    """
+    found = _NAME_AND_VERSION.match(name)
+    known = TERMINALS.get(found[1]) if found else None
+    if found is None or known is None or octant_cols != 1:
+        return CellSet.QUADRANT
+    version = tuple(int(part) for part in re.findall(r"\d+", found[2]))
+    if known.octants is not None and version >= known.octants:
+        return CellSet.OCTANT
+    return CellSet.SEXTANT if version >= known.sextants else CellSet.QUADRANT
+
+
+def cells_without_asking(environment: Mapping[str, str], *, has_colors: bool = True) -> CellSet | None:
+    """Return the set that the environment decides; None if the terminal has to be asked.
+
+    Args:
+        environment: As it was when the process started: Python changes the locale C to UTF-8.
+        has_colors: Whether colours are used: without them only braille and signs show greys.
+    """
+    terminal = environment.get("TERM", "")
+    if terminal in _PLAIN or not _may_be_utf8(environment):
+        return CellSet.ASCII
+    if terminal == "linux":
+        # The fonts of the Linux console have the characters of code page 437, which has no braille.
+        return CellSet.HALF if has_colors else CellSet.ASCII
+    return None if has_colors else CellSet.BRAILLE
+
+
+def colors_without_asking(environment: Mapping[str, str]) -> str:
+    """Return the colours that the terminal is known to have by its environment; `auto` if Textual knows better."""
+    terminal = environment.get("TERM", "")
+    if is_multiplexer(terminal):
+        around = colors_of_kind(terminal.partition(".")[2] or terminal)
+        return around if around != AUTO else "truecolor" if has_all_colors(environment) else "256"
+    return colors_of_kind(terminal)
+
+
+def colors_of_kind(terminal: str) -> str:
+    """Return the colours that a kind of terminal, as in TERM, is known to have; `auto` if that does not tell."""
+    if terminal in _PLAIN or terminal.startswith(("vt1", "vt2", "vt3")):
+        return "none"
+    if terminal in ("linux", "ansi"):
+        # The Linux console has eight colours for backgrounds.
+        return "8"
+    return AUTO if terminfo_has_colors(terminal) else "none"
+
+
+def terminfo_has_colors(terminal: str) -> bool:
+    """Return whether terminfo gives a kind of terminal colours; True for a kind that it does not know.
+
+    curses reads one entry a process: the first kind that is asked for decides.
+    """
+    try:
+        curses.setupterm(terminal, sys.__stdout__.fileno() if sys.__stdout__ else -1)
+        return curses.tigetnum("colors") > 0
+    except (OSError, ValueError, curses.error):
+        return True
+
+
+def _may_be_utf8(environment: Mapping[str, str]) -> bool:
+    """Return whether the locale is UTF-8, or not set at all, as in many containers."""
+    locale = next((value for name in ("LC_ALL", "LC_CTYPE", "LANG") if (value := environment.get(name))), "")
+    return not locale or "utf-8" in locale.lower() or "utf8" in locale.lower()
+
+
+def first_environment() -> Mapping[str, str]:
+    """Return the environment that this process was started with, where the system tells."""
+    try:
+        entries = Path("/proc/self/environ").read_bytes().split(b"\0")
+    except OSError:
+        return os.environ
+    pairs = (os.fsdecode(entry).partition("=") for entry in entries if b"=" in entry)
+    return {name: value for name, _, value in pairs}
+
+
+def best_cells(*, ask: bool = True, has_colors: bool = True) -> CellSet:
+    """Return the finest set that this terminal is known to show; `ask` it if the environment does not decide."""
+    environment = {**first_environment(), "TERM": os.environ.get("TERM", "")}
+    decided = cells_without_asking(environment, has_colors=has_colors)
+    if decided is not None or not ask:
+        return decided or CellSet.QUADRANT
+    try:
+        return _asked()
+    except (OSError, termios.error, ValueError):
+        return CellSet.QUADRANT
+
+
+SILENT = ("", "dumb", "unknown", "linux")
+"""Kinds of terminals that are not asked: they may show the questions as text."""
+_ROUND_TRIPS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Answers:
+    """What a terminal has answered to every question."""
+
+    facts: TerminalFacts
+    octant_cols: int | None
+    """By how many columns an octant moved the cursor; None if it did not answer."""
+    latency_s: float | None
+    """The shortest time that an answer took; None if there was none."""
+
+
+def ask_everything(fd: int) -> Answers:
+    """Ask a terminal everything that the app asks, and measure how long it takes to answer.
+
+    Args:
+        fd: The terminal, open for reading and writing.
+
+    Raises:
+        OSError, termios.error: it is no terminal, or gone.
+    """
+    before = termios.tcgetattr(fd)
+    try:
+        tty.setcbreak(fd, termios.TCSANOW)
+        position = _POSITION.search(_ask(fd, WIDTH_QUERY, _POSITION.search, fd))
+        _write(_CLEAR, fd)
+        latency_s = _latency_s(fd)
+        if latency_s is None:
+            return Answers(TerminalFacts(), int(position[1]) - 1 if position else None, None)
+        text = _ask(fd, QUESTIONS, _has_attributes, fd)
+        facts = facts_in(text.decode("latin-1"))
+        if facts.asks_for_kitty:
+            text += _ask(fd, KITTY_QUESTIONS, _has_attributes, fd)
+        return Answers(facts_in(text.decode("latin-1")), int(position[1]) - 1 if position else None, latency_s)
+    finally:
+        # Answers that come late are not typed into the shell.
+        termios.tcsetattr(fd, termios.TCSAFLUSH, before)
+
+
+def _latency_s(fd: int) -> float | None:
+    found = []
+    for _ in range(_ROUND_TRIPS):
+        begun = time.monotonic()
+        if not facts_in(_ask(fd, ATTRIBUTES_QUERY, _has_attributes, fd).decode("latin-1")).attributes:
+            break
+        found.append(time.monotonic() - begun)
+    return min(found, default=None)
+
+
+def _has_attributes(answer: bytes) -> bool:
+    return bool(facts_in(answer.decode("latin-1")).attributes)
+
+
+def _asked() -> CellSet:
+    """Ask the terminal of the standard input and output.
+
+    The name is asked for only once an octant has moved the cursor: an answer that comes too late would be taken for
+    keys, so a terminal that answers nothing is asked for as little as possible.
+    """
+    fd = sys.stdin.fileno()
+    before, position = termios.tcgetattr(fd), b""
+    try:
+        tty.setcbreak(fd, termios.TCSANOW)
+        position = _ask(fd, WIDTH_QUERY, _POSITION.search)
+        _write(_CLEAR)
+        cols = int(found[1]) - 1 if (found := _POSITION.search(position)) else None
+        if cols != 1:
+            return cells_of("", cols)
+        answers = _ask(fd, NAME_QUERY + ATTRIBUTES_QUERY, _has_attributes)
+        position += answers
+        return cells_of(facts_in(answers.decode("latin-1")).name, cols)
+    finally:
+        _typed.append(_without_answers(position))
+        termios.tcsetattr(fd, termios.TCSANOW, before)
+
+
+_typed: list[bytes] = []
+"""What was read with the answers, and is none."""
+
+
+def take_typed() -> str:
+    """Return what the user has typed while the terminal was asked, once."""
+    typed = b"".join(_typed).decode(errors="replace")
+    _typed.clear()
+    return typed
+
+
+def _without_answers(data: bytes) -> bytes:
+    text = _POSITION.sub(b"", data).decode("latin-1")
+    return ANSWER.sub("", text).encode("latin-1")
+
+
+def _ask(fd: int, query: str, is_answered: Callable[[bytes], object], output: int | None = None) -> bytes:
+    _write(query, output)
+    answer, give_up = b"", time.monotonic() + ANSWER_S
+    while not is_answered(answer) and (left := give_up - time.monotonic()) > 0:
+        if select.select([fd], [], [], left)[0]:
+            data = os.read(fd, 1024)
+            if not data:
+                break
+            answer += data
+    return answer
+
+
+def _write(text: str, output: int | None = None) -> None:
+    with suppress(OSError):
+        os.write(sys.stdout.fileno() if output is None else output, text.encode())

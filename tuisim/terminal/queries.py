@@ -1,0 +1,182 @@
+"""What an app asks the terminal, and its answers among the keys: taken out, and told to the app.
+
+Reference: https://invisible-island.net/xterm/ctlseqs/ctlseqs.html (XTVERSION, primary device attributes, window
+operations); for the query of kitty see `graphics.kitty`.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import re
+import struct
+import termios
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from time import monotonic
+from typing import ClassVar
+
+from textual._xterm_parser import XTermParser
+from textual.message import Message
+
+from tuisim.terminal.graphics import kitty
+
+NAME_QUERY = "\x1b[>0q"
+CELL_SIZE_QUERY = "\x1b[16t"
+ATTRIBUTES_QUERY = "\x1b[c"
+"""Every terminal answers it, so it comes last: what has not been answered by then will not be."""
+QUESTIONS = f"{NAME_QUERY}{CELL_SIZE_QUERY}{ATTRIBUTES_QUERY}"
+KITTY_QUESTIONS = f"{kitty.QUERY}{ATTRIBUTES_QUERY}"
+"""For a terminal that has answered the others, and `asks_for_kitty`."""
+
+ANSWER = re.compile(
+    r"\x1bP>\|(?P<name>[^\x1b\x07]*)(?:\x1b\\|\x07)"
+    r"|\x1b_G[^;\x1b]*;(?P<kitty>[^\x1b]*)\x1b\\"
+    r"|\x1b\[6;(?P<height>\d+);(?P<width>\d+)t"
+    r"|\x1b\[\?(?P<attributes>[\d;]*)c"
+)
+_SIXEL = "4"
+"""Number of sixel graphics among the attributes of a terminal."""
+_PROGRAM = re.compile(r"[A-Za-z0-9]+")
+_LEAST_CELL_PX, _MOST_CELL_PX = (2, 4), (300, 300)
+"""Width and height; terminals have told sizes of 1 pixel, and none at all."""
+
+
+@dataclass(frozen=True, slots=True)
+class TerminalFacts:
+    """What a terminal has answered so far."""
+
+    name: str = ""
+    """Its name and version, such as `kitty(0.36.4)`; empty if it does not tell."""
+    attributes: frozenset[str] = frozenset()
+    """The numbers of its features; empty if it has not answered at all."""
+    has_kitty_graphics: bool | None = None
+    """Whether it draws pictures at placeholders; None if it has not been asked, False once it has reported an error."""
+    kitty_error: str = ""
+    """What it has last reported, such as `ENOSPC:No space left`."""
+    cell_px: tuple[int, int] | None = None
+    """Width and height of a cell in pixels."""
+
+    @property
+    def program(self) -> str:
+        """Its name without its version; empty if it does not tell."""
+        found = _PROGRAM.match(self.name)
+        return found[0] if found else ""
+
+    @property
+    def asks_for_kitty(self) -> bool:
+        """Whether it may draw kitty's graphics, and has not answered yet."""
+        return self.has_kitty_graphics is None and self.program in kitty.TERMINALS
+
+    @property
+    def has_sixel(self) -> bool:
+        """Whether it draws sixel graphics."""
+        return _SIXEL in self.attributes
+
+    def with_answer(self, match: re.Match[str]) -> TerminalFacts:
+        """Return the facts with an answer of the terminal."""
+        found = match.groupdict()
+        if found["name"] is not None:
+            return replace(self, name=found["name"])
+        if found["kitty"] is not None:
+            error = "" if found["kitty"] == "OK" else found["kitty"]
+            has_it = not error and self.has_kitty_graphics is not False
+            return replace(self, has_kitty_graphics=has_it, kitty_error=error or self.kitty_error)
+        if found["attributes"] is not None:
+            # The second time they come after the question for kitty's protocol.
+            answered = False if self.attributes and self.asks_for_kitty else self.has_kitty_graphics
+            attributes = frozenset(found["attributes"].split(";"))
+            return replace(self, attributes=attributes, has_kitty_graphics=answered)
+        width, height = int(found["width"]), int(found["height"])
+        return replace(self, cell_px=(width, height)) if _is_possible((width, height)) else self
+
+
+def _is_possible(cell_px: tuple[int, int]) -> bool:
+    return all(least <= px <= most for least, px, most in zip(_LEAST_CELL_PX, cell_px, _MOST_CELL_PX, strict=True))
+
+
+def facts_in(text: str) -> TerminalFacts:
+    """Return what the answers in a text tell; anything else in it is ignored."""
+    facts = TerminalFacts()
+    for match in ANSWER.finditer(text):
+        facts = facts.with_answer(match)
+    return facts
+
+
+def cell_size_px(fd: int) -> tuple[int, int] | None:
+    """Return width and height of a cell as the kernel knows them, also over SSH; None if it does not."""
+    try:
+        rows, cols, width, height = struct.unpack("HHHH", fcntl.ioctl(fd, termios.TIOCGWINSZ, bytes(8)))
+    except OSError:
+        return None
+    cell_px = (width // cols, height // rows) if rows and cols else (0, 0)
+    return cell_px if _is_possible(cell_px) else None
+
+
+_BEGUN = re.compile(r"\x1b(?:P>[^\x1b]*|_G[^\x1b]*|\[6;[\d;]*|\[\?[\d;]*)\x1b?\Z")
+"""The beginning of an answer whose rest has not arrived."""
+_MAYBE_BEGUN = re.compile(r"\x1b(?:[P_\[]|\[6)?\Z")
+"""What may be one, but also a key."""
+_KEY_S = 0.1
+"""What may be a key waits this long for the rest of an answer."""
+_REST_S = 3.0
+"""The beginning of an answer waits this long for its rest; after that it is dropped."""
+_LONGEST = 500
+"""An answer is at most this long; the beginning of a longer one is dropped."""
+
+
+class TerminalAnswered(Message):
+    """Posted to the app when the terminal has answered the last query."""
+
+    def __init__(self, facts: TerminalFacts) -> None:
+        super().__init__()
+        self.facts = facts
+
+
+class AnswerParser(XTermParser):
+    """Textual's parser of what the terminal sends, which takes answers that it does not know for key presses."""
+
+    is_asked: ClassVar[bool] = False
+    """Whether a terminal that has answered before was asked again."""
+
+    def __init__(self, debug: bool = False) -> None:
+        super().__init__(debug)
+        self._begun = ""
+        self._begun_s = 0.0
+        self._facts = TerminalFacts()
+
+    def feed(self, data: str) -> Iterable[Message]:
+        """Yield a message for each answer, and then those for the rest of the data."""
+        was, self._begun = self._begun, ""
+        text, is_end = was + data, not data
+        if "\x1b" in text:
+            for match in ANSWER.finditer(text):
+                was = ""
+                self._facts = self._facts.with_answer(match)
+                if match["attributes"] is not None:
+                    AnswerParser.is_asked = False
+                if match["attributes"] is not None or match["kitty"] is not None:
+                    yield TerminalAnswered(self._facts)
+            text = ANSWER.sub("", text)
+            if not is_end and (begun := self._begun_at_end(text)):
+                self._begun = begun if len(begun) <= _LONGEST else ""
+                self._begun_s = self._begun_s if was else monotonic()
+                text = text[: -len(begun)]
+        if text:
+            yield from super().feed(text)
+        if is_end:
+            yield from super().feed("")
+
+    def _begun_at_end(self, text: str) -> str:
+        found = _BEGUN.search(text)
+        if found is None and (self.is_asked or not self._facts.attributes or self._facts.asks_for_kitty):
+            found = _MAYBE_BEGUN.search(text)
+        return found[0] if found else ""
+
+    def tick(self) -> Iterable[Message]:
+        """Yield what has been held back for long enough; drop an answer whose rest does not come."""
+        is_answer = _BEGUN.match(self._begun)
+        if self._begun and monotonic() - self._begun_s >= (_REST_S if is_answer else _KEY_S):
+            text, self._begun = "" if is_answer else self._begun, ""
+            if text:
+                yield from super().feed(text)
+        yield from super().tick()
