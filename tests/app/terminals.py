@@ -12,7 +12,7 @@ from pathlib import Path
 
 from tests.running import PATIENCE_S
 
-_SLOWLY = """
+SLOWLY = """
 import runpy, time
 from asyncio.base_events import BaseEventLoop as Loop
 turn = Loop._run_once
@@ -29,8 +29,9 @@ class Terminal:
         self._tmux = ["tmux", "-L", name, "-f", "/dev/null"]
         self._folder = folder
 
-    def start(self, arguments: list[str], columns: int, rows: int, *, slowly: bool = False) -> None:
-        program = ["-c", _SLOWLY] if slowly else ["-m", "tuisim"]
+    def start(self, arguments: list[str], columns: int, rows: int, *, code: str = "") -> None:
+        """Start the app, or `code` in its place."""
+        program = ["-c", code] if code else ["-m", "tuisim"]
         command = shlex.join([sys.executable, *program, *arguments])
         size = ["-x", str(columns), "-y", str(rows)]
         shell = f"{command}; echo EXIT $?; exec cat"

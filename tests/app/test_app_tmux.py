@@ -77,3 +77,26 @@ def test_a_key_draws_what_something_else_has_written_over(
     terminal.until(is_written_over)
     terminal.keys("C-l")
     terminal.until(lambda text: "Broken pipe" not in text and "╭" in text)
+
+
+UNTRIED = """
+import runpy, sys, textual
+textual.__file__ = sys.argv[1] + "/textual/__init__.py"
+del sys.argv[1]
+runpy.run_module("tuisim", run_name="__main__", alter_sys=True)
+"""
+"""The app with a Textual whose version cannot be told."""
+
+
+def test_with_an_untried_textual_it_runs_without_private_names(terminal: Terminal, tmp_path: Path) -> None:
+    terminal.start([str(tmp_path), "log_greys"], 120, 40, code=UNTRIED)
+    terminal.until(lambda text: "R run" in text.splitlines()[-1])
+    terminal.keys("R")
+    text = terminal.until(lambda text: "finished" in text.splitlines()[-1] and "Colour: 0.0" in text)
+    assert "▀" in text
+    terminal.keys("?")
+    terminal.until(lambda text: "Guide" in text)
+    terminal.keys("Escape")
+    terminal.until(lambda text: "R run" in text.splitlines()[-1])
+    terminal.keys("q")
+    terminal.until(lambda text: "EXIT 0" in text)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.app.terminals import Terminal
+from tests.app.terminals import SLOWLY, Terminal
 from tests.conftest import ROOT
 
 pytestmark = [pytest.mark.tmux, pytest.mark.slow, pytest.mark.usefixtures("home")]
@@ -66,7 +66,7 @@ def test_the_tour_can_be_typed(terminal: Terminal, tmp_path: Path) -> None:
     assert program
     assert [row[0] for row in ROWS][-2:] == ["`d`", "arrows"]
     (tmp_path / "my_program.py").write_text(program[1])
-    terminal.start(["my_program.py"], 80, 24, slowly=True)
+    terminal.start(["my_program.py"], 80, 24, code=SLOWLY)
     terminal.until(shows("─ World", "R run"))
     for row in ROWS:
         before = terminal.screen()

@@ -20,7 +20,7 @@ from textual.message import Message
 from textual.widget import Widget
 
 from tuisim.errors import TuisimError
-from tuisim.terminal.textual_internals import is_leaving
+from tuisim.terminal.textual_internals import bindings_of, is_leaving
 
 ACT = "act"
 """Key of the style metadata that names the action of a clickable word."""
@@ -140,7 +140,7 @@ class ActionHost(DOMNode):
         """Use a table with other keys of the same actions."""
         changed = [action for name, action in actions.items() if action.key != self.ACTIONS[name].key]
         calls = {_call(action) for action in changed}
-        bindings = self._bindings.key_to_bindings
+        bindings = bindings_of(self).key_to_bindings
         for key, bound in [*bindings.items()]:
             if kept := [one for one in bound if one.action not in calls]:
                 bindings[key] = kept
@@ -148,7 +148,7 @@ class ActionHost(DOMNode):
                 del bindings[key]
         for action in changed:
             for key in action.key.split(","):
-                self._bindings.bind(key, _call(action), action.title, show=False, priority=action.comes_first)
+                bindings_of(self).bind(key, _call(action), action.title, show=False, priority=action.comes_first)
         self.ACTIONS = actions
 
     def situation(self) -> Any:

@@ -434,8 +434,8 @@ class LabApp(PanelMessages):
 
     def painted(self, size: int) -> None:
         """Ask the terminal to report when it has shown what it was sent; the answer is a `CursorPosition` event."""
-        if self.pacer.painted(size) and self._driver is not None:
-            self._driver.write(_CURSOR_QUERY)
+        if self.pacer.painted(size) and self.own_driver is not None:
+            self.own_driver.write(_CURSOR_QUERY)
 
     def on_cursor_position(self, event: events.CursorPosition) -> None:
         self.pacer.answered()

@@ -18,6 +18,7 @@ from textual.widgets import Input, Label, Static
 
 from tuisim.app.action import ActionHost
 from tuisim.errors import ConfigError, TuisimError
+from tuisim.terminal.textual_internals import bindings_of
 
 
 def reason(error: TuisimError) -> str:
@@ -206,7 +207,7 @@ class NumberInput(Input):
         for action in self.app.ACTIONS.values() if isinstance(self.app, ActionHost) else ():
             for key in action.key.split(","):
                 if self.leaves(key):
-                    self._bindings.bind(key, f"app.act('{action.id}')", action.title, show=False, priority=True)
+                    bindings_of(self).bind(key, f"app.act('{action.id}')", action.title, show=False, priority=True)
 
     @staticmethod
     def leaves(key: str) -> bool:

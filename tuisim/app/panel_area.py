@@ -10,7 +10,6 @@ from textual import events
 from textual.containers import Container
 from textual.message import Message
 from textual.widget import Widget
-from textual.widgets._toast import ToastRack
 
 from tuisim.app.layout.arrangement import (
     KeptLayout,
@@ -290,7 +289,7 @@ class PanelArea(Container):
                 left = box.width
             else:
                 below += _AXIS_ROWS
-        for rack in self.screen.query(ToastRack):
+        for rack in self.screen.query("ToastRack"):
             rack.styles.margin = (0, 0, below, left)
             rack.styles.width = self.size.width - left
 

@@ -7,21 +7,18 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from textual._context import visible_screen_stack
 from textual.app import App
 
 from tuisim.charts.files import write_whole
 from tuisim.logs.export import check_place
 from tuisim.terminal.cell_image import CellGrid, image_of_cells, row_of_cells, svg_of_cells
+from tuisim.terminal.textual_internals import screen_strips
 
 
 def screen_cells(app: App[Any]) -> CellGrid:
     """Return the cells of an app's screen, with its dialogs and notices."""
-    # As Textual's own `export_screenshot` does.
-    visible_screen_stack.set(app._background_screens)
-    strips = app.screen._compositor.render_strips()
     width = app.screen.size.width
-    runs = ([(text, style) for text, style, control in strip if not control] for strip in strips)
+    runs = ([(text, style) for text, style, control in strip if not control] for strip in screen_strips(app))
     return [row_of_cells(row, width) for row in runs]
 
 

@@ -11,17 +11,13 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from textwrap import wrap
-from typing import Any, ClassVar, cast
+from typing import Any, ClassVar
 
 from rich.cells import cell_len
-from rich.console import Console, ConsoleRenderable, RichCast
 from rich.control import Control
 from rich.segment import Segment
 from textual import events, on
-from textual import screen as textual_screen
-from textual._compositor import CompositorUpdate
-from textual._styles_cache import StylesCache
-from textual.app import App, ScreenStackError
+from textual.app import ScreenStackError
 from textual.color import Color
 from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
 from textual.css.query import NoMatches
@@ -29,10 +25,8 @@ from textual.driver import Driver
 from textual.filter import LineFilter
 from textual.geometry import Size
 from textual.screen import Screen
-from textual.selection import Selection
 from textual.theme import Theme, ThemeProvider
-from textual.widget import Widget, WidgetError
-from textual.widgets import OptionList
+from textual.widget import WidgetError
 from textual.worker import Worker, WorkerFailed
 
 from tuisim.app import background
@@ -44,7 +38,7 @@ from tuisim.charts.traces import TRACE_COLORS
 from tuisim.config.files import Scalar
 from tuisim.config.user_config import CELL_SET, SETTINGS, THEME, load_config
 from tuisim.errors import SIGNALLED, ConfigError, TuisimError
-from tuisim.terminal import input_order, textual_mends
+from tuisim.terminal import input_order
 from tuisim.terminal.cell_view import RowsView
 from tuisim.terminal.cells import PALETTE_256
 from tuisim.terminal.driver import TerminalDriver, run_in_foreground
@@ -62,8 +56,7 @@ from tuisim.terminal.queries import (
     TerminalFacts,
     cell_size_px,
 )
-from tuisim.terminal.textual_internals import is_leaving
-from tuisim.terminal.textual_mends import ThoroughCompositor
+from tuisim.terminal.textual_internals import SUPPORTED, Codes, CompositorUpdate, HookedApp, is_leaving, is_search, mend
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
 
@@ -131,17 +124,19 @@ class Palette(CommandPalette, ClosesOnce[None]):
     def is_ready_for(self, event: events.Event) -> bool:
         """Return whether what a key is meant for is there: the commands that were found, unless it is typed."""
         types = isinstance(event, events.Key) and (event.is_printable or event.key in ("escape", "backspace"))
-        return super().is_ready_for(event) and (types or not any(map(self._is_search, self.workers)))
+        return super().is_ready_for(event) and (types or not self._searches)
 
-    def _is_search(self, worker: Worker[Any]) -> bool:
-        return worker.node is self and worker.group == self._GATHER_COMMANDS_GROUP and not worker.is_finished
+    @property
+    def _searches(self) -> bool:
+        return any(is_search(worker, self) and not worker.is_finished for worker in self.workers)
 
     def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
         """Let waiting keys go on once the commands are found."""
         if event.worker.is_finished:
             self.app.post_message(self.Changed())
 
-    def _on_click(self, event: events.Click) -> None:  # type: ignore[override]
+    def on_click(self, event: events.Click) -> None:
+        """Ignore a click outside of the palette."""
         # Where the terminal was until it became smaller there is nothing any more to be found.
         if not self.region.contains(event.screen_x, event.screen_y):
             event.prevent_default()
@@ -175,7 +170,7 @@ class ActionProvider(Provider):
                 yield Hit(score, matcher.highlight(title), do, help=text)
 
 
-class TerminalApp(App[None]):
+class TerminalApp(HookedApp):
     """An app that restores the terminal, even when it is stopped or terminated from outside."""
 
     TITLE = "tuisim"
@@ -185,7 +180,7 @@ class TerminalApp(App[None]):
 
     def __init__(self, picture_mode: PictureMode | None = None) -> None:
         super().__init__(driver_class=_driver_class())
-        self._filters.append(Sanitize())
+        self.line_filters = [*self.line_filters, Sanitize()]
         # They take the code for italics for that of reverse video.
         self._has_italics = not is_multiplexer(os.environ.get("TERM", ""))
         self.frame_buffer = FrameBuffer()
@@ -214,9 +209,9 @@ class TerminalApp(App[None]):
     def _take_theme(self) -> None:
         is_own = self.theme == OWN_THEME
         self.picture_mode.theme = theme = None if is_own else ThemeColors(self.current_theme, TRACE_COLORS)
-        filters = [one for one in self._filters if not isinstance(one, ThemeColors)]
+        filters = [one for one in self.line_filters if not isinstance(one, ThemeColors)]
         # Before the filter for terminals without colours, which leaves no colour to be replaced.
-        self._filters = [theme, *filters] if theme else filters
+        self.line_filters = [theme, *filters] if theme else filters
 
     def _theme_changed(self, theme: Theme) -> None:
         """Draw everything in the colours of another theme, and keep the choice."""
@@ -239,7 +234,7 @@ class TerminalApp(App[None]):
                 self.call_later(self.action_redraw)
         elif isinstance(event, (events.InputEvent, events.Paste)):
             if not self._ignores(event):
-                await (self._give if event.is_forwarded else self._input.take)(event)
+                await (self._input.take if SUPPORTED and not event.is_forwarded else self._give)(event)
             return
         await super().on_event(event)
 
@@ -279,21 +274,20 @@ class TerminalApp(App[None]):
         top = self.screen_stack[-1] if self.screen_stack else None
         return isinstance(top, ClosesOnce) and not top.is_ready
 
-    def _display(self, screen: Screen[Any], renderable: ConsoleRenderable | RichCast | str | None) -> None:
-        # Textual writes what this returns; if it would write nothing, nothing is displayed either.
-        update: object = renderable
+    def show_update(self, screen: Screen[Any], update: object) -> None:
+        """Send what has changed; nothing is displayed where nothing has."""
         codes: str | None = None
         if isinstance(screen, ClosesOnce) and screen.is_closed:
             # A screen that was closed while being mounted still tries to draw itself.
-            renderable = None
-        elif self.too_small and renderable is not None:
-            renderable = cast(ConsoleRenderable, _Codes(_message_codes(self.too_small)))
+            update = None
+        elif self.too_small and update is not None and SUPPORTED:
+            update = Codes(_message_codes(self.too_small))
             self.frame_buffer.forget()
-        elif isinstance(update, CompositorUpdate) and self._writes:
+        elif isinstance(update, CompositorUpdate) and self.is_writing:
             codes = self.frame_buffer.codes(update, self.text_mode)
             if codes is not None:
-                renderable = cast(ConsoleRenderable, _Codes(codes)) if codes else None
-        super()._display(screen, renderable)
+                update = Codes(codes) if codes else None
+        super().show_update(screen, update)
         if codes:
             self.painted(len(codes))
 
@@ -344,10 +338,6 @@ class TerminalApp(App[None]):
         is_ascii = self.picture_mode.cells is CellSet.ASCII
         return TextMode(color_depth(self), is_ascii, has_italics=self._has_italics)
 
-    @property
-    def _writes(self) -> bool:
-        return self._running and not (self._closed or self._batch_count or self.is_headless or self._driver is None)
-
     @on(events.DescendantFocus)
     def still_cursor(self, event: events.DescendantFocus) -> None:
         """Stop the cursor from blinking: an idle app sends nothing."""
@@ -358,10 +348,10 @@ class TerminalApp(App[None]):
         """Send everything again: a resized terminal has cut or moved its content."""
         self.frame_buffer.forget()
         self._choose_graphics()
-        if self.terminal_facts.attributes and self._driver is not None:
+        if self.terminal_facts.attributes and self.own_driver is not None:
             # Zoom changes the size of the terminal and of its cells.
             AnswerParser.is_asked = True
-            self._driver.write(CELL_SIZE_QUERY + ATTRIBUTES_QUERY)
+            self.own_driver.write(CELL_SIZE_QUERY + ATTRIBUTES_QUERY)
 
     def on_ready(self) -> None:
         if self.is_headless:
@@ -370,14 +360,14 @@ class TerminalApp(App[None]):
         for number in (signal.SIGTERM, signal.SIGHUP):
             # The exit code that a shell shows for a program ended by the signal.
             loop.add_signal_handler(number, partial(self.exit, return_code=SIGNALLED + number))
-        if isinstance(self._driver, TerminalDriver):
+        if isinstance(self.own_driver, TerminalDriver):
             loop.add_signal_handler(signal.SIGTSTP, self.action_suspend_process)
 
     def on_terminal_answered(self, event: TerminalAnswered) -> None:
         """Draw with pixels if the terminal can; ask a terminal that may know kitty's protocol for it."""
-        if event.facts.asks_for_kitty and self._driver is not None:
+        if event.facts.asks_for_kitty and self.own_driver is not None:
             AnswerParser.is_asked = True
-            self._driver.write(KITTY_QUESTIONS)
+            self.own_driver.write(KITTY_QUESTIONS)
         drew = self.picture_mode.graphics
         self.terminal_facts = event.facts
         self._choose_graphics()
@@ -388,11 +378,11 @@ class TerminalApp(App[None]):
             )  # fmt: skip
 
     def _choose_graphics(self) -> None:
-        size_px = cell_size_px(self._driver.fileno) if isinstance(self._driver, TerminalDriver) else None
+        size_px = cell_size_px(self.own_driver.fileno) if isinstance(self.own_driver, TerminalDriver) else None
         # Who has chosen glyphs wants to see them; pixels have colours.
         is_without = self.picture_mode.chosen != AUTO or self.no_color
         wanted = NO_PIXELS if self.pixels == AUTO and is_without else self.pixels
-        found = graphics_of(self.terminal_facts, wanted, size_px)
+        found = graphics_of(self.terminal_facts, wanted, size_px) if SUPPORTED else None
         if found != self.picture_mode.graphics:
             self.picture_mode.graphics = found
             self.redraw_pictures()
@@ -425,12 +415,14 @@ class TerminalApp(App[None]):
         background.run(self, work, saved, lambda error: self.notify(str(error), severity="error", markup=False))
 
     def action_suspend_process(self) -> None:
-        if isinstance(self._driver, TerminalDriver):
+        if isinstance(self.own_driver, TerminalDriver):
             self.suspending()
-            if not self._driver.stop_as_job():
+            if not self.own_driver.stop_as_job():
                 self.notify("tuisim cannot be suspended: no shell could resume it", markup=False)
         elif in_browser():
             self.notify("tuisim cannot be suspended in a browser", markup=False)
+        else:
+            super().action_suspend_process()
 
     def run_in_terminal(self, command: Sequence[str]) -> None:
         """Give the terminal to another program until it ends.
@@ -438,10 +430,10 @@ class TerminalApp(App[None]):
         Raises:
             TuisimError: the app has no terminal to give, or the program cannot start.
         """
-        if not isinstance(self._driver, TerminalDriver):
+        if not isinstance(self.own_driver, TerminalDriver):
             raise TuisimError(f"{command[0]} needs a terminal, and here is none to give it, as in a browser")
         self.suspending()
-        with self._driver.lent():
+        with self.own_driver.lent():
             try:
                 run_in_foreground(command)
             except OSError as error:
@@ -455,48 +447,23 @@ class TerminalApp(App[None]):
         if self.use_command_palette and not isinstance(self.screen, (Dialog, Palette)) and not is_leaving(self):
             self.push_screen(Palette())
 
-    async def _shutdown(self) -> None:
-        # The app may be shut down without `exit`: it is leaving, too.
-        self._exit = True
-        await super()._shutdown()
+    def is_harmless(self, error: Exception) -> bool:
+        """Return whether an error only comes from the shutdown.
 
-    def _handle_exception(self, error: Exception) -> None:
-        # During the shutdown nothing can be mounted, what was being mounted is removed before it is complete, and at
-        # its end there is no screen.
+        Nothing can be mounted then, what was being mounted is removed before it is complete, and at its end there is no
+        screen.
+        """
         cause = error.error if isinstance(error, WorkerFailed) else error
-        if not (is_leaving(self) and isinstance(cause, (WidgetError, NoMatches, ScreenStackError))):
-            super()._handle_exception(error)
+        return is_leaving(self) and isinstance(cause, (WidgetError, NoMatches, ScreenStackError))
 
 
-class _Codes(CompositorUpdate):
-    """An update that is codes already."""
-
-    def __init__(self, codes: str) -> None:
-        self._codes = codes
-
-    def render_segments(self, console: Console) -> str:
-        """Return the codes."""
-        return self._codes
+mend(input_order.end_messages)
 
 
-def text_selection(widget: Widget) -> Selection | None:
-    """Return what is selected of a widget; nothing in a screen without styles: it is not drawn yet, or is gone."""
-    screen = widget.screen
-    return screen.selections.get(widget) if "screen--selection" in screen._component_styles else None
-
-
-# A screen makes its compositor itself, and the palette its list.
-textual_screen.Compositor = ThoroughCompositor  # type: ignore[attr-defined]
-OptionList._on_click = textual_mends.click  # type: ignore[method-assign, assignment]
-OptionList._move_page = textual_mends.move_page  # type: ignore[method-assign, assignment]
-Widget.text_selection = property(text_selection)  # type: ignore[assignment]
-Widget._message_loop_exit = input_order.end_messages  # type: ignore[method-assign, assignment]
-# Otherwise the cache of this method keeps what it is a method of: the drawn rows of a thousand widgets that are gone.
-StylesCache.get_inner_outer = classmethod(StylesCache.get_inner_outer)  # type: ignore[method-assign, arg-type, assignment]
-
-
-def _driver_class() -> type[Driver]:
-    """Return the driver for what shows the app: a browser or a terminal."""
+def _driver_class() -> type[Driver] | None:
+    """Return the driver for what shows the app: a browser or a terminal; None for Textual's own."""
+    if not SUPPORTED:
+        return None
     if not in_browser():
         return TerminalDriver
     # Most apps run in a terminal.

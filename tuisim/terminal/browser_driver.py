@@ -10,6 +10,8 @@ from textual import events, messages
 from textual.app import App
 from textual.drivers.web_driver import WebDriver
 
+from tuisim.terminal.textual_internals import app_of, write_with
+
 
 class BrowserDriver(WebDriver):
     """Connects the app with the server that shows it in a browser."""
@@ -18,7 +20,7 @@ class BrowserDriver(WebDriver):
         self, app: App[Any], *, debug: bool = False, mouse: bool = True, size: tuple[int, int] | None = None
     ) -> None:
         super().__init__(app, debug=debug, mouse=mouse, size=size)
-        self._write = self._write_all  # type: ignore[assignment]  # a partial function in the base class
+        write_with(self, self._write_all)
         self._one_at_a_time = Lock()
         self._server_is_gone = False
 
@@ -40,7 +42,7 @@ class BrowserDriver(WebDriver):
         """Pass on input until the app ends, or end it because the server has ended."""
         super().run_input_thread()
         if not self.exit_event.is_set():
-            self._app.post_message(messages.ExitApp())
+            app_of(self).post_message(messages.ExitApp())
 
     def on_meta(self, packet_type: str, payload: dict[str, object]) -> None:
         """Handle a message of the server; a change of focus waits for what the app itself has queued.
@@ -49,6 +51,6 @@ class BrowserDriver(WebDriver):
         """
         if packet_type in ("focus", "blur"):
             event = events.AppFocus() if packet_type == "focus" else events.AppBlur()
-            self._app.call_later(self._app.post_message, event)
+            app_of(self).call_later(app_of(self).post_message, event)
         else:
             super().on_meta(packet_type, payload)

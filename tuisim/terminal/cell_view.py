@@ -29,6 +29,7 @@ from tuisim.terminal.picture_mode import BLOCKS, PictureMode, Sharpness, color_d
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import CellPoints
 from tuisim.terminal.text_runs import Run, cut_line
+from tuisim.terminal.textual_internals import MadeOnDemand
 
 if TYPE_CHECKING:
     from tuisim.terminal.pixels import Pixels
@@ -402,33 +403,16 @@ def _channels(rgb: int) -> tuple[int, int, int]:
     return rgb >> 16, rgb >> 8 & 255, rgb & 255
 
 
-class LazyStrip(Strip):
+class LazyStrip(MadeOnDemand):
     """A row whose segments are created only on demand."""
 
-    __slots__ = ["_made"]
-
-    # The base class's caches are omitted: every method that uses one is overridden here.
-    def _begin(self, count: int) -> None:
-        self._made: list[Segment] | None = None
-        self._cell_length = self._cell_count = count
-        self._link_ids = set()
-        self._render_cache = None
-
-    @property
-    def _segments(self) -> list[Segment]:  # type: ignore[override]  # a slot of the base class
-        if self._made is None:
-            self._made = self._make()
-        return self._made
-
-    @abstractmethod
-    def _make(self) -> list[Segment]:
-        """Return its segments."""
+    __slots__ = []
 
     def _plain(self) -> Strip:
-        return Strip(self._segments, self.cell_length)
+        return Strip(self, self.cell_length)
 
     def __bool__(self) -> bool:
-        return bool(self._cell_length)
+        return bool(self.cell_length)
 
     def crop(self, start: int, end: int | None = None) -> Strip:
         """Return the part from `start` up to `end`."""
@@ -481,9 +465,10 @@ class JoinedStrip(LazyStrip):
 
     def __init__(self, parts: Sequence[Strip]) -> None:
         self.parts = [part for part in parts if part.cell_length]
-        self._begin(sum(part.cell_length for part in self.parts))
+        self.begin(sum(part.cell_length for part in self.parts))
 
-    def _make(self) -> list[Segment]:
+    def make(self) -> list[Segment]:
+        """Return its segments."""
         return [segment for part in self.parts for segment in part]
 
     def _part(self, start: int, end: int) -> JoinedStrip:
@@ -510,9 +495,10 @@ class CellStrip(LazyStrip):
     def __init__(self, cells: Sequence[int]) -> None:
         self.cells = cells
         """One number per cell."""
-        self._begin(len(cells))
+        self.begin(len(cells))
 
-    def _make(self) -> list[Segment]:
+    def make(self) -> list[Segment]:
+        """Return its segments."""
         return [_segment(cell) for cell in self.cells]
 
     def _part(self, start: int, end: int) -> CellStrip:
@@ -530,7 +516,7 @@ class PictureStrip(CellStrip):
 
     def __init__(self, parts: Sequence[PictureCell]) -> None:
         self.parts = parts
-        self._begin(len(parts))
+        self.begin(len(parts))
 
     @property
     def cells(self) -> Sequence[int]:  # type: ignore[override]  # a slot of the base class

@@ -9,20 +9,17 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from encodings import utf_8
-from io import TextIOWrapper
 from pathlib import Path
-from typing import TextIO, cast
+from typing import TextIO
 
 from textual.app import App
-from textual.drivers import linux_driver
-from textual.drivers.linux_driver import LinuxDriver
 
 from tuisim.terminal.graphics import kitty
 from tuisim.terminal.picture_mode import picture_mode_of
 from tuisim.terminal.picture_options import Protocol
 from tuisim.terminal.probe import SILENT, take_typed
 from tuisim.terminal.queries import QUESTIONS, AnswerParser
-from tuisim.terminal.textual_internals import is_leaving
+from tuisim.terminal.textual_internals import HookedLinuxDriver, app_of, is_leaving, parse_input_with
 
 _LOST = 128 + signal.SIGHUP
 """The exit code of an app whose terminal is gone, as if the shell had told it."""
@@ -105,14 +102,14 @@ def run_in_foreground(command: Sequence[str]) -> None:
             signal.signal(number, handler)
 
 
-class TerminalDriver(LinuxDriver):
+class TerminalDriver(HookedLinuxDriver):
     """Textual's driver with an output that survives the loss of its terminal, and asks what the terminal can do."""
 
     def __init__(
         self, app: App[object], *, debug: bool = False, mouse: bool = True, size: tuple[int, int] | None = None
     ) -> None:
         super().__init__(app, debug=debug, mouse=mouse, size=size)
-        self._file = cast(TextIOWrapper, ResilientOutput(cast(TextIO, self._file)))
+        self.wrap_output(ResilientOutput)
         self._is_lent = False
         """Whether the terminal belongs to the shell or another program."""
         self._was_continued = False
@@ -126,7 +123,7 @@ class TerminalDriver(LinuxDriver):
             super().run_input_thread()
         except (EOFError, OSError):
             # Not every shell tells its jobs.
-            self._app.call_later(self._app.exit, return_code=_LOST)
+            app_of(self).call_later(app_of(self).exit, return_code=_LOST)
 
     def start_application_mode(self) -> None:
         """Take the terminal over, and ask what it can do."""
@@ -137,7 +134,7 @@ class TerminalDriver(LinuxDriver):
 
     def stop_application_mode(self) -> None:
         """Leave the terminal, and nothing in its memory."""
-        graphics = picture_mode_of(self._app).graphics
+        graphics = picture_mode_of(app_of(self)).graphics
         if graphics is not None and graphics.protocol is Protocol.KITTY:
             self.write(kitty.through_tmux(kitty.DELETE_ALL) if graphics.in_tmux else kitty.DELETE_ALL)
         super().stop_application_mode()
@@ -155,11 +152,10 @@ class TerminalDriver(LinuxDriver):
             signal.signal(signal.SIGTSTP, handler)
             self._is_lent = False
             if os.isatty(self.fileno):
-                self._must_signal_resume = True
-                self.resume_application_mode()
+                self.resume()
             else:
                 # The terminal was lost meanwhile, and nobody reads from it who would notice.
-                self._app.exit(return_code=_LOST)
+                app_of(self).exit(return_code=_LOST)
 
     def stop_as_job(self) -> bool:
         """Restore the terminal and stop the whole process group; resume when the shell says so.
@@ -175,24 +171,24 @@ class TerminalDriver(LinuxDriver):
             os.kill(0, signal.SIGTSTP)
             return self._was_continued
 
-    def _sigcont_application(self, *_: object) -> None:
+    def continued(self) -> None:
+        """The process was stopped, and goes on; called from the handler of the signal."""
         if self._is_lent:
             self._was_continued = True
-        elif self._auto_restart and not self._loop.is_closed():
+        elif self.resumes:
             # The signal may come while the app holds the lock of its output, which is not to be taken twice.
-            self._loop.call_soon_threadsafe(self._take_terminal_again)
+            self.call_soon(self._take_terminal_again)
 
     def _take_terminal_again(self) -> None:
         # The signal also arrives when the terminal is lost, so that nothing can resume, and after a stop without
         # preparation, where the former reader and writer must end before they are started again.
-        if is_leaving(self._app) or not self._auto_restart or not os.isatty(self.fileno):
+        if is_leaving(app_of(self)) or not self.resumes or not os.isatty(self.fileno):
             return
-        if self._writer_thread is not None and self._writer_thread.is_alive():
+        if self.writes:
             self.suspend_application_mode()
-            self._must_signal_resume = True
-        self.resume_application_mode()
+            self.resume()
+        else:
+            self.resume_application_mode()
 
 
-# The driver makes its parser and its decoder itself.
-linux_driver.XTermParser = AnswerParser  # type: ignore[attr-defined]
-linux_driver.getincrementaldecoder = lambda _: InputDecoder  # type: ignore[attr-defined, assignment]
+parse_input_with(AnswerParser, InputDecoder)

@@ -17,13 +17,13 @@ from weakref import WeakSet, finalize
 from rich.cells import cell_len, split_graphemes
 from rich.color import Color, ColorSystem
 from rich.style import Style
-from textual._compositor import ChopsUpdate, CompositorUpdate, LayoutUpdate
 from textual.strip import SGR_STYLES, Strip
 
 from tuisim.terminal.cell_view import CellStrip, JoinedStrip, PictureStrip
 from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR, sgr_index
 from tuisim.terminal.glyphs import GLYPHS
 from tuisim.terminal.graphics.picture import PictureCell, TilePicture
+from tuisim.terminal.textual_internals import ChopsUpdate, LayoutUpdate
 
 _SEEN_ON_BLANKS = frozenset({"4", "7", "9", "21", "51", "52", "53"})
 """Attributes that are visible on a blank: underline, reverse, strike, frame, overline."""
@@ -79,7 +79,7 @@ class FrameBuffer:
         for picture in self._pictures:
             picture.forget()
 
-    def codes(self, update: CompositorUpdate, mode: TextMode) -> str | None:
+    def codes(self, update: object, mode: TextMode) -> str | None:
         """Return the codes that update the terminal, empty if it shows the update already.
 
         Args:

@@ -21,12 +21,13 @@ from typing import Any
 from weakref import WeakSet
 
 from textual import events
-from textual._callback import invoke
 from textual.app import App
 from textual.message import Message
 from textual.message_pump import MessagePump
 from textual.widget import Widget
 from textual.widgets import Input
+
+from tuisim.terminal.textual_internals import CALL_LATER, CALL_NEXT, DISPATCH, END, POST, invoke, route_messages
 
 _PATIENCE_S = 1.0
 """A turn in which nothing has happened for so long is over: what it still waits for may never come."""
@@ -114,18 +115,14 @@ def _turn() -> Turn | None:
     return turn if turn is not None and turn.is_here else None
 
 
-_post, _dispatch, _end = MessagePump.post_message, MessagePump._dispatch_message, Widget._message_loop_exit
-_call_next, _call_after_refresh = MessagePump.call_next, MessagePump.call_after_refresh
-
-
 def post_message(pump: MessagePump, message: Message) -> bool:
     """Post a message. It belongs to the turn, unless a later one of its kind may replace it: that is about drawing."""
     turn = _turn()
     if turn is None or type(message).can_replace is not Message.can_replace:
-        return _post(pump, message)
+        return POST(pump, message)
     turn.add(pump)
     setattr(message, _TURN, turn)
-    posted = _post(pump, message)
+    posted = POST(pump, message)
     if not posted:
         turn.drop(pump, 1)
     return posted
@@ -136,18 +133,18 @@ def dispatch_message(pump: MessagePump, message: Message) -> Awaitable[None]:
     turn: Turn | None = getattr(message, _TURN, None)
     # Nobody posts the events of a new widget: they belong to the turn in which it was made.
     if turn is None and (_current.get() is None or isinstance(message, (events.Compose, events.Mount))):
-        return _dispatch(pump, message)
+        return DISPATCH(pump, message)
     return _dispatch_in(turn, pump, message)
 
 
 async def _dispatch_in(turn: Turn | None, pump: MessagePump, message: Message) -> None:
     if turn is not None:
         with turn.step(pump):
-            await _dispatch(pump, message)
+            await DISPATCH(pump, message)
         return
     token = _current.set(None)
     try:
-        await _dispatch(pump, message)
+        await DISPATCH(pump, message)
     finally:
         _current.reset(token)
 
@@ -155,7 +152,7 @@ async def _dispatch_in(turn: Turn | None, pump: MessagePump, message: Message) -
 async def end_messages(widget: Widget) -> None:
     """Clean up after the last message; those that are left then belong to no turn any more."""
     try:
-        await _end(widget)
+        await END(widget)
     finally:
         for turn in [*_live]:
             turn.drop(widget)
@@ -164,17 +161,17 @@ async def end_messages(widget: Widget) -> None:
 def call_next(pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> None:
     """Call something after the current message, within the turn."""
     if turn := _turn():
-        _call_next(pump, turn.later(pump, partial(callback, *args, **kwargs)))
+        CALL_NEXT(pump, turn.later(pump, partial(callback, *args, **kwargs)))
     else:
-        _call_next(pump, callback, *args, **kwargs)
+        CALL_NEXT(pump, callback, *args, **kwargs)
 
 
 def call_after_refresh(pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> bool:
     """Call something after the next refresh, within the turn; Textual's own callbacks only scroll, and may lag."""
     turn = _turn()
     if turn is None or _module(callback).startswith("textual."):
-        return _call_after_refresh(pump, callback, *args, **kwargs)
-    is_posted = _call_after_refresh(pump, turn.later(pump, partial(callback, *args, **kwargs)))
+        return CALL_LATER(pump, callback, *args, **kwargs)
+    is_posted = CALL_LATER(pump, turn.later(pump, partial(callback, *args, **kwargs)))
     if not is_posted:
         turn.drop(pump, 1)
     return is_posted
@@ -182,12 +179,10 @@ def call_after_refresh(pump: MessagePump, callback: Callable[..., Any], *args: A
 
 def _follow_turns() -> None:
     """Let Textual call these functions while there is a turn, and else its own: most messages are about drawing."""
-    own = _post, _dispatch, _call_next, _call_after_refresh
-    post, dispatch, call, later = (post_message, dispatch_message, call_next, call_after_refresh) if _live else own
-    MessagePump.post_message = post  # type: ignore[method-assign, assignment]
-    MessagePump._dispatch_message = dispatch  # type: ignore[method-assign, assignment]
-    MessagePump.call_next = call  # type: ignore[method-assign, assignment]
-    MessagePump.call_after_refresh = later  # type: ignore[method-assign, assignment]
+    if _live:
+        route_messages(post_message, dispatch_message, call_next, call_after_refresh)
+    else:
+        route_messages(POST, DISPATCH, CALL_NEXT, CALL_LATER)
 
 
 def takes_letters(widget: Widget) -> bool:

@@ -19,6 +19,7 @@ from tuisim.terminal.graphics.picture import Graphics
 from tuisim.terminal.picture_options import AUTO, CellSet
 from tuisim.terminal.pixels import Rgb
 from tuisim.terminal.probe import best_cells, colors_without_asking
+from tuisim.terminal.textual_internals import SUPPORTED
 
 BLOCKS = frozenset({CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT})
 """The sets whose glyphs fill their cells."""
@@ -84,6 +85,8 @@ def picture_mode_for(given: str | None, kept: str) -> PictureMode:
     has_colors = "NO_COLOR" not in os.environ
     if in_browser():
         best = CellSet.QUADRANT if has_colors else CellSet.BRAILLE
+    elif not SUPPORTED and has_colors:
+        best = CellSet.HALF
     else:
         best = best_cells(ask=chosen == AUTO, has_colors=has_colors)
     if given is None and (best is CellSet.ASCII or (not has_colors and chosen in BLOCKS)):

@@ -15,10 +15,10 @@ from dataclasses import dataclass, replace
 from time import monotonic
 from typing import ClassVar
 
-from textual._xterm_parser import XTermParser
 from textual.message import Message
 
 from tuisim.terminal.graphics import kitty
+from tuisim.terminal.textual_internals import XTermParser
 
 NAME_QUERY = "\x1b[>0q"
 CELL_SIZE_QUERY = "\x1b[16t"

@@ -1,12 +1,409 @@
-"""Textual's private names, all that are used."""
+"""Textual's private names: all that this project uses, and whether the Textual that is installed has them.
+
+Why, and what breaks when Textual changes: `tuisim guide architecture`. Without `SUPPORTED` everything here does what
+Textual does by itself.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+import os
+import re
+from abc import abstractmethod
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, Literal, TextIO, TypeVar, cast
 
+import textual
+from rich.console import Console, ConsoleRenderable, RichCast
+from rich.segment import Segment
+from textual import screen as textual_screen
 from textual.app import App
+from textual.binding import BindingsMap
+from textual.command import CommandPalette
+from textual.dom import DOMNode
+from textual.driver import Driver
+from textual.drivers import linux_driver
+from textual.drivers.linux_driver import LinuxDriver
+from textual.events import Click
+from textual.filter import LineFilter
+from textual.geometry import Region, Size
+from textual.message import Message
+from textual.message_pump import MessagePump
+from textual.screen import ModalScreen, Screen
+from textual.selection import Selection
+from textual.strip import Strip
+from textual.widget import Widget
+from textual.widgets import OptionList, TextArea
+from textual.worker import Worker
+
+if TYPE_CHECKING:
+    from textual._callback import invoke as invoke
+    from textual._compositor import ChopsUpdate as ChopsUpdate
+    from textual._compositor import Compositor, CompositorMap, ReflowResult
+    from textual._compositor import CompositorUpdate as CompositorUpdate
+    from textual._compositor import LayoutUpdate as LayoutUpdate
+    from textual._context import visible_screen_stack
+    from textual._styles_cache import StylesCache
+    from textual._xterm_parser import XTermParser as XTermParser
+    from textual.document._wrapped_document import WrappedDocument
+else:
+    try:
+        from textual._callback import invoke
+        from textual._compositor import ChopsUpdate, Compositor, CompositorUpdate, LayoutUpdate, ReflowResult
+        from textual._context import visible_screen_stack
+        from textual._styles_cache import StylesCache
+        from textual._xterm_parser import XTermParser
+        from textual.document._wrapped_document import WrappedDocument
+    except ImportError:
+        invoke = visible_screen_stack = None
+        Compositor = ReflowResult = StylesCache = WrappedDocument = XTermParser = object
+        CompositorUpdate = ChopsUpdate = LayoutUpdate = type("NoUpdate", (), {})
+
+Result = TypeVar("Result")
+
+TESTED = (8, 2, 5), (8, 2, 8)
+"""The first and the last version of Textual that the kit was tried with."""
+
+_METADATA = re.compile(r"textual-([\d.]+)\.dist-info")
+
+_USED: Mapping[type, tuple[str, ...]] = {
+    App: (
+        "_background_screens", "_batch_count", "_closed", "_display", "_driver", "_exit", "_filters",
+        "_handle_exception", "_running", "_shutdown",
+    ),
+    CommandPalette: ("_GATHER_COMMANDS_GROUP",),
+    Compositor: ("_dirty_regions", "_full_map", "_render_chops", "reflow", "render_strips"),
+    DOMNode: ("_bindings",),
+    LinuxDriver: (
+        "_app", "_auto_restart", "_file", "_loop", "_must_signal_resume", "_sigcont_application", "_writer_thread",
+    ),
+    MessagePump: ("_dispatch_message", "_on_message"),
+    OptionList: ("_move_page", "_on_click"),
+    Screen: ("_compositor",),
+    Strip: ("_cell_count", "_cell_length", "_link_ids", "_render_cache", "_segments"),
+    StylesCache: ("get_inner_outer",),
+    TextArea: ("_find_columns_to_next_tab_stop",),
+    Widget: ("_component_styles", "_message_loop_exit"),
+    WrappedDocument: ("_offset_to_line_info",),
+    XTermParser: ("feed", "tick"),
+}  # fmt: skip
+"""The names by class: methods, and attributes that its `__init__` sets."""
+
+
+def missing_names() -> list[str]:
+    """Return which names the Textual that is installed does not have, such as `App._display`."""
+    found = [f"{owner.__name__}.{name}" for owner, names in _USED.items() for name in names if not _has(owner, name)]
+    globals_of = {"XTermParser", "getincrementaldecoder"}
+    return [*found, *(f"linux_driver.{name}" for name in sorted(globals_of) if not hasattr(linux_driver, name))]
+
+
+def _has(owner: type, name: str) -> bool:
+    made = (getattr(vars(one).get("__init__"), "__code__", None) for one in owner.__mro__)
+    return hasattr(owner, name) or any(code is not None and name in code.co_names for code in made)
+
+
+def textual_version() -> tuple[int, ...]:
+    """Return the version of the Textual that is installed; empty if it is no release.
+
+    It is read from the name of its metadata: `importlib.metadata` would take a tenth of the time that Textual takes.
+    """
+    found = [_METADATA.fullmatch(entry.name) for entry in os.scandir(Path(textual.__file__).parents[1])]
+    return next((tuple(map(int, match[1].split("."))) for match in found if match), ())
+
+
+def _is_tested() -> bool:
+    first, last = TESTED
+    return first <= textual_version() <= last and not missing_names()
+
+
+SUPPORTED = _is_tested()
+"""Whether Textual's private names may be used. Without them the app draws half blocks, through Textual's own driver."""
+
+
+class HookedApp(App[None]):
+    """Textual's app, which asks before it draws, while it shuts down, and when it fails."""
+
+    def show_update(self, screen: Screen[Any], update: object) -> None:
+        """Draw an update of a screen; a subclass may draw another one in its place."""
+        super()._display(screen, cast(ConsoleRenderable | RichCast | str | None, update))
+
+    def _display(self, screen: Screen[Any], renderable: ConsoleRenderable | RichCast | str | None) -> None:
+        self.show_update(screen, renderable)
+
+    def is_harmless(self, error: Exception) -> bool:
+        """Return whether an error that nothing has handled can be ignored."""
+        return False
+
+    def _handle_exception(self, error: Exception) -> None:
+        if not self.is_harmless(error):
+            super()._handle_exception(error)
+
+    async def _shutdown(self) -> None:
+        # The app may be shut down without `exit`: it is leaving, too.
+        self._exit = True
+        await super()._shutdown()
+
+    @property
+    def own_driver(self) -> Driver | None:
+        """What draws the app, once it has started."""
+        return self._driver
+
+    @property
+    def is_writing(self) -> bool:
+        """Whether what is drawn now is written to the terminal, as Textual decides it."""
+        if not SUPPORTED:
+            return False
+        return self._running and not (self._closed or self._batch_count or self.is_headless or self._driver is None)
+
+    @property
+    def line_filters(self) -> list[LineFilter]:
+        """The filters of everything that is drawn, enabled or not, in their order."""
+        return self._filters if SUPPORTED else []
+
+    @line_filters.setter
+    def line_filters(self, filters: Sequence[LineFilter]) -> None:
+        if SUPPORTED:
+            self._filters = [*filters]
+
+
+class HookedScreen(ModalScreen[Result], Generic[Result]):
+    """Textual's modal screen, which may drop messages and see what is below it."""
+
+    def drops(self, message: Message) -> bool:
+        """Return whether to ignore a message."""
+        return False
+
+    async def _on_message(self, message: Message) -> None:
+        if not self.drops(message):
+            await super()._on_message(message)
+
+    def parts_below(self, crop: Region) -> list[list[Strip]] | None:
+        """Return the parts of each row that the screen below draws, from left to right; None if that is not known."""
+        stack = self.app.screen_stack
+        at = stack.index(self) if self in stack else 0
+        if not at or not SUPPORTED:
+            return None
+        rows = Region(0, crop.y, self.size.width, crop.height)
+        chops = stack[at - 1]._compositor._render_chops(rows, rows.line_range.__contains__)
+        below = [[part for part in chop.values() if part] for chop in chops[crop.y : crop.bottom]]
+        # After a resize, the screen below may still be laid out for fewer rows.
+        return below + [[] for _ in range(crop.height - len(below))]
+
+
+class Codes(CompositorUpdate):
+    """An update that is codes already."""
+
+    def __init__(self, codes: str) -> None:
+        self._codes = codes
+
+    def render_segments(self, console: Console) -> str:
+        """Return the codes."""
+        return self._codes
+
+
+class MadeOnDemand(Strip):
+    """A strip whose segments are made when somebody asks for them."""
+
+    __slots__ = ["_made"]
+
+    # The base class's caches are omitted: every method that uses one is overridden by the subclasses.
+    def begin(self, cells: int) -> None:
+        """Set the width; called by the `__init__` of subclasses, in place of the base class's own."""
+        if not SUPPORTED:
+            super().__init__(self.make(), cells)
+            return
+        self._made: list[Segment] | None = None
+        self._cell_length = self._cell_count = cells
+        self._link_ids = set()
+        self._render_cache = None
+
+    @abstractmethod
+    def make(self) -> list[Segment]:
+        """Return its segments."""
+
+    if SUPPORTED:
+
+        @property
+        def _segments(self) -> list[Segment]:  # type: ignore[override]  # a slot of the base class
+            if self._made is None:
+                self._made = self.make()
+            return self._made
+
+
+class HookedLinuxDriver(LinuxDriver):
+    """Textual's driver of a terminal, which asks what to do when the process was stopped and is continued."""
+
+    def continued(self) -> None:
+        """The process was stopped, and goes on; called from the handler of the signal."""
+        super()._sigcont_application()
+
+    def _sigcont_application(self, *_: object) -> None:
+        self.continued()
+
+    def wrap_output(self, wrap: Callable[[TextIO], object]) -> None:
+        """Write to another file, which `wrap` makes of the present one."""
+        self._file = wrap(cast(TextIO, self._file))  # type: ignore[assignment]  # write, flush and fileno are enough
+
+    @property
+    def resumes(self) -> bool:
+        """Whether it takes the terminal over again when the process is continued."""
+        return self._auto_restart and not self._loop.is_closed()
+
+    @property
+    def writes(self) -> bool:
+        """Whether its thread that writes is alive."""
+        return self._writer_thread is not None and self._writer_thread.is_alive()
+
+    def call_soon(self, function: Callable[[], None]) -> None:
+        """Call a function in the app's loop, from anywhere."""
+        self._loop.call_soon_threadsafe(function)
+
+    def resume(self) -> None:
+        """Take the terminal over again, and tell the app."""
+        self._must_signal_resume = True
+        self.resume_application_mode()
+
+
+class ThoroughCompositor(Compositor):
+    """Compares a layout with the last layout that the widgets were told.
+
+    Textual compares it with the map of all widgets, and makes that map anew when somebody asks for the size of a widget
+    between two layouts. To a widget that was mounted in between it would never send `Resize` or `Show`, and one that
+    was removed would stay on the screen. Whether somebody asks in between depends on how busy the machine is.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._told: CompositorMap = {}
+
+    def reflow(self, parent: Widget, size: Size) -> ReflowResult:
+        """Lay out the widgets, and return which of them are hidden, shown and resized since they were last told."""
+        before = self._full_map
+        hidden, shown, resized = super().reflow(parent, size)
+        told, self._told = self._told, self._full_map
+        if before is not told:
+            shown = shown | (self._told.keys() - told.keys())
+            resized = resized | {
+                widget
+                for widget in self._told.keys() & told.keys()
+                if self._told[widget].region.size != told[widget].region.size
+            }
+            changes = (geometry for _, geometry in self._told.items() ^ told.items())
+            self._dirty_regions.update(filter(None, (one.clip.intersection(one.region) for one in changes)))
+        return ReflowResult(hidden, shown, resized)
 
 
 def is_leaving(app: App[Any]) -> bool:
     """Return whether the app is shutting down: nothing may be opened any more, for it could not be drawn."""
-    return app._exit
+    return bool(getattr(app, "_exit", False))
+
+
+def app_of(driver: Driver) -> App[Any]:
+    """Return the app that a driver draws."""
+    return driver._app
+
+
+def write_with(driver: Driver, write: Callable[[bytes], int]) -> None:
+    """Let the driver of a browser write by a function from now on."""
+    driver._write = write  # type: ignore[attr-defined]  # a partial function
+
+
+def bindings_of(node: DOMNode) -> BindingsMap:
+    """Return the keys of a node, to be changed."""
+    return getattr(node, "_bindings", None) or BindingsMap()
+
+
+def is_search(worker: Worker[Any], palette: CommandPalette) -> bool:
+    """Return whether a worker searches the commands of a palette."""
+    return worker.node is palette and worker.group == getattr(palette, "_GATHER_COMMANDS_GROUP", None)
+
+
+def screen_strips(app: App[Any]) -> list[Strip]:
+    """Return the rows of the whole screen, with its dialogs and notices."""
+    if SUPPORTED:
+        # As Textual's own `export_screenshot` does.
+        visible_screen_stack.set(app._background_screens)
+    return app.screen._compositor.render_strips()
+
+
+def text_selection(widget: Widget) -> Selection | None:
+    """Return what is selected of a widget; nothing in a screen without styles: it is not drawn yet, or is gone."""
+    screen = widget.screen
+    return screen.selections.get(widget) if "screen--selection" in screen._component_styles else None
+
+
+def columns_to_tab_stop(area: TextArea) -> int:
+    """Return the number of columns from the cursor to the next tab stop."""
+    return area._find_columns_to_next_tab_stop() if SUPPORTED else area.indent_width
+
+
+def line_at_row(area: TextArea, row: int) -> tuple[int, int]:
+    """Return the index of the line at a row of the wrapped text, and which of its rows it is.
+
+    Raises:
+        IndexError: there is no such row.
+    """
+    if not SUPPORTED:
+        raise IndexError(row)
+    return area.wrapped_document._offset_to_line_info[row]
+
+
+Post = Callable[[MessagePump, Message], bool]
+Dispatch = Callable[[MessagePump, Message], Awaitable[None]]
+CallNext = Callable[..., None]
+CallLater = Callable[..., bool]
+
+POST: Post = MessagePump.post_message
+DISPATCH: Dispatch = MessagePump._dispatch_message if SUPPORTED else cast(Dispatch, None)
+CALL_NEXT: CallNext = MessagePump.call_next
+CALL_LATER: CallLater = MessagePump.call_after_refresh
+END: Callable[[Widget], Awaitable[None]] = Widget._message_loop_exit if SUPPORTED else cast(Any, None)
+"""Textual's own functions for messages; two of them only if it is supported."""
+
+
+def route_messages(post: Post, dispatch: Dispatch, call_next: CallNext, call_later: CallLater) -> None:
+    """Let Textual call these functions for all its messages."""
+    MessagePump.post_message = post  # type: ignore[method-assign, assignment]
+    MessagePump._dispatch_message = dispatch  # type: ignore[method-assign, assignment]
+    MessagePump.call_next = call_next  # type: ignore[method-assign]
+    MessagePump.call_after_refresh = call_later  # type: ignore[method-assign]
+
+
+def parse_input_with(parser: type[XTermParser], decoder: Callable[[], Any]) -> None:
+    """Let Textual's driver, which makes its parser and its decoder itself, make these."""
+    if SUPPORTED:
+        linux_driver.XTermParser = parser  # type: ignore[attr-defined]
+        linux_driver.getincrementaldecoder = lambda _: decoder  # type: ignore[attr-defined, assignment]
+
+
+_click, _move_page = getattr(OptionList, "_on_click", None), getattr(OptionList, "_move_page", None)
+
+
+async def _click_there(listed: OptionList, event: Click) -> None:
+    """Choose the option that was clicked on; nothing if the list has become shorter since."""
+    if event.style.meta.get("option", 0) < listed.option_count:
+        await _click(listed, event)  # type: ignore[misc]  # there if it is called
+
+
+def _move_seen_page(listed: OptionList, direction: Literal[-1, 1]) -> None:
+    """Move by as many lines as are seen; not in a list without room, which has no lines."""
+    if listed.scrollable_content_region:
+        _move_page(listed, direction)  # type: ignore[misc]  # there if it is called
+
+
+def mend(end_messages: Callable[[Widget], Awaitable[None]]) -> None:
+    """Mend what Textual's own screens and lists get wrong.
+
+    Args:
+        end_messages: Called in place of Textual's function after the last message of a widget.
+    """
+    if not SUPPORTED:
+        return
+    # A screen makes its compositor itself.
+    textual_screen.Compositor = ThoroughCompositor  # type: ignore[attr-defined]
+    OptionList._on_click = _click_there  # type: ignore[method-assign, assignment]
+    OptionList._move_page = _move_seen_page  # type: ignore[method-assign, assignment]
+    Widget.text_selection = property(text_selection)  # type: ignore[assignment]
+    Widget._message_loop_exit = end_messages  # type: ignore[method-assign, assignment]
+    # Otherwise the cache of this method keeps what it is a method of: the rows of a thousand widgets that are gone.
+    StylesCache.get_inner_outer = classmethod(StylesCache.get_inner_outer)  # type: ignore[method-assign, arg-type, assignment]

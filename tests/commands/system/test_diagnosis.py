@@ -9,6 +9,7 @@ from tuisim.commands.system.diagnosis import Finding, State, prevents_use
 from tuisim.terminal.picture_options import CellSet
 
 OK, ADVICE, PROBLEM = State
+TEXTUALS = (8, 2, 5), (8, 2, 8)
 
 
 JUDGED: dict[str, tuple[Finding, State, str]] = {
@@ -39,6 +40,9 @@ JUDGED: dict[str, tuple[Finding, State, str]] = {
     "large store": (diagnosis.store_finding(9, 3 * 10**9, 10**12), ADVICE, "runs rm"),
     "full disk": (diagnosis.store_finding(0, 0, 10**6), ADVICE, "almost full"),
     "no mats": (diagnosis.assets_finding("no folder"), PROBLEM, "TUISIM_ASSETS"),
+    "untried Textual": (diagnosis.textual_finding((8, 3, 0), TEXTUALS, []), ADVICE, "textual>=8.2.5,<=8.2.8"),
+    "tried Textual": (diagnosis.textual_finding((8, 2, 6), TEXTUALS, []), OK, ""),
+    "Textual without a name": (diagnosis.textual_finding((8, 2, 6), TEXTUALS, ["App._exit"]), ADVICE, "pip"),
     "package missing": (diagnosis.dependency_findings([("numpy", "", "")])[1], PROBLEM, "Install tuisim again"),
     "package of another version": (diagnosis.dependency_findings([("a", "1.0", "2.0")])[1], PROBLEM, "a==1.0"),
 }

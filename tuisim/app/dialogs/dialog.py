@@ -17,7 +17,6 @@ from textual.events import Event, Key
 from textual.geometry import Region
 from textual.message import Message
 from textual.renderables.background_screen import BackgroundScreen
-from textual.screen import ModalScreen
 from textual.strip import Strip
 from textual.widgets import Static
 
@@ -25,6 +24,7 @@ from tuisim.app import background
 from tuisim.app.background import Made
 from tuisim.errors import TuisimError
 from tuisim.terminal.cell_view import JoinedStrip, LazyStrip
+from tuisim.terminal.textual_internals import HookedScreen
 
 Result = TypeVar("Result")
 
@@ -52,7 +52,7 @@ def _without_links(strip: Strip) -> Strip:
     return Strip(BackgroundScreen.process_segments(strip, _TRANSPARENT), strip.cell_length)
 
 
-class ClosesOnce(ModalScreen[Result], Generic[Result]):
+class ClosesOnce(HookedScreen[Result], Generic[Result]):
     """A modal screen that returns one result, and ignores events after that.
 
     Each call of Textual's `dismiss` removes the topmost screen, whichever screen it was called for. A key pressed twice
@@ -126,21 +126,15 @@ class ClosesOnce(ModalScreen[Result], Generic[Result]):
 
     def render_lines(self, crop: Region) -> list[Strip]:
         """Return what is below the dialog. Textual would make plain text of it, and pictures lose their pixels."""
-        stack = self.app.screen_stack
-        at = stack.index(self) if self in stack else 0
-        if not at or self.styles.background.a:
+        below = None if self.styles.background.a else self.parts_below(crop)
+        if below is None:
             return super().render_lines(crop)
-        rows = Region(0, crop.y, self.size.width, crop.height)
-        chops = stack[at - 1]._compositor._render_chops(rows, rows.line_range.__contains__)
-        # After a resize, the screen below may still be laid out for fewer rows.
-        below = [[_without_links(part) for part in chop.values() if part] for chop in chops[crop.y : crop.bottom]]
-        below += [[] for _ in range(crop.height - len(below))]
-        return [JoinedStrip(parts).crop_extend(*crop.column_span, self.rich_style) for parts in below]
+        rows = (JoinedStrip([_without_links(part) for part in parts]) for parts in below)
+        return [row.crop_extend(*crop.column_span, self.rich_style) for row in rows]
 
-    async def _on_message(self, message: Message) -> None:
-        # Widgets of a closed screen may still post messages, such as a second Enter.
-        if not (message.bubble and self.is_closed):
-            await super()._on_message(message)
+    def drops(self, message: Message) -> bool:
+        """Return whether to ignore a message: widgets of a closed screen may still post some, as at a second Enter."""
+        return message.bubble and self.is_closed
 
 
 class Dialog(ClosesOnce[Result], Generic[Result]):

@@ -13,6 +13,7 @@ from textual.widgets.option_list import Option
 
 from tuisim.app.action import ActionHost, with_keys_of
 from tuisim.app.dialogs.dialog import Dialog, name_and_title
+from tuisim.terminal.textual_internals import bindings_of
 
 
 class Begin(StrEnum):
@@ -66,7 +67,7 @@ class Welcome(Dialog[Begin]):
         actions = self.app.ACTIONS if isinstance(self.app, ActionHost) else {}
         for name in _ACTIONS if actions else ():
             for key in actions[name].key.split(","):
-                self._bindings.bind(key, f"leave_for('{name}')", name, show=False)
+                bindings_of(self).bind(key, f"leave_for('{name}')", name, show=False)
         self.query_one(OptionList).focus()
 
     @on(OptionList.OptionSelected)

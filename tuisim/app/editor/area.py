@@ -24,6 +24,7 @@ from textual.widgets.text_area import Edit, EditResult, Selection
 
 from tuisim.app.editor import text_lines
 from tuisim.app.editor.syntax import KINDS, Colouring
+from tuisim.terminal.textual_internals import columns_to_tab_stop, line_at_row
 
 # A `TextArea` treats these characters as line ends, Python does not: they are replaced by substitutes.
 _BREAKS = "\x0b\x0c\x1c\x1d\x1e\x85\u2028\u2029"
@@ -220,7 +221,7 @@ class CodeArea(TextArea):
         if self.placeholder and not self.text:
             return strip
         try:
-            line_index, section = self.wrapped_document._offset_to_line_info[y + self.scroll_offset.y]
+            line_index, section = line_at_row(self, y + self.scroll_offset.y)
         except IndexError:
             return strip
         line = line_index + 1
@@ -278,7 +279,7 @@ class CodeArea(TextArea):
             self.delete((row, column - blanks), (row, column), maintain_selection_offset=False)
         elif event.key == "tab" and self.selection.is_empty:
             self._done(event)
-            self.insert_text(" " * self._find_columns_to_next_tab_stop())
+            self.insert_text(" " * columns_to_tab_stop(self))
         elif change := _CHANGES.get(event.key):
             self._done(event)
             self._change_lines(change)

@@ -5,7 +5,7 @@ Pure: `doctor` looks at the machine, and these functions judge what it found.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -233,6 +233,27 @@ def _dependency(name: str, pinned: str, installed: str) -> Finding:
     if pinned and installed != pinned:
         return Finding(name, installed, State.PROBLEM, f"Needs {pinned}: pip install {name}=={pinned}")
     return Finding(name, installed)
+
+
+Version = tuple[int, ...]
+
+
+def textual_finding(version: Version, tested: tuple[Version, Version], missing: Sequence[str]) -> Finding:
+    """Judge how the app can draw with the installed Textual.
+
+    Args:
+        version: The installed version; empty if it is no release.
+        tested: The first and the last version that the app was tried with.
+        missing: Names of Textual's that the app uses, and that this version lacks.
+    """
+    first, last = tested
+    installed = ".".join(map(str, version)) or "no release"
+    if first <= version <= last and not missing:
+        return Finding("Textual", installed)
+    lacks = f", and lacks {', '.join(missing)}" if missing else ""
+    value = f"{installed}: not a version that the app was tried with{lacks}. It draws half blocks, more slowly"
+    wanted = f"textual>={'.'.join(map(str, first))},<={'.'.join(map(str, last))}"
+    return Finding("Textual", value, State.ADVICE, f"For the rest: pip install '{wanted}'")
 
 
 def prevents_use(findings: Iterable[Finding]) -> bool:

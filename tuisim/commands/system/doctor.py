@@ -223,7 +223,13 @@ def _machine_findings(left: list[LeftOver]) -> list[Finding]:
     if not why_not:
         found.append(diagnosis.store_finding(*_store(home)))
         found.append(diagnosis.left_over_finding(len(left), sum(one.size_bytes for one in left)))
-    return found + diagnosis.dependency_findings(_requirements())
+    return [*found, _textual_finding(), *diagnosis.dependency_findings(_requirements())]
+
+
+def _textual_finding() -> Finding:
+    from tuisim.terminal.textual_internals import TESTED, missing_names, textual_version
+
+    return diagnosis.textual_finding(textual_version(), TESTED, missing_names())
 
 
 def _why_not_writable(folder: Path) -> str:

@@ -2,6 +2,15 @@
 
 from __future__ import annotations
 
+import dis
+import pkgutil
+import re
+from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
+from types import CodeType, ModuleType
+from typing import Any
+
 import pyte
 import pytest
 from rich.style import Style
@@ -16,10 +25,13 @@ from textual.widget import Widget
 from textual.widgets import OptionList
 from textual.widgets._toast import Toast
 
+import tuisim.app
+import tuisim.terminal
 from tests.app.app_help import LOGS, ready, settings, until
 from tests.app.wires import on_wire, until_quiet, wire_of
 from tuisim.app.app import LabApp
 from tuisim.app.terminal_app import TerminalApp
+from tuisim.terminal import textual_internals
 
 
 @pytest.fixture
@@ -112,3 +124,57 @@ async def test_a_notice_that_is_gone_leaves_the_screen(told: dict[Widget, Size])
         await until_quiet(pilot)
         stream.feed("".join(wire_of(pilot).sent))
         assert "A notice" not in "\n".join(terminal.display)
+
+
+def _names_of(kind: type, package: str) -> set[str]:
+    """The private names that the classes of a package give a class: of methods, and of attributes that they set."""
+    found: set[str] = set()
+    for base in kind.__mro__:
+        if base.__module__.startswith(package):
+            made: Any = vars(base).get("__init__")
+            sets = dis.get_instructions(made) if hasattr(made, "__code__") else ()
+            found |= {*vars(base), *(one.argval for one in sets if one.opname == "STORE_ATTR")}
+    return {name for name in found if name.startswith("_") and not name.startswith("__")}
+
+
+def _codes(code: CodeType) -> Iterator[CodeType]:
+    """A function's code and that of the functions in it."""
+    yield code
+    for inner in code.co_consts:
+        if isinstance(inner, CodeType):
+            yield from _codes(inner)
+
+
+def _used(kind: type) -> set[str]:
+    """The names that the functions of a class use."""
+    functions = (getattr(one, "fget", one) for one in vars(kind).values())
+    codes = (getattr(one, "__code__", None) for one in functions)
+    return {name for code in codes if code for inner in _codes(code) for name in inner.co_names}
+
+
+def test_no_other_module_uses_private_names_of_textual() -> None:
+    uses: list[str] = []
+    for info in pkgutil.walk_packages(tuisim.app.__path__, "tuisim.app."):
+        uses += _uses(import_module(info.name))
+    for info in pkgutil.walk_packages(tuisim.terminal.__path__, "tuisim.terminal."):
+        if info.name != textual_internals.__name__:
+            uses += _uses(import_module(info.name))
+    assert uses == []
+
+
+def _uses(module: ModuleType) -> list[str]:
+    imported = re.findall(r"^\s*(?:from|import) (textual\S*\._\S+)", Path(str(module.__file__)).read_text(), re.M)
+    found = [f"{module.__name__}: {name}" for name in imported]
+    for kind in vars(module).values():
+        if isinstance(kind, type) and kind.__module__ == module.__name__:
+            theirs = _names_of(kind, "textual")
+            overridden = theirs & {name for name, one in vars(kind).items() if callable(one)}
+            used = (theirs & _used(kind)) - _names_of(kind, "tuisim")
+            found += [f"{module.__name__}.{kind.__name__}.{name}" for name in sorted(overridden | used)]
+    return found
+
+
+def test_a_name_that_textual_lacks_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert textual_internals.missing_names() == []
+    monkeypatch.delattr(OptionList, "_move_page")
+    assert textual_internals.missing_names() == ["OptionList._move_page"]
