@@ -71,7 +71,7 @@ class SimulatedRun:
 
     def picture(self) -> Image:
         """Return the world at the end of the run, with the pen's trace, as a Pillow image."""
-        from tuisim.charts.world_image import world_at_end
+        from tuisim.scene.pictures import world_at_end
 
         return world_at_end(self.stored)
 

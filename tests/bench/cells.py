@@ -14,10 +14,7 @@ from textual.geometry import Region
 
 from tests.bench.figures import Figure
 from tests.bench.sampling import QUICK, Effort
-from tuisim.app.render.mat import shrink, whole_field
-from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
 from tuisim.app.setup.mat import prepare_mat
-from tuisim.charts.world_image import COLORED, Viewport, draw_robot
 from tuisim.config.build import build_run_spec
 from tuisim.config.mats import mats
 from tuisim.config.options import Settings
@@ -25,6 +22,11 @@ from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import RobotSpec
 from tuisim.errors import BackgroundError
+from tuisim.scene.mat import shrink
+from tuisim.scene.painter import ScenePainter, SceneState
+from tuisim.scene.pen import PenTrace
+from tuisim.scene.robot import COLORED, draw_robot
+from tuisim.scene.view import Viewport, whole_field
 from tuisim.terminal.cell_view import CellStrip
 from tuisim.terminal.cells import changed_cells, changed_runs
 from tuisim.terminal.fitted_cells import Cells, all_cells, fit_cells

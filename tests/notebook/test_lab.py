@@ -13,7 +13,7 @@ from PIL import Image
 
 from tests.conftest import ROOT
 from tests.notebook.lesson import CELLS, COLOURS, GREYS, execute, kinds, pictures, result, stream, texts
-from tuisim.charts.world_image import COLORED
+from tuisim.scene.robot import COLORED
 
 pytestmark = pytest.mark.slow
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tuisim.charts.world_image import COLORED, GREY
+from tuisim.scene.robot import COLORED, GREY
 from tuisim.terminal.cells import PALETTE_8, PALETTE_16, PALETTE_256, ColorMode, reduce_pixels, sgr_index
 from tuisim.terminal.pixels import Pixels
 

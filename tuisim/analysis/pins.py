@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tuisim.charts.files import clean
-from tuisim.charts.world_image import world_view
 from tuisim.core.spec import RobotSpec
+from tuisim.scene.pictures import world_view
 
 _NEAR_PX = 14.0
 """Pins nearer than this share a ring: their labels would cover each other."""

@@ -18,7 +18,6 @@ from tuisim.analysis.pins import Pin, svg_of_pins
 from tuisim.analysis.source import LogRequest, OpenedLog, opening
 from tuisim.charts.files import FACET_PX, clean, svg_of, write_whole
 from tuisim.charts.layout import ChartData, Span, laid_out
-from tuisim.charts.world_image import world_at_end, world_view
 from tuisim.config.files import name_of
 from tuisim.core.geometry import pose_in_words
 from tuisim.core.profile import NS_PER_S
@@ -33,6 +32,7 @@ from tuisim.movies.files import small_movie
 from tuisim.protocol import SetNoise
 from tuisim.runs.arrays import FloatArray
 from tuisim.runs.run_folder import StoredRun
+from tuisim.scene.pictures import world_at_end, world_view
 from tuisim.source import source_lines
 
 if TYPE_CHECKING:

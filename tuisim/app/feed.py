@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.charts.world_image import pen_points_mm
 from tuisim.core.field import Field
 from tuisim.core.sensors import columns_of
 from tuisim.core.spec import RobotSpec
@@ -17,6 +16,7 @@ from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.runs.frames import column_values
 from tuisim.runs.records import OutputRow
 from tuisim.runs.samples import samples_of
+from tuisim.scene.pen import pen_points_mm
 
 if TYPE_CHECKING:
     from tuisim.app.panel_area import PanelArea

@@ -24,10 +24,10 @@ from tuisim.charts.layout import (
     shortened,
 )
 from tuisim.charts.sample_chart import sample_chart
-from tuisim.charts.world_image import fitting_view
 from tuisim.errors import ConfigError, printable
 from tuisim.movies.clip import ClipMoment, ClipPanel, Recorded
 from tuisim.movies.pictures import MovingWorld, SensorArrays
+from tuisim.scene.pictures import fitting_view
 
 if TYPE_CHECKING:
     from PIL.Image import Image

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from tuisim.charts.world_image import Viewport, WorldPainter, arrays_picture, pen_trace, sound_pose
 from tuisim.config.mat_cache import mat_pixels
 from tuisim.core.sensors.color import pixel_array
 from tuisim.movies.clip import ClipMoment, Recorded
 from tuisim.runs.recorded_run import Recording
 from tuisim.runs.run_folder import mat_files, open_mat
 from tuisim.runs.views import instant_of
+from tuisim.scene.discs import arrays_picture
+from tuisim.scene.pen import pen_trace
+from tuisim.scene.pictures import scene_of, sound_pose, world_painter
+from tuisim.scene.view import Viewport
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -28,18 +31,20 @@ class MovingWorld:
     """
 
     def __init__(self, recorded: Recorded, view: Viewport) -> None:
-        self._recorded, self._spec = recorded, recorded.run.spec
-        self._painter = WorldPainter(self._spec, mat_pixels(mat_files(recorded.run)), view)
+        self._recorded, self._spec, self._view = recorded, recorded.run.spec, view
+        self._painter = world_painter(mat_pixels(mat_files(recorded.run)))
         self._traced = 0
         """Records whose pen traces are drawn."""
 
     def at(self, moment: ClipMoment) -> Image:
         """Return the picture. The instants of successive calls must not decrease."""
+        from PIL import Image
+
         # From the last record that was drawn, so that the line goes on.
         new = self._recorded.telemetry[max(self._traced - 1, 0) : moment.tick + 1]
-        self._painter.add_trace(pen_trace(self._spec, new))
+        self._painter.trace.add(pen_trace(self._spec, new))
         self._traced = moment.tick + 1
-        return self._painter.picture(sound_pose(moment.record))
+        return Image.fromarray(self._painter.paint(self._view, scene_of(self._spec, sound_pose(moment.record))))
 
 
 class SensorArrays:

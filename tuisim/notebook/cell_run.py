@@ -15,7 +15,6 @@ from itertools import groupby, islice
 from types import FrameType
 from typing import Any, TypeVar
 
-from tuisim.charts.world_image import PenLines, pen_trace
 from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError, counted
@@ -28,6 +27,7 @@ from tuisim.runs.records import OutputRow, Stream, line_of
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import Sample, samples_of
 from tuisim.runs.store import RunStore
+from tuisim.scene.pen import Piece, pen_trace
 from tuisim.source import Program
 
 POLL_S = 0.02
@@ -88,7 +88,7 @@ class CellRun:
     speed: float
     """As in `RunOptions`."""
     refresh_s: float
-    traces: tuple[PenLines, ...]
+    traces: tuple[Piece, ...]
     """Pen traces of earlier runs on the mat."""
     listener: Listener
     images: ImageLog

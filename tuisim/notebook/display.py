@@ -15,7 +15,6 @@ from IPython.display import DisplayHandle, display
 from tuisim.charts.files import image_of
 from tuisim.charts.layout import laid_out
 from tuisim.charts.sample_chart import sample_chart
-from tuisim.charts.world_image import PenLines, arrays_picture, world_picture
 from tuisim.config.mat_cache import FieldFiles, mat_pixels, open_field
 from tuisim.config.options import Settings
 from tuisim.core.end_stops import flags_at_start
@@ -26,6 +25,9 @@ from tuisim.core.spec import RunSpec
 from tuisim.notebook.image_log import arrays_at
 from tuisim.runs.samples import Sample
 from tuisim.runs.views import TickRecord, instant_of
+from tuisim.scene.discs import arrays_picture
+from tuisim.scene.pen import Piece
+from tuisim.scene.pictures import world_picture
 from tuisim.source import source_lines
 
 _LEFT_RIGHT = ("left", "right")
@@ -76,7 +78,7 @@ class Scene:
     """The program."""
     last: TickRecord
     """The tick to display."""
-    traces: Sequence[PenLines] = ()
+    traces: Sequence[Piece] = ()
     """Pen traces on the mat up to then."""
     samples: Sequence[Sample] = ()
     printed: Sequence[str] | None = None

@@ -18,7 +18,6 @@ from tuisim.protocol import Wheels
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tuisim.charts.world_image import PenLines
     from tuisim.config.mat_cache import FieldFiles
     from tuisim.config.options import Settings
     from tuisim.core.spec import RunSpec
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from tuisim.notebook.image_log import LoggedArray
     from tuisim.notebook.magic_line import MagicWords
     from tuisim.runs.run_folder import StoredRun
+    from tuisim.scene.pen import Piece
     from tuisim.source import Program
 
 
@@ -66,7 +66,7 @@ class Lab:
         self._runs: list[StoredRun] = []
         self._last: StoredRun | None = None
         self._spec: RunSpec | None = None
-        self._traces: tuple[PenLines, ...] = ()
+        self._traces: tuple[Piece, ...] = ()
         """Pen traces on the mat, until it is cleared or replaced."""
 
     @property
@@ -270,8 +270,8 @@ class Lab:
         return Listener(responder, self._in_texts, None if handler is None else handled)
 
     def _run(self, plan: _CellPlan, stage: Stage, words: MagicWords, listener: Listener) -> None:
-        from tuisim.charts.world_image import pen_trace
         from tuisim.notebook.cell_run import CellRun, run_cell
+        from tuisim.scene.pen import pen_trace
 
         assert plan.program is not None
         cell = CellRun(

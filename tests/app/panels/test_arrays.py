@@ -9,9 +9,9 @@ import pytest
 
 from tests.app.panel_help import PanelApp, moment, screen_text, small_field
 from tuisim.app.panels.arrays import Arrays, name_line
-from tuisim.app.render.mat import lay_out
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
+from tuisim.scene.discs import lay_out
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.cells import PALETTE_8, PALETTE_16, ColorMode
 

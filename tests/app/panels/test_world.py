@@ -9,12 +9,15 @@ import pytest
 from textual import events
 from textual.geometry import Region
 
+from tests.app.app_help import LOGS, ready, settings, until
 from tests.app.panel_help import PanelApp, moment, white_mat
+from tuisim.app.app import LabApp
 from tuisim.app.layout.tree import TIME_BAR_ROWS
 from tuisim.app.panels.world import TURN_STEP_DEG, World, WorldView
 from tuisim.app.snapshot import RunPhase
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.scene.pictures import scene_of
 
 POSE = Pose(1000.0, 500.0, 0.0)
 
@@ -226,3 +229,19 @@ async def test_the_wheel_turns_the_robot(kind: type[events.MouseEvent], turn: fl
         replace(POSE, heading_deg=2 * turn),
     ]
     assert all(message.done for message in messages)
+
+
+async def test_a_file_would_show_what_the_panel_shows() -> None:
+    async with LabApp(settings(LOGS, "Obstacles_Test")).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.run_controller.state is RunPhase.ENDED)
+        view, recording = app.query_one(WorldView), app.run_controller.timeline.recording
+        assert recording is not None
+        last = recording.telemetry.last()
+        await until(pilot, lambda: view._scene is not None and view._scene.pose == (last and last.pose))
+        assert last is not None and view._scene is not None
+
+        shown = replace(view._scene, rays=(), rays_from=None)
+
+        assert shown == scene_of(recording.spec, last.pose)

@@ -18,7 +18,6 @@ from textual.widgets.option_list import Option
 from tuisim.app import background
 from tuisim.app.dialogs.dialog import Dialog, name_and_title
 from tuisim.app.dialogs.save import typed_path
-from tuisim.app.render.mat import shrink, whole_field
 from tuisim.config.mat_image import decode, read_file
 from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import OBSTACLES, load_obstacles
@@ -28,6 +27,8 @@ from tuisim.core.profile import PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import TuisimError
 from tuisim.logs.export import is_companion
+from tuisim.scene.mat import shrink
+from tuisim.scene.view import whole_field
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.pixels import Pixels
 

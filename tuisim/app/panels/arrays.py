@@ -10,9 +10,8 @@ from rich.style import Style
 from textual.app import ComposeResult
 from textual.widget import Widget
 
-from tuisim.app.render.mat import CORNER_16_RGB, FULL_PX, DiscLayout, draw_discs, lay_out
-from tuisim.charts.world_image import CORNER_RGB
 from tuisim.core.sensors.color import pixel_array
+from tuisim.scene.discs import CORNER_16_RGB, CORNER_RGB, FULL_PX, DiscLayout, draw_discs, lay_out
 from tuisim.terminal.cell_view import LinesView, PixelView
 from tuisim.terminal.pacer import Throttle
 from tuisim.terminal.text_runs import cut

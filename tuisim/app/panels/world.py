@@ -16,16 +16,17 @@ from textual.widget import Widget
 
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.obstacles import BoxGrip, box_at
-from tuisim.app.render.mat import ZOOMS, following
-from tuisim.app.render.mono_robot import body, pointer
-from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState
 from tuisim.app.snapshot import AT_REST, RunPhase, Snapshot
 from tuisim.charts.axes import time_limits
-from tuisim.charts.world_image import Viewport, drawn_scale
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec
 from tuisim.runs.records import Mark
+from tuisim.scene.mono_robot import body, pointer
+from tuisim.scene.painter import ScenePainter, SceneState
+from tuisim.scene.pen import PenTrace, Piece
+from tuisim.scene.robot import drawn_scale
+from tuisim.scene.view import ZOOMS, Viewport, following
 from tuisim.terminal.cell_view import LinesView, PixelView
 from tuisim.terminal.cells import MONO
 from tuisim.terminal.picture_mode import BLOCKS
@@ -132,7 +133,7 @@ class World(Widget, can_focus=True):
 
     def extend_trace(self, xs_mm: Sequence[float], ys_mm: Sequence[float], pen: PenSpec = _ANY_PEN) -> None:
         """Add points that a pen drew, joined to the previous ones; NaN lifts the pen."""
-        self._view.trace.add(np.array(xs_mm), np.array(ys_mm), pen)
+        self._view.trace.add(Piece.of(np.array(xs_mm), np.array(ys_mm), pen))
 
     def clear_trace(self) -> None:
         """Clear the trace."""
@@ -145,7 +146,7 @@ class World(Widget, can_focus=True):
         past = None
         if points_mm is not None:
             past = PenTrace()
-            past.add(np.array(points_mm[0]), np.array(points_mm[1]), pen)
+            past.add(Piece.of(np.array(points_mm[0]), np.array(points_mm[1]), pen))
         self._view.past_trace = past
         self._view.repaint_scene()
 

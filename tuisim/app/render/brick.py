@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from rich.color import Color
 from rich.style import Style
 
-from tuisim.app.render.mat import shrunk
 from tuisim.core.css_colors import Rgb
 from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, ROW_BYTES, BrickState, TextScreen
+from tuisim.scene.discs import shrunk
 from tuisim.terminal.text_runs import Run
 
 _PAPER_RGB, _INK_RGB = (172, 186, 158), (22, 28, 20)

@@ -6,12 +6,13 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from tuisim.app.render.mat import whole_field
-from tuisim.app.render.mono_robot import body, pointer
-from tuisim.app.render.scene import PenTrace, ScenePainter, SceneState, visible_on
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import RobotSpec
+from tuisim.scene.mono_robot import body, pointer
+from tuisim.scene.painter import ScenePainter, SceneState
+from tuisim.scene.pen import PenTrace, visible_on
+from tuisim.scene.view import whole_field
 from tuisim.terminal.fitted_cells import all_cells
 from tuisim.terminal.glyphs import GLYPHS, SIGNS, glyph_set
 from tuisim.terminal.mono import mono_cells

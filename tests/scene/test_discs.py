@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tuisim.charts.world_image import ARRAY_PX, arrays_picture
 from tuisim.core.field import disc_pixels
 from tuisim.core.spec import ColorSensorSpec, RobotSpec
+from tuisim.scene.discs import ARRAY_PX, arrays_picture
 
 SENSOR: ColorSensorSpec = RobotSpec().color_sensors[0]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tuisim.app.render.mat import draw_discs, lay_out
 from tuisim.core.field import disc_pixels
+from tuisim.scene.discs import draw_discs, lay_out
 
 GROUND, CORNER = (1, 1, 1), (2, 2, 2)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tuisim.app.render.mat import MatPictures, shrink, whole_field
-from tuisim.charts.world_image import Viewport
+from tuisim.scene.mat import MatPictures, shrink
+from tuisim.scene.view import Viewport, whole_field
 from tuisim.terminal.pixels import CellPoints, Pixels
 
 OUTSIDE = (1, 2, 3)

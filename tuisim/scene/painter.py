@@ -3,29 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import groupby
 
 import numpy as np
 
-from tuisim.app.render.mat import MatPictures
-from tuisim.charts.world_image import (
-    CLEARED,
-    COLORED,
-    GHOST,
-    GREY,
-    GREY_GHOST,
-    MONO,
-    RobotColors,
-    Viewport,
-    draw_robot,
-)
-from tuisim.core.css_colors import Rgb, css_rgb
+from tuisim.core.css_colors import Rgb
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import RobotOutline, outline_of
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, BeaconSpec, Obstacle, PenSpec, RobotSpec
-from tuisim.runs.arrays import FloatArray
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, BeaconSpec, Obstacle, RobotSpec
+from tuisim.scene.mat import MatPictures
+from tuisim.scene.mono_robot import draw_mono_robot
+from tuisim.scene.pen import PenTrace, trace_pixels, visible_on
+from tuisim.scene.robot import CLEARED, COLORED, GHOST, GREY, GREY_GHOST, MONO, draw_robot
+from tuisim.scene.view import Viewport
 from tuisim.terminal.pixels import Pixels
 
 _GHOST_OPACITY = 0.75
@@ -50,6 +41,8 @@ class SceneState:
     """Whether each touch sensor is pressed; empty for none."""
     beacon: BeaconSpec | None = None
     """The infrared beacon on the field."""
+    has_robot: bool = True
+    """Whether the robot is seen; a damaged recording may have no valid pose."""
 
 
 class ScenePainter:
@@ -63,6 +56,7 @@ class ScenePainter:
         mono: Draw for a terminal without any colours.
         coarse: Draw the robot with few details, for glyphs that show less than the points of their cells.
         whole_cells: End the mat where a cell ends, for glyphs that do not fill their cells.
+        for_file: Draw for a file: the mat as it is, and a frame around it.
     """
 
     def __init__(
@@ -74,9 +68,11 @@ class ScenePainter:
         mono: bool = False,
         coarse: bool = False,
         whole_cells: bool = False,
+        for_file: bool = False,
     ) -> None:
         self.trace = trace
-        self._mat = MatPictures(mat, outside_rgb, whole_cells)
+        self._mat = MatPictures(mat, outside_rgb, whole_cells, exact=for_file)
+        self._has_frame = for_file
         without_colors = CLEARED if coarse else MONO
         self._robot_colors = without_colors if mono else GREY if grey else COLORED
         self._grey = grey or mono
@@ -105,15 +101,19 @@ class ScenePainter:
                 picture, view, scene.ghost, outline, self._ghost_colors, _GHOST_OPACITY, detail_cols=self._detail_cols
             )
         draw = draw_mono_robot if self._mono else draw_robot
-        draw(
-            picture, view, scene.pose, outline, self._robot_colors, pressed=scene.pressed, detail_cols=self._detail_cols
-        )
+        if scene.has_robot:
+            draw(
+                picture, view, scene.pose, outline, self._robot_colors, pressed=scene.pressed,
+                detail_cols=self._detail_cols,
+            )  # fmt: skip
         return picture
 
     def _ground_picture(self, view: Viewport, scene: SceneState) -> Pixels:
         key = (view, scene.obstacles, scene.marked, scene.beacon, self.trace, self.trace.clears)
         if self._ground is None or self._ground_key != key:
             self._ground = self._mat.picture(view).copy()
+            if self._has_frame:
+                draw_frame(self._ground, view)
             draw_obstacles(self._ground, view, scene.obstacles, scene.marked)
             if scene.beacon is not None:
                 draw_beacon(self._ground, view, scene.beacon.x_mm, scene.beacon.y_mm)
@@ -131,60 +131,6 @@ class ScenePainter:
         return self._mat.picture(view)
 
 
-def draw_mono_robot(
-    picture: Pixels,
-    view: Viewport,
-    pose: Pose,
-    outline: RobotOutline,
-    colors: RobotColors,
-    *,
-    pressed: tuple[bool, ...] = (),
-    detail_cols: int | None = None,
-) -> None:
-    """Paint a robot as `draw_robot` does, for a terminal of two colours.
-
-    Each point is black or white: a share of both would be a pattern, like the greys of the mat. A white rim keeps the
-    robot apart from what is around it.
-    """
-    on_white, on_black = np.full_like(picture, 255), np.zeros_like(picture)
-    for canvas in (on_white, on_black):
-        draw_robot(canvas, view, pose, outline, colors, pressed=pressed, detail_cols=detail_cols)
-    white, black = on_white[..., 0].astype(np.intp), on_black[..., 0].astype(np.intp)
-    # Where nothing covers the canvas, one is as white and the other as black as before.
-    covered = white - black <= 128
-    around = np.pad(covered, 1)
-    rim = np.logical_or.reduce([np.roll(around, at, (0, 1)) for at in _BESIDE])[1:-1, 1:-1]
-    picture[rim | covered] = 255
-    picture[covered & (white <= 128)] = 0
-
-
-_BESIDE = ((-1, 0), (1, 0), (0, -1), (0, 1))
-
-_LUMA = np.array([0.299, 0.587, 0.114])
-_APART, _GREY_APART = 130.0, 90.0
-"""Least difference of a line from the ground: as a distance of colours, and of their brightness."""
-
-
-def visible_on(ground: Pixels, rgb: Rgb, grey: bool = False) -> Pixels:
-    """Return a colour for each pixel below a line: that of the line, or a darker or lighter one where it would vanish.
-
-    Args:
-        ground: Shape (n, 3).
-        rgb: Colour of the line.
-        grey: Only brightness will be seen.
-    """
-    line = np.array(rgb, np.float64)
-    if grey:
-        vanishes = np.abs(ground @ _LUMA - line @ _LUMA) < _GREY_APART
-    else:
-        vanishes = np.square(ground - line).sum(axis=1) < _APART**2
-    shown = np.repeat(line[None], len(ground), axis=0)
-    is_light = (ground @ _LUMA > 127)[:, None]
-    shown[vanishes] = np.where(is_light, line * 0.3, line * 0.3 + 178)[vanishes]
-    pixels: Pixels = np.rint(shown).astype(np.uint8)
-    return pixels
-
-
 OBSTACLE_RGB = (175, 95, 0)
 OBSTACLE_EDGE_RGB = (135, 0, 0)
 MARKED_RGB = (255, 215, 0)
@@ -196,55 +142,18 @@ BEACON_CORE_RGB = (255, 255, 255)
 _BEACON_MM = 25.0
 """Radius of a beacon."""
 
-_LONGEST_STEP_MM = 250.0
-"""Two trace points further apart are not joined: the robot was placed elsewhere."""
+FRAME_PX = 2
+_FRAME_RGB = (70, 74, 82)
 
 
-def trace_pixels(view: Viewport, xs_mm: FloatArray, ys_mm: FloatArray, width_mm: float) -> tuple[FloatArray, ...]:
-    """Return the picture pixels that a trace covers.
-
-    Args:
-        view: The visible part of the field.
-        xs_mm: World x of the points in order, shape (n,); NaN lifts the pen.
-        ys_mm: World y of the points, shape (n,).
-        width_mm: Width of the pen; at least one pixel is drawn.
-
-    Returns:
-        Rows and columns, each shape (m,), whole numbers inside the picture, possibly repeated.
-    """
-    xs, ys = _joined(xs_mm, ys_mm, view.mm_per_px / 2)
-    cols = (xs - view.left_mm) / view.mm_per_px
-    rows = (view.top_mm - ys) / view.mm_per_row
-    across, down = _spread(width_mm / view.mm_per_px), _spread(width_mm / view.mm_per_row)
-    cols = np.floor(cols[:, None, None] + across[None, :, None] + 0 * down[None, None, :]).ravel()
-    rows = np.floor(rows[:, None, None] + 0 * across[None, :, None] + down[None, None, :]).ravel()
-    inside = (cols >= 0) & (cols < view.width_px) & (rows >= 0) & (rows < view.height_px)
-    return rows[inside].astype(np.intp), cols[inside].astype(np.intp)
-
-
-def _spread(width_px: float) -> FloatArray:
-    """Return the pixels across a line, relative to its middle."""
-    count = max(1, round(width_px))
-    return np.arange(count, dtype=np.float64) - (count - 1) / 2
-
-
-def _joined(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatArray, FloatArray]:
-    """Return points no further apart than a step along the trace, NaN dropped."""
-    good = np.isfinite(xs) & np.isfinite(ys)
-    if len(xs) < 2:
-        return xs[good], ys[good]
-    lengths = np.hypot(np.diff(xs), np.diff(ys))
-    drawn = np.isfinite(lengths) & (lengths <= _LONGEST_STEP_MM) & (lengths > step_mm)
-    starts = np.flatnonzero(drawn)
-    counts = np.ceil(lengths[starts] / step_mm).astype(np.intp)
-    if not len(starts):
-        return xs[good], ys[good]
-    which = np.repeat(starts, counts)
-    first = np.repeat(np.cumsum(counts) - counts, counts)
-    share = (np.arange(len(which)) - first) / np.repeat(counts, counts)
-    between_x = xs[which] + share * (xs[which + 1] - xs[which])
-    between_y = ys[which] + share * (ys[which + 1] - ys[which])
-    return np.concatenate((xs[good], between_x)), np.concatenate((ys[good], between_y))
+def draw_frame(picture: Pixels, view: Viewport) -> None:
+    """Paint a frame around the field."""
+    left, top = (round(edge) for edge in view.to_px(0.0, FIELD_HEIGHT_MM))
+    right, low = (int(edge) for edge in view.to_px(FIELD_WIDTH_MM, 0.0))
+    rows, cols = slice(max(top - FRAME_PX, 0), low + FRAME_PX), slice(max(left - FRAME_PX, 0), right + FRAME_PX)
+    inside = picture[top:low, left:right].copy()
+    picture[rows, cols] = _FRAME_RGB
+    picture[top:low, left:right] = inside
 
 
 def draw_rays(
@@ -333,72 +242,3 @@ def draw_beacon(picture: Pixels, view: Viewport, x_mm: float, y_mm: float) -> No
 def _span(low: float, high: float, size_px: int) -> slice:
     first = round(low)
     return slice(min(max(first, 0), size_px), min(max(round(high), first + 1, 0), size_px))
-
-
-_FALLBACK = "red"
-
-
-def pen_rgb(color: str) -> Rgb:
-    """Return the colour of a pen: a CSS name or `#rrggbb`; red for anything else."""
-    found = css_rgb(color) or css_rgb(_FALLBACK)
-    assert found is not None
-    return found
-
-
-@dataclass(frozen=True, slots=True)
-class Piece:
-    """A part of the trace, drawn with one pen."""
-
-    xs_mm: FloatArray
-    """Shape (n,); NaN lifts the pen."""
-    ys_mm: FloatArray
-    rgb: Rgb
-    width_mm: float
-
-    @property
-    def pen(self) -> tuple[Rgb, float]:
-        """The colour and width of the pen."""
-        return self.rgb, self.width_mm
-
-
-class PenTrace:
-    """Everything that the pen has drawn since the trace was last cleared."""
-
-    def __init__(self) -> None:
-        self._pieces: list[Piece] = []
-        self.count = 0
-        """Number of points ever added; grows with every change but clearing."""
-        self.clears = 0
-        """How often the trace was cleared."""
-
-    def add(self, xs_mm: FloatArray, ys_mm: FloatArray, pen: PenSpec) -> None:
-        """Add points, joined to the last ones if the pen is the same; NaN lifts it."""
-        if not len(xs_mm):
-            return
-        self.count += len(xs_mm)
-        rgb, width_mm = pen_rgb(pen.color), pen.width_mm
-        if self._pieces and self._pieces[-1].pen == (rgb, width_mm):
-            last = self._pieces[-1]
-            xs_mm, ys_mm = np.concatenate((last.xs_mm[-1:], xs_mm)), np.concatenate((last.ys_mm[-1:], ys_mm))
-        self._pieces.append(Piece(xs_mm, ys_mm, rgb, width_mm))
-
-    def clear(self) -> None:
-        """Clear the trace."""
-        self._pieces.clear()
-        self.clears += 1
-
-    def pieces(self, first: int) -> Iterator[Piece]:
-        """Return the pieces from index `first` on."""
-        return iter(self._pieces[first:])
-
-    def __len__(self) -> int:
-        return len(self._pieces)
-
-    def join(self) -> None:
-        """Merge consecutive pieces of the same pen, so that they are drawn in one step."""
-        joined = []
-        for (rgb, width_mm), alike in groupby(self._pieces, key=lambda piece: piece.pen):
-            pieces = list(alike)
-            xs_mm, ys_mm = (np.concatenate(parts) for parts in zip(*((p.xs_mm, p.ys_mm) for p in pieces), strict=True))
-            joined.append(Piece(xs_mm, ys_mm, rgb, width_mm))
-        self._pieces = joined

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tuisim.charts.world_image import CLEARED, draw_robot
+from tuisim.core.geometry import Pose
+from tuisim.core.outline import RobotOutline
+from tuisim.scene.robot import CLEARED, RobotColors, draw_robot
+from tuisim.scene.view import Viewport
 from tuisim.terminal.mono import sign_cell
-
-if TYPE_CHECKING:
-    from tuisim.charts.world_image import Viewport
-    from tuisim.core.geometry import Pose
-    from tuisim.core.outline import RobotOutline
+from tuisim.terminal.pixels import Pixels
 
 _BODY = "&"
 """The sign of a robot's cells: neither a mat has it, see `terminal.glyphs.SIGNS`, nor a frame."""
@@ -59,3 +57,33 @@ def pointer(view: Viewport, pose: Pose, reach_mm: float, pivot: str) -> dict[tup
     signs[path[-1]] = _TIPS.get(direction, _LINES[direction % 4])
     signs[math.floor(row), math.floor(col)] = pivot
     return {at: sign_cell(sign) for at, sign in signs.items()}
+
+
+def draw_mono_robot(
+    picture: Pixels,
+    view: Viewport,
+    pose: Pose,
+    outline: RobotOutline,
+    colors: RobotColors,
+    *,
+    pressed: tuple[bool, ...] = (),
+    detail_cols: int | None = None,
+) -> None:
+    """Paint a robot as `draw_robot` does, for a terminal of two colours.
+
+    Each point is black or white: a share of both would be a pattern, like the greys of the mat. A white rim keeps the
+    robot apart from what is around it.
+    """
+    on_white, on_black = np.full_like(picture, 255), np.zeros_like(picture)
+    for canvas in (on_white, on_black):
+        draw_robot(canvas, view, pose, outline, colors, pressed=pressed, detail_cols=detail_cols)
+    white, black = on_white[..., 0].astype(np.intp), on_black[..., 0].astype(np.intp)
+    # Where nothing covers the canvas, one is as white and the other as black as before.
+    covered = white - black <= 128
+    around = np.pad(covered, 1)
+    rim = np.logical_or.reduce([np.roll(around, at, (0, 1)) for at in _BESIDE])[1:-1, 1:-1]
+    picture[rim | covered] = 255
+    picture[covered & (white <= 128)] = 0
+
+
+_BESIDE = ((-1, 0), (1, 0), (0, -1), (0, 1))

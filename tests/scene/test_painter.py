@@ -1,0 +1,84 @@
+"""The world's picture: robot, trace, rays, obstacles, ghost."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.scene.scenes import ROBOT, VIEW, at, painter
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import BeaconSpec, InfraredSpec, Obstacle, RobotSpec, TouchSpec
+from tuisim.scene.painter import BEACON_CORE_RGB, BEACON_RGB, SceneState
+from tuisim.scene.robot import COLORED
+from tuisim.scene.view import Viewport, whole_field
+
+HERE = Pose(1000.0, 500.0, 0.0)
+
+
+def test_the_obstacle_at_hand_has_another_edge() -> None:
+    boxes = (Obstacle(300, 200, 200, 300), Obstacle(900, 200, 200, 300))
+    plain = painter().paint(VIEW, SceneState(ROBOT, Pose(2000, 1000, 0), obstacles=boxes))
+    marked = painter().paint(VIEW, SceneState(ROBOT, Pose(2000, 1000, 0), obstacles=boxes, marked=1))
+
+    assert at(plain, 305, 350) == at(marked, 305, 350) != (255, 255, 255)
+    assert at(plain, 905, 350) != at(marked, 905, 350)
+    assert at(plain, 1000, 350) == at(marked, 1000, 350)
+
+
+def test_rays_end_at_their_length_and_at_the_field() -> None:
+    scene = SceneState(ROBOT, HERE, rays=((0.0, 600.0), (90.0, 5000.0)))
+
+    picture = painter().paint(VIEW, scene)
+
+    assert at(picture, 1500, 500) != (255, 255, 255)
+    assert at(picture, 1700, 500) == (255, 255, 255)
+    assert {tuple(pixel) for pixel in picture[0].tolist()} <= {(9, 9, 9), (255, 255, 255), at(picture, 1020, 1130)}
+
+
+@pytest.mark.parametrize("width_mm", [200.0, 1.0], ids=["a box", "thinner than a pixel"])
+def test_obstacles_are_drawn(width_mm: float) -> None:
+    scene = SceneState(ROBOT, Pose(2000, 1000, 0), obstacles=(Obstacle(300, 200, width_mm, 300),))
+
+    assert at(painter().paint(VIEW, scene), 301, 350) != (255, 255, 255)
+
+
+TOUCHES = RobotSpec(
+    touch_sensors=(TouchSpec(y_mm=90.0, width_mm=60.0),),
+    infrared=InfraredSpec(x_mm=50.0, y_mm=30.0),
+    color_sensors=(),
+    ultrasonic=None,
+    gyro=None,
+)
+CLOSE = Viewport(80, 78, 4.0, 1000 - 160.0, 500 + 156.0)
+
+
+def test_a_bumper_is_a_bar_in_front_and_red_while_it_is_pressed() -> None:
+    free = painter().paint(CLOSE, SceneState(TOUCHES, HERE))
+    pressed = painter().paint(CLOSE, SceneState(TOUCHES, HERE, pressed=(True,)))
+    # Beside the nose, as far as the bar goes.
+    assert [at(free, 1090, 500 + aside, CLOSE) for aside in (-26, 26)] == [COLORED.bumper] * 2
+    assert [at(pressed, 1090, 500 + aside, CLOSE) for aside in (-26, 26)] == [COLORED.pressed] * 2
+    assert at(free, 1090, 540, CLOSE) == at(free, 1110, 526, CLOSE) == (255, 255, 255)
+
+
+def test_an_infrared_sensor_is_drawn_where_it_is() -> None:
+    assert at(painter().paint(CLOSE, SceneState(TOUCHES, HERE)), 1030, 450, CLOSE) == COLORED.spot
+
+
+@pytest.mark.parametrize("view", [whole_field(38, 19), VIEW, CLOSE], ids=["small", "middle", "close"])
+def test_a_beacon_is_drawn_also_at_the_edge(view: Viewport) -> None:
+    scene = SceneState(ROBOT, Pose(2000, 1000, 0), beacon=BeaconSpec(1000.0, 500.0))
+    picture = painter().paint(view, scene)
+    assert at(picture, 1000, 500, view) == BEACON_CORE_RGB
+    assert (picture == np.array(BEACON_RGB)).all(axis=2).sum() >= 4
+    painter().paint(view, replace(scene, beacon=BeaconSpec(0.0, 1143.0)))
+
+
+def test_the_ghost_is_drawn_below_the_robot() -> None:
+    alone = painter().paint(VIEW, SceneState(ROBOT, HERE))
+    both = painter().paint(VIEW, SceneState(ROBOT, HERE, ghost=replace(HERE, x_mm=500.0)))
+
+    assert at(both, 500, 500) != (255, 255, 255)
+    assert at(both, 1000, 500) == at(alone, 1000, 500)

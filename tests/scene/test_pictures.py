@@ -1,0 +1,94 @@
+"""Pictures for files: what the app shows at the same instant, in the same colours."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import atan2, degrees
+
+import numpy as np
+import pytest
+
+from tests.scene.scenes import CORNERS, MIDDLE, pixel, spec_of
+from tuisim.config.robots import ROBOTS
+from tuisim.core.geometry import Pose
+from tuisim.core.profile import ROBOLAB
+from tuisim.core.spec import (
+    FIELD_HEIGHT_MM,
+    FIELD_WIDTH_MM,
+    BeaconSpec,
+    Obstacle,
+    PenSpec,
+    RobotSpec,
+    RunSpec,
+    TouchSpec,
+    WorldSpec,
+)
+from tuisim.scene.painter import BEACON_RGB, OBSTACLE_RGB, ScenePainter
+from tuisim.scene.pen import PenTrace, Piece
+from tuisim.scene.pictures import RIM_RGB, fitting_view, scene_of, world_painter, world_picture, world_view
+from tuisim.scene.robot import COLORED
+from tuisim.terminal.pixels import Pixels
+
+WHITE: Pixels = np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8)
+HERE = Pose(900, 480, 25)
+SPEC = RunSpec(
+    RobotSpec(pen=PenSpec(color="teal", width_mm=9.0), gyro=None, touch_sensors=(TouchSpec(port="in4", y_mm=90.0),)),
+    WorldSpec(obstacles=(Obstacle(400, 300, 200, 150), Obstacle(985, 480, 60, 100)), beacon=BeaconSpec(1700, 800)),
+    ROBOLAB,
+)
+TRACE = Piece.of(np.array([700.0, 900.0]), np.array([900.0, 700.0]), SPEC.robot.pen)
+
+
+def test_it_is_what_a_screen_shows_in_a_frame() -> None:
+    view = world_view(SPEC.robot)
+    trace = PenTrace()
+    trace.add(TRACE)
+    screen = ScenePainter(WHITE, RIM_RGB, trace).paint(view, scene_of(SPEC, HERE, rays=True))
+
+    picture = np.asarray(world_picture(SPEC, WHITE, HERE, (TRACE,), rays=True))
+
+    differs = np.argwhere((picture != screen).any(axis=2))
+    places = np.array([view.to_mm(col + 0.5, row + 0.5) for row, col in differs.tolist()])
+    outside = (places < 0).any(axis=1) | (places > (FIELD_WIDTH_MM, FIELD_HEIGHT_MM)).any(axis=1)
+    assert len(places) and outside.mean() > 0.99
+
+
+def test_everything_on_the_field_is_seen() -> None:
+    picture = np.asarray(world_picture(SPEC, WHITE, HERE, (TRACE,), rays=True))
+
+    seen = set(map(tuple, np.unique(picture.reshape(-1, 3), axis=0).tolist()))
+    assert {OBSTACLE_RGB, BEACON_RGB, COLORED.body, COLORED.pressed, (0, 128, 128), RIM_RGB} <= seen
+
+
+def test_runs_whose_pens_have_not_touched_are_not_joined() -> None:
+    other = replace(TRACE, xs_mm=TRACE.xs_mm + 100, ys_mm=TRACE.ys_mm + 100)
+    view = fitting_view(SPEC.robot, 600, 400)
+    scene = scene_of(SPEC, None)
+
+    picture = world_painter(WHITE, (TRACE, other)).paint(view, scene)
+
+    col, row = view.to_px(850, 850)
+    assert tuple(picture[int(row), int(col)]) == (255, 255, 255)
+    assert not (picture == COLORED.body).all(axis=2).any()
+
+
+@pytest.mark.parametrize("corner", CORNERS, ids=str)
+def test_a_white_mat_has_a_frame(corner: tuple[float, float]) -> None:
+    spec = spec_of()
+    picture, (x_mm, y_mm) = world_picture(spec, WHITE, MIDDLE), corner
+    inward, outward = (-3, 3) if x_mm else (3, -3)
+    edge = pixel(picture, spec.robot, (x_mm + outward / 2, 570))
+    assert pixel(picture, spec.robot, (x_mm + inward, y_mm + (-3 if y_mm else 3))) == (255, 255, 255)
+    assert max(edge) < 100
+    assert pixel(picture, spec.robot, (x_mm + 6 * outward, y_mm)) not in ((255, 255, 255), edge)
+
+
+@pytest.mark.quick_cases("Small_Robot")
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_a_robot_on_the_edge_is_not_cut_off(robot: str) -> None:
+    spec = spec_of(robot)
+    for x_mm, y_mm in CORNERS:
+        outward = degrees(atan2(y_mm - FIELD_HEIGHT_MM / 2, x_mm - FIELD_WIDTH_MM / 2))
+        picture = np.asarray(world_picture(spec, WHITE, Pose(x_mm, y_mm, outward)))
+        border = np.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
+        assert len(np.unique(border, axis=0)) == 1
