@@ -87,11 +87,20 @@ class Choice(_Control):
         return line
 
 
-class EntryPanel(Vertical):
-    """A panel with text fields, each applied by Enter and when it loses the focus, and a last line for errors."""
+class FormPanel(Vertical):
+    """A panel with text fields, and a last line for errors."""
 
     USE: ClassVar[str] = ""
     """The last line while there is no error."""
+
+    def say(self, wrong: str) -> None:
+        """Show an error; empty removes it."""
+        self.query_one("#message", Static).update(wrong or self.USE)
+        self.set_class(bool(wrong), "-wrong")
+
+
+class EntryPanel(FormPanel):
+    """A panel with text fields, each applied by Enter and when it loses the focus."""
 
     @on(Input.Submitted)
     def _submitted(self, event: Input.Submitted) -> None:
@@ -104,11 +113,6 @@ class EntryPanel(Vertical):
 
     def _apply(self, entry: Input) -> None:
         """Apply the value of a field, or say why it is invalid."""
-
-    def say(self, wrong: str) -> None:
-        """Show an error; empty removes it."""
-        self.query_one("#message", Static).update(wrong or self.USE)
-        self.set_class(bool(wrong), "-wrong")
 
 
 class Row(Vertical):

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tuisim.app.action import key_groups
 from tuisim.app.layout.arrangement import Preset
 from tuisim.app.terminal_app import theme_list
-from tuisim.config.user_config import CELL_SET
+from tuisim.config.files import Scalar
+from tuisim.config.user_config import CELL_SET, THEME, Setting, load_config
 from tuisim.terminal.picture_options import AUTO
 
 if TYPE_CHECKING:
@@ -91,13 +93,46 @@ def choose_cells(context: ActionContext) -> None:
     app.push_screen(CellsCard(app.picture_mode.chosen, app.picture_mode.best), chosen)
 
 
+def _theme(context: ActionContext, value: str) -> None:
+    context.app.theme = value
+
+
+def _rays(context: ActionContext, value: bool) -> None:
+    if world := context.panels.world:
+        world.show_rays = value
+
+
+_APPLY: Mapping[str, Callable[[ActionContext, Any], None]] = {
+    "app.speed": lambda context, value: context.runs.set_speed(value),
+    "app.ultrasound": _rays,
+    CELL_SET: lambda context, value: context.app.choose_cells(value),
+    "app.pixels": lambda context, value: context.app.choose_pixels(value),
+    THEME: _theme,
+}
+"""What applies a setting to the app that is open, by its path."""
+
+
+def change_setting(context: ActionContext, one: Setting, value: Scalar | None) -> None:
+    """Write a setting to `config.toml`, and apply it at once where the app can.
+
+    Raises:
+        ConfigError: the value is wrong, or the file cannot be written.
+    """
+    from tuisim.config.user_config_file import save_setting
+
+    save_setting(one, value)
+    if apply := _APPLY.get(one.path):
+        apply(context, load_config().values.get(one.path, one.default))
+        context.app.situation_changed()
+        context.app.draw(force=True)
+
+
 def open_settings(context: ActionContext) -> None:
     """Open the settings screen."""
     from tuisim.app.dialogs.settings import SettingsScreen
-    from tuisim.app.setup.user_settings import change
     from tuisim.app.themes import theme_names
 
-    context.app.push_screen(SettingsScreen(partial(change, context), theme_names()))
+    context.app.push_screen(SettingsScreen(partial(change_setting, context), theme_names()))
 
 
 def choose_theme(context: ActionContext) -> None:

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from textual import on
 from textual.app import ComposeResult
-from textual.containers import Horizontal, Vertical
+from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input, Label, Static
 
 from tuisim.app.action import action_link
-from tuisim.app.form import NumberInput
+from tuisim.app.form import FormPanel, NumberInput
 from tuisim.core.geometry import Pose, shown_heading_deg
 from tuisim.core.spec import START_VALUES
 from tuisim.core.values import WrongValue
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 _FIELDS = dict(zip(("x", "y", "angle"), START_VALUES.values(), strict=True))
 """By id."""
-_USE = "Enter places the robot"
 
 
 def parse_field(field: str, text: str) -> float:
@@ -40,8 +39,10 @@ def parse_field(field: str, text: str) -> float:
     return found
 
 
-class Positioning(Vertical):
+class Positioning(FormPanel):
     """The positioning panel: X, Y and angle of the robot."""
+
+    USE = "Enter places the robot"
 
     @dataclass
     class Applied(Message):
@@ -62,7 +63,7 @@ class Positioning(Vertical):
             yield Static(action_link(self.app, "home", "Start"))
             yield Static(action_link(self.app, "random", "Random"))
         yield Static(action_link(self.app, "poses", "Saved poses"), classes="link")
-        yield Static(_USE, id="message", markup=False)
+        yield Static(self.USE, id="message", markup=False)
 
     def show(self, snapshot: Snapshot) -> None:
         """Show the pose in the fields that are not being edited."""
@@ -83,7 +84,6 @@ class Positioning(Vertical):
     @on(Input.Submitted)
     def _apply(self, event: Input.Submitted) -> None:
         event.stop()
-        message = self.query_one("#message", Static)
         values = {}
         for field in _FIELDS:
             entry = self.query_one(f"#{field}", Input)
@@ -93,11 +93,9 @@ class Positioning(Vertical):
             except ValueError as error:
                 entry.add_class("wrong")
                 entry.focus()
-                message.update(str(error))
-                self.set_class(True, "-wrong")
+                self.say(str(error))
                 return
         for field in _FIELDS:
             self._shown[field] = self.query_one(f"#{field}", Input).value
-        message.update(_USE)
-        self.set_class(False, "-wrong")
+        self.say("")
         self.post_message(self.Applied(Pose(values["x"], values["y"], values["angle"])))

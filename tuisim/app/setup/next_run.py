@@ -116,8 +116,13 @@ def _resolved(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str
     return found, words
 
 
-def _built(plan: NextRun, changes: Mapping[str, Any]) -> NextRun:
-    settings = plan.settings.changed(changes)
+def with_values(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
+    """Return the plan with changed settings, by path, that need no file.
+
+    Raises:
+        ConfigError: the mat is missing, or a value is invalid.
+    """
+    settings = plan.settings.changed(values)
     return replace(plan, settings=settings, spec=build_run_spec(settings))
 
 
@@ -138,7 +143,7 @@ def with_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
         said = {**dict.fromkeys(START), **said}
     kept = {path: word for path, word in plan.words.items() if path not in said}
     following = {key: value for key, value in plan.from_program.items() if key not in choices}
-    built = _built(plan, said)
+    built = with_values(plan, said)
     return replace(built, words=kept | words, robot=said.get("robot", plan.robot), from_program=following)
 
 
@@ -159,7 +164,7 @@ def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
     changed = {key: value for key, value in layer.items() if settings[key] != value}
     kept = {key: word for key, word in plan.words.items() if key not in changed}
     named = {key: word for key, word in words.items() if key in changed}
-    found = replace(_built(plan, changed) if changed else plan, words=kept | named, from_program=layer)
+    found = replace(with_values(plan, changed) if changed else plan, words=kept | named, from_program=layer)
     found = replace(found, robot=changed.get("robot", plan.robot), program_robot=decided.robot)
     return found, decided if changed.keys() & {"robot", "profile"} else Decided()
 
@@ -175,7 +180,7 @@ def with_program_robot(plan: NextRun) -> NextRun:
     chosen = plan.program_robot or choose_robot(DEFAULT_ROBOT)
     words = {key: word for key, word in plan.words.items() if key != "robot"}
     following = {**plan.from_program, "robot": chosen}
-    return replace(_built(plan, {"robot": chosen}), words=words, robot=chosen, from_program=following)
+    return replace(with_values(plan, {"robot": chosen}), words=words, robot=chosen, from_program=following)
 
 
 def with_mat(plan: NextRun, name: str) -> NextRun:
@@ -207,7 +212,7 @@ def with_profile(plan: NextRun, word: str) -> NextRun:
 
 def with_robot_as_chosen(plan: NextRun) -> NextRun:
     """Return the plan with every edit of the robot undone."""
-    return _built(plan, {"robot": plan.robot})
+    return with_values(plan, {"robot": plan.robot})
 
 
 def with_robot_edited(plan: NextRun, robot: RobotSpec, moved: bool = False) -> NextRun:
@@ -222,7 +227,7 @@ def with_robot_edited(plan: NextRun, robot: RobotSpec, moved: bool = False) -> N
         ConfigError: the mat is missing.
     """
     choice = plan.robot_choice
-    return _built(plan, {"robot": replace(choice, spec=robot, own_places=choice.own_places or moved)})
+    return with_values(plan, {"robot": replace(choice, spec=robot, own_places=choice.own_places or moved)})
 
 
 def robot_to_save(plan: NextRun) -> RobotSpec:
@@ -245,15 +250,6 @@ def with_obstacles(plan: NextRun, obstacles: tuple[Obstacle, ...]) -> NextRun:
     words = {path: word for path, word in plan.words.items() if path != "obstacles"}
     spec = replace(plan.spec, world=replace(plan.spec.world, obstacles=obstacles))
     return replace(plan, settings=settings, spec=spec, words=words)
-
-
-def with_values(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
-    """Return the plan with changed settings, by path, that need no file.
-
-    Raises:
-        ConfigError: the mat is missing, or a value is invalid.
-    """
-    return _built(plan, values)
 
 
 # These are called many times a second during a drag: the specification is changed, not rebuilt.
