@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from tuisim.runtime import wallclock  # isort: skip - must come first: it saves the real clock
-from tuisim.runtime import no_gc  # isort: skip  # noqa: F401 - imported for its effect
 
 import os
 import sys
