@@ -21,7 +21,7 @@ from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import Session
 
 if TYPE_CHECKING:
-    from tuisim.runtime.run_config import RunConfig
+    from tuisim.runs.run_options import RunOptions
 
 CONDITION_LIMIT_S = 0.2
 """Time limit of a condition, in real seconds."""
@@ -62,12 +62,12 @@ class Debugger:
         self._trace_from: int | None = None
         self._looks: list[Message] = []
 
-    def begin(self, config: RunConfig) -> None:
+    def begin(self, options: RunOptions) -> None:
         """Apply the settings that are known before the program's first line."""
-        self._set_breaks(parse_breakpoints(config.breaks))
-        self._trace_from = config.trace_from_tick
-        if config.hold_at is not None:
-            self._set_instant(*config.hold_at)
+        self._set_breaks(parse_breakpoints(options.breaks))
+        self._trace_from = options.trace_from_tick
+        if options.hold_at is not None:
+            self._set_instant(*options.hold_at)
             self._session.steering.resume(at_full_speed=True)
         self._trace(at_tick=True)
         self._update_session()
