@@ -29,6 +29,7 @@ from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.core.tree import from_plain, to_plain
 from tuisim.runs.run_folder import field_files
+from tuisim.runs.run_options import RunOptions
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.control import RunControl
 from tuisim.runtime.output import OutputRecorder
@@ -41,6 +42,7 @@ from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import RunLimits, Session
 from tuisim.shim.files.open_files import OpenFiles
 from tuisim.shim.install import install
+from tuisim.source import Program
 
 Row = list[float]
 Line = tuple[int, float, str]
@@ -133,12 +135,8 @@ class Lines:
 
 def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict[str, Any]:
     """Run a program to its end, in this process."""
-    config = RunConfig(
-        folder=Path(), spec=spec, field=files, name="program.py", path="", text=text, prelude=prelude, arguments=(),
-        python_path=(), module_folder="", live=False, speed=0.0, start_paused=False, time_limit_s=60.0,
-        stall_limit_s=0.0, answers=(), asks_user=False, time_waits=False, replies=False, actions=(), breaks=(),
-        trace_from_tick=None, hold_at=None,
-    )  # fmt: skip
+    program, options = Program("program.py", text, prelude), RunOptions(speed=0.0, time_limit_s=60.0, stall_limit_s=0.0)
+    config = RunConfig(Path(), program, spec, files, options)
     sim, lines = Simulation(spec, MemorySink()), Lines()
     output = OutputRecorder()
     output.writer = lines  # type: ignore[assignment]

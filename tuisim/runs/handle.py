@@ -11,7 +11,7 @@ import subprocess
 import time
 from collections.abc import Hashable, Mapping
 from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -37,7 +37,6 @@ from tuisim.protocol import (
     SetBreaks,
     Started,
     Stop,
-    UserAction,
     Wheels,
 )
 from tuisim.runs.child.events import DEBUGGED, EventStream, allowed_events
@@ -58,6 +57,8 @@ from tuisim.runs.child.readable import is_readable
 from tuisim.runs.packed_files import PACKED_MAGIC, PACKED_SUFFIX
 from tuisim.runs.removal import remove_tree
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
+from tuisim.runs.run_options import DEFAULT_TIME_LIMIT_S as DEFAULT_TIME_LIMIT_S
+from tuisim.runs.run_options import RunOptions as RunOptions
 from tuisim.runs.side_files import LOG_FILE, MOST_BYTES, STACK_FILE, copy_modules, read_actions, read_stop_tick
 from tuisim.runs.store import NewRun, RunStore
 from tuisim.runs.views import views_of
@@ -68,56 +69,9 @@ STUCK_AFTER_S = 0.3
 ASK_AGAIN_S = 0.05
 ENDED_CHILD_S = 0.2
 """Time for a child to exit after its last event."""
-DEFAULT_TIME_LIMIT_S = 600.0
-"""Simulated time that a run may take if nothing else is asked for."""
 _BEYOND_LIMIT_S = CLEANUP_S + 1.0
 STALL_FACTOR = 2.0
 """A headless child without progress for this many stall limits of real time is stuck in C code."""
-
-
-@dataclass(frozen=True, slots=True)
-class RunOptions:
-    """How a run is executed; apart from limits and answers, nothing here changes what it records."""
-
-    live: bool = False
-    """Whether it is paced by the wall clock, can be paused and accepts user actions; otherwise it is headless."""
-    speed: float = 1.0
-    """1.0 is real time, 0 as fast as possible."""
-    start_paused: bool = False
-    time_limit_s: float = DEFAULT_TIME_LIMIT_S
-    """Simulated time after which the run is stopped; 0 is no limit."""
-    stall_limit_s: float = 60.0
-    """CPU seconds in one instant of simulated time after which the run is stopped; 0 is no limit."""
-    answers: tuple[str, ...] = ()
-    """Scripted answers to input()."""
-    asks_user: bool = False
-    """Whether input() asks the user after the scripted answers; otherwise it raises EOFError."""
-    time_waits: bool = False
-    """Whether simulated time stops while input() waits for the user."""
-    replies: bool = False
-    """Whether the host answers `pyState()`, while simulated time stops; otherwise there are no messages."""
-    actions: tuple[UserAction, ...] = ()
-    """Known user actions, in the order of their ticks."""
-    breaks: tuple[str, ...] = ()
-    """Initial breakpoints, in the syntax of `tuisim.breakpoints`."""
-    trace_from_tick: int | None = None
-    """Count lines from this tick on, so that `LineHistory` includes them; until the run first pauses."""
-    hold_at: tuple[int, int] | None = None
-    """Run at full speed to this instant and pause: tick and ordinal, as in `Paused`. (0, 1) is the first line."""
-
-    @property
-    def can_pause(self) -> bool:
-        """Whether the run can be paused without further commands."""
-        return bool(self.live or self.start_paused or self.breaks or self.hold_at)
-
-    @property
-    def events(self) -> tuple[type[Message], ...]:
-        """The classes of events that the run can send besides its start, its sounds and its end."""
-        return allowed_events(can_pause=self.can_pause, asks_user=self.asks_user, replies=self.replies)
-
-    def to_plain(self) -> dict[str, Any]:
-        """Return the options in the form that is stored with a run."""
-        return {**asdict(self), "actions": [action.to_plain() for action in self.actions]}
 
 
 class RunFolders(Protocol):
@@ -214,7 +168,7 @@ class RunHandle:
             raise HostError(f"the program's process cannot be started: {what}", str(run.folder)) from error
         self._mark = mark(self._process.pid)
         self._clock = FairClock(self._process.pid)
-        self._events = EventStream(self._event_fd, options.events)
+        self._events = EventStream(self._event_fd, allowed_events(options))
         writable: list[str | Path] = [run.folder, program.working_directory]
         self._quota = Quota(self._process.pid, writable) if isolated else None
         self._exceeded = self._falsified = ""

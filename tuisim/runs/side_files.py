@@ -10,8 +10,8 @@ import json
 import os
 import stat
 from binascii import crc32
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -125,6 +125,30 @@ def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
     return tuple(actions), f"{ACTIONS_FILE}: the last line is incomplete and is ignored" if rest else ""
 
 
+@contextmanager
+def _reading(path: Path) -> Iterator[None]:
+    """Turn whatever goes wrong while a file is read, and taken apart, into a LogError."""
+    try:
+        yield
+    except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
+        raise LogError(f"cannot be read: {error}", file=str(path)) from error
+
+
+def _rows(path: Path) -> Iterator[Any]:
+    """Return the rows of a file of JSON lines, none if it is missing; an incomplete last one is ignored."""
+    try:
+        *lines, _ = read_regular(path, MOST_BYTES).split(b"\n")
+    except FileNotFoundError:
+        lines = []
+    return map(json.loads, lines)
+
+
+def _append(path: Path, row: Mapping[str, object]) -> None:
+    """Add a row to a file of JSON lines."""
+    with open(path, "ab", opener=private) as file:
+        file.write(json.dumps(row).encode() + b"\n")
+
+
 def write_stop_tick(folder: Path, tick: int) -> None:
     """Record the tick before which the user's stop reached the program.
 
@@ -141,12 +165,13 @@ def read_stop_tick(folder: Path) -> int | None:
     Raises:
         LogError: the file is damaged.
     """
-    try:
-        return int(json.loads(read_regular(folder / STOP_FILE, MOST_BYTES))["tick"])
-    except FileNotFoundError:
-        return None
-    except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
-        raise LogError(f"cannot be read: {error}", file=str(folder / STOP_FILE)) from error
+    path = folder / STOP_FILE
+    with _reading(path):
+        try:
+            data = read_regular(path, MOST_BYTES)
+        except FileNotFoundError:
+            return None
+        return int(json.loads(data)["tick"])
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,8 +200,7 @@ def note_module(run_folder: Path, module: OwnModule) -> None:
         LogError: it cannot be written.
     """
     try:
-        with open(run_folder / MODULES_FILE, "ab", opener=private) as file:
-            file.write(json.dumps(asdict(module)).encode() + b"\n")
+        _append(run_folder / MODULES_FILE, asdict(module))
     except OSError as error:
         raise LogError(f"cannot be written: {error.strerror or error}", file=str(run_folder / MODULES_FILE)) from error
 
@@ -188,17 +212,11 @@ def read_modules(run_folder: Path) -> list[OwnModule]:
         LogError: the file is damaged.
     """
     path = run_folder / MODULES_FILE
-    try:
-        *lines, _ = read_regular(path, MOST_BYTES).split(b"\n")
-        rows = [json.loads(line) for line in lines]
+    with _reading(path):
         return [
             OwnModule(row["name"], row["file"], None if row["folders"] is None else tuple(row["folders"]), row["text"])
-            for row in rows
+            for row in _rows(path)
         ]
-    except FileNotFoundError:
-        return []
-    except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
-        raise LogError(f"cannot be read: {error}", file=str(path)) from error
 
 
 def copy_modules(source: Path, target: Path) -> None:
@@ -287,7 +305,7 @@ def note_read(run_folder: Path, read: FileRead) -> None:
     Raises:
         OSError: it cannot be written.
     """
-    _append_read(run_folder, asdict(read))
+    _append(run_folder / READS_FILE, asdict(read))
 
 
 def note_reads_left_out(run_folder: Path, count: int) -> None:
@@ -296,12 +314,7 @@ def note_reads_left_out(run_folder: Path, count: int) -> None:
     Raises:
         OSError: it cannot be written.
     """
-    _append_read(run_folder, {"left_out": count})
-
-
-def _append_read(run_folder: Path, row: Mapping[str, object]) -> None:
-    with open(run_folder / READS_FILE, "ab", opener=private) as file:
-        file.write(json.dumps(row).encode() + b"\n")
+    _append(run_folder / READS_FILE, {"left_out": count})
 
 
 def read_reads(run_folder: Path) -> FilesRead:
@@ -313,9 +326,8 @@ def read_reads(run_folder: Path) -> FilesRead:
     path = run_folder / READS_FILE
     found: dict[str, FileRead] = {}
     left_out = 0
-    try:
-        for line in read_regular(path, MOST_BYTES).split(b"\n")[:-1]:
-            row: dict[str, Any] = json.loads(line)
+    with _reading(path):
+        for row in _rows(path):
             if "left_out" in row:
                 left_out = int(row["left_out"])
                 continue
@@ -323,8 +335,4 @@ def read_reads(run_folder: Path) -> FilesRead:
             found.setdefault(
                 name, FileRead(name, bool(row["there"]), int(row["bytes"]), int(row["mtime_ns"]), int(row["crc32"]))
             )
-    except FileNotFoundError:
-        return FilesRead()
-    except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
-        raise LogError(f"cannot be read: {error}", file=str(path)) from error
     return FilesRead(tuple(found.values())[:MOST_READS], left_out + max(0, len(found) - MOST_READS))

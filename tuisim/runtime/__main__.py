@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 
-from tuisim.runtime.child import main
+# Start-up creates only permanent objects, so garbage collection would waste time. It is enabled again right before
+# the program's first line.
+gc.disable()
+
+from tuisim.runtime.child import main  # noqa: E402 - its imports are part of the start-up
 
 prepared = None
 if sys.argv[1] == "--warm":

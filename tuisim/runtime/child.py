@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from tuisim.runtime import wallclock  # isort: skip - must come first: it saves the real clock
-from tuisim.runtime import no_gc  # isort: skip  # noqa: F401 - imported for its effect
 
 import os
 import sys
@@ -97,7 +96,7 @@ class Child:
         turn = loop_hook(session, LOOP_TURNS, LOOP_COST_NS)
         self._interrupts = Interrupts(session, frozenset({turn.__code__}))
         self._patch_modules(turn)
-        self._runner.prepare(config.prelude)
+        self._runner.prepare(config.program.prelude)
 
     def _patch_modules(self, turn: Callable[[], None]) -> None:
         """Patch what programs find, and make what runs them."""
@@ -162,22 +161,24 @@ class Child:
         Raises:
             OSError: there is no space for the recording.
         """
-        self._config, self._channel = config, channel
+        self._config, self._channel, options = config, channel, config.options
         self._pid = wallclock.getpid()
         session = self._session
         self._telemetry, self._output.writer = TelemetryWriter(config.folder), OutputWriter(config.folder)
         self._sim.restart(config.spec, self._telemetry)
-        steering = RunControl(channel, config.folder, config.live, config.speed, config.start_paused, config.actions)
-        limits = RunLimits(int(config.time_limit_s * NS_PER_S), config.stall_limit_s)
-        session.connect(channel, steering, limits, config.path or config.name)
-        session.replies = config.replies
+        steering = RunControl(
+            channel, config.folder, options.live, options.speed, options.start_paused, options.actions
+        )
+        limits = RunLimits(int(options.time_limit_s * NS_PER_S), options.stall_limit_s)
+        session.connect(channel, steering, limits, config.program.path or config.program.name)
+        session.replies = options.replies
         for writer in (self._telemetry, self._output.writer):
             writer.full = lambda error: session.request_stop(protocol.End.DISK_FULL, _no_room(error))
         self._output.place = lambda: (self._sim.tick, session.now, session.program_line())
         self._output.after_write = self._after_write
         if isinstance(self._sim, FurtherMotors):
             self._sim.on_turns = self._write_turns
-        remember_source(session.program_file, config.text)
+        remember_source(session.program_file, config.program.text)
         self._runner.connect(config)
         self._reads.begin(config.folder, config.own_folder, session.program_file)
         self._runner.raw.open()

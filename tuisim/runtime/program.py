@@ -84,7 +84,7 @@ class ProgramRunner:
         self._leave = leave
         self.stdout, self.stderr = LineStream(output), LineStream(output, Stream.STDERR)
         self.raw = RawOutput(self.stdout.put_bytes, self.stderr.put_bytes)
-        self.hooks = ErrorHooks(session, output, self.stderr, lambda: self._config.text)
+        self.hooks = ErrorHooks(session, output, self.stderr, lambda: self._config.program.text)
         self._module = types.ModuleType("__main__")
         self._prelude_error: BaseException | None = None
         self.prepared: dict[str, int] = {}
@@ -124,13 +124,13 @@ class ProgramRunner:
     def connect(self, config: RunConfig) -> None:
         """Connect it with the program of a run."""
         self._config, session = config, self._session
-        has_own_folder = bool(config.path or config.module_folder)
+        has_own_folder = bool(config.program.path or config.program.module_folder)
         self._starts_in_own_folder = config.spec.profile.starts_in_own_folder and has_own_folder
         # A relative path would mean another file from there.
         in_own_folder = os.path.join(config.own_folder, os.path.basename(session.program_file))
         self._file = in_own_folder if self._starts_in_own_folder else session.program_file
-        self._answers = list(config.answers)
-        sys.argv = [self._file, *config.arguments]
+        self._answers = list(config.options.answers)
+        sys.argv = [self._file, *config.program.arguments]
 
     def run(self) -> ProgramOutcome:
         """Run prelude and program to their end; never raises."""
@@ -219,13 +219,13 @@ class ProgramRunner:
         replace(os, "_exit", lambda status: self._exit_now(operator.index(status)))
 
     def _execute(self) -> None:
-        self.code = program = compile_program(self._config.text, self._session.program_file)
+        self.code = program = compile_program(self._config.program.text, self._session.program_file)
         self.names["__file__"] = self._file
         if self._prelude_error is not None:
             raise self._prelude_error
         # Not earlier: a program named logging.py is not what the library means by `import logging`.
         folder = self._config.own_folder
-        sys.path[:0] = [folder, *self._config.python_path]
+        sys.path[:0] = [folder, *self._config.program.python_path]
         find_modules_for(self._config.folder)
         if self._starts_in_own_folder:
             # If a repeated run's folder no longer exists, only files that it opens there are missing.
@@ -236,7 +236,7 @@ class ProgramRunner:
         gc.freeze()
         gc.enable()
         if self._config.debugged:
-            self._session.debug().begin(self._config)
+            self._session.debug().begin(self._config.options)
         exec(program, self.names)
 
     # Ends
@@ -293,7 +293,7 @@ class ProgramRunner:
         answer: str | None
         if self._answers:
             answer = self._answers.pop(0)
-        elif not self._config.asks_user:
+        elif not self._config.options.asks_user:
             answer = None
         else:
             answer = self._users_answer(asked)
@@ -307,7 +307,7 @@ class ProgramRunner:
     def _users_answer(self, asked: str) -> str | None:
         session, steering = self._session, self._session.steering
         if not steering.replay_next(session, Answer):
-            if self._config.time_waits:
+            if self._config.options.time_waits:
                 steering.wait_for_reply(session, Answer, InputWanted(asked))
             else:
                 session.channel.send(InputWanted(asked))

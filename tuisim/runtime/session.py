@@ -26,7 +26,7 @@ from tuisim.shim.waits import Wait, waits_for
 
 if TYPE_CHECKING:
     from tuisim.core.pen_marks import PenMarks
-    from tuisim.runtime.run_config import RunConfig
+    from tuisim.runs.run_options import RunOptions
 
 COMMANDS_AN_INSTANT = 100
 COMMAND_BURST_NS = 10 * MS
@@ -71,7 +71,7 @@ class Deadlock(RuntimeError):
 class DebugHooks(Protocol):
     """What session and control need of the debugger."""
 
-    def begin(self, config: RunConfig) -> None:
+    def begin(self, options: RunOptions) -> None:
         """Apply the settings that are known before the program's first line."""
 
     def take(self, command: Message) -> None:

@@ -23,6 +23,7 @@ from tuisim.protocol import (
     Started,
     Wheels,
 )
+from tuisim.runs.run_options import RunOptions
 
 MOST_EVENT_BYTES = 8 << 20
 """More than any event has."""
@@ -139,10 +140,10 @@ class EventStream:
         return None if self.falsified else event
 
 
-def allowed_events(*, can_pause: bool, asks_user: bool, replies: bool) -> _Kinds:
-    """Return the classes of events that a run can send besides those of every run."""
+def allowed_events(options: RunOptions) -> _Kinds:
+    """Return the classes of events that a run can send besides its start, its sounds and its end."""
     return (
-        *(DEBUGGED if can_pause else ()),
-        *((InputWanted,) if asks_user else ()),
-        *((ReplyWanted,) if replies else ()),
+        *(DEBUGGED if options.can_pause else ()),
+        *((InputWanted,) if options.asks_user else ()),
+        *((ReplyWanted,) if options.replies else ()),
     )

@@ -12,17 +12,16 @@ from tuisim.breakpoints import Breakpoint, LineBreak, parse_breakpoints
 from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Message, Paused, PauseReason
 from tuisim.runs.records import Stream
 from tuisim.runtime.control import ATTENTION, DEBUG, LIVE
-from tuisim.runtime.debugger.code_lines import CodeLines
 from tuisim.runtime.debugger.conditions import LineCondition, Watcher
 from tuisim.runtime.debugger.fork import apart
 from tuisim.runtime.debugger.inspection import Inspector
-from tuisim.runtime.debugger.steps import NEXT_LINE, Step, step_from
+from tuisim.runtime.debugger.steps import NEXT_LINE, Step, line_with_code, step_from
 from tuisim.runtime.debugger.tracer import Tracer
 from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import Session
 
 if TYPE_CHECKING:
-    from tuisim.runtime.run_config import RunConfig
+    from tuisim.runs.run_options import RunOptions
 
 CONDITION_LIMIT_S = 0.2
 """Time limit of a condition, in real seconds."""
@@ -51,7 +50,7 @@ class Debugger:
         code: types.CodeType | None,
     ) -> None:
         self._session, self._scheduler = session, scheduler
-        self._lines = CodeLines(code)
+        self._code = code
         self._tracer = Tracer(session, scheduler, self._at_line)
         self._looker = Inspector(session, scheduler, self._tracer, module, prepared)
         self._watcher = Watcher(session)
@@ -63,12 +62,12 @@ class Debugger:
         self._trace_from: int | None = None
         self._looks: list[Message] = []
 
-    def begin(self, config: RunConfig) -> None:
+    def begin(self, options: RunOptions) -> None:
         """Apply the settings that are known before the program's first line."""
-        self._set_breaks(parse_breakpoints(config.breaks))
-        self._trace_from = config.trace_from_tick
-        if config.hold_at is not None:
-            self._set_instant(*config.hold_at)
+        self._set_breaks(parse_breakpoints(options.breaks))
+        self._trace_from = options.trace_from_tick
+        if options.hold_at is not None:
+            self._set_instant(*options.hold_at)
             self._session.steering.resume(at_full_speed=True)
         self._trace(at_tick=True)
         self._update_session()
@@ -89,7 +88,7 @@ class Debugger:
                 steering.resume()
             case protocol.RunToLine(line=line):
                 self._forget_goals()
-                self._line = self._lines.from_here(line)
+                self._line = line_with_code(self._code, line)
                 steering.resume()
             case protocol.RunToInstant(tick=tick, ordinal=ordinal):
                 self._forget_goals()
@@ -155,7 +154,8 @@ class Debugger:
             if isinstance(one.rule, LineBreak):
                 text = one.rule.condition
                 condition = before.get(one.text) or (LineCondition(text) if text else None)
-                self._by_line.setdefault(self._lines.from_here(one.rule.line), []).append((one, condition))
+                line = line_with_code(self._code, one.rule.line)
+                self._by_line.setdefault(line, []).append((one, condition))
         self._watcher.set(wanted)
         self._session.output.watch = self._after_row if self._watcher.rows else None
 

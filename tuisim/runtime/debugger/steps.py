@@ -1,7 +1,9 @@
-"""Steps: at which line a step is complete."""
+"""Lines at which a run pauses: where a step is complete, and the line of code that a breakpoint means."""
 
 from __future__ import annotations
 
+import types
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import assert_never
 
@@ -50,3 +52,21 @@ def step_from(how: LineStep, task: ScheduledThread, depth: int) -> Step:
 
 NEXT_LINE = Step(None, ENDLESS_DEPTH)
 """Complete at the next line of any thread."""
+
+
+def line_with_code(program: types.CodeType | None, line: int) -> int:
+    """Return `line` or, if it has no code in the program, the next line that has: any other would never be hit.
+
+    After the last such line, and for 0, return `line`.
+    """
+    if program is None or not line:
+        return line
+    return min((one for one in _lines_of(program) if one >= line), default=line)
+
+
+def _lines_of(code: types.CodeType) -> Iterator[int]:
+    left = [code]
+    while left:
+        one = left.pop()
+        yield from (line for _, _, line in one.co_lines() if line)
+        left += [part for part in one.co_consts if isinstance(part, types.CodeType)]

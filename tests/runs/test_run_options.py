@@ -1,0 +1,36 @@
+"""Run options: what the host writes, the child reads again."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tuisim.protocol import Answer, SetButtons, SetNoise, SetPose, UserAction
+from tuisim.runs.run_options import RunOptions
+
+ACTIONS = (
+    UserAction(0, SetPose(1.5, -2.0, 90.0)),
+    UserAction(3, SetNoise(1, 2)),
+    UserAction(3, SetButtons(("up", "left"))),
+    UserAction(70, Answer(None, at_once=True)),
+)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        pytest.param(RunOptions(), id="default"),
+        pytest.param(RunOptions(live=True, speed=0.25, start_paused=True), id="live"),
+        pytest.param(RunOptions(answers=("yes", ""), asks_user=True, time_waits=True, replies=True), id="answers"),
+        pytest.param(RunOptions(actions=ACTIONS), id="actions"),
+        pytest.param(RunOptions(breaks=("12 if x > 3",), trace_from_tick=7, hold_at=(7, 2)), id="debugged"),
+    ],
+)
+def test_options_are_the_same_after_a_file(options: RunOptions) -> None:
+    assert RunOptions.from_plain(json.loads(json.dumps(options.to_plain()))) == options
+
+
+def test_an_option_that_does_not_exist_is_refused() -> None:
+    with pytest.raises(TypeError):
+        RunOptions.from_plain({**RunOptions().to_plain(), "hurry": True})
