@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import APP, OPTIONS, Option
 from tuisim.config.program_file import ProgramSource, find_program, program_of_text, read_program
-from tuisim.config.program_settings import program_settings
+from tuisim.config.program_settings import ProgramSettings, program_settings
 from tuisim.config.worlds import load_world
 from tuisim.errors import ConfigError, nearest
 from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S, RunOptions, start_run
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
+from tuisim.source import Program
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -118,6 +119,12 @@ def _in_world(world: str | Path | None, given: Mapping[str, Any]) -> Mapping[str
     return load_world(find_program(str(world)), given.get("mats")).settings if world is not None else {}
 
 
+def _started(found: ProgramSettings, source: ProgramSource, arguments: Sequence[str]) -> Program:
+    """Return the program to start; the arguments of the call take precedence over those of the settings."""
+    program = found.applied_to(source.program)
+    return replace(program, arguments=tuple(arguments)) if arguments else program
+
+
 def _check_timeout(timeout_s: float) -> None:
     if not timeout_s > 0:
         raise ConfigError(f"must be above 0, got {timeout_s!r}", key="timeout_s")
@@ -152,12 +159,9 @@ def simulate(
     source = _source(program)
     given = choices_of(choices)
     found = program_settings(source, _in_world(world, given), given, in_world=world is not None)
-    settings = found.settings
-    prelude = settings["preload"] or source.program.prelude
-    started = replace(source.program, prelude=prelude, arguments=tuple(arguments) or settings["arguments"])
-    store = RunStore()
     options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers))
-    handle = start_run(started, build_run_spec(settings), options, store)
+    started = _started(found, source, arguments)
+    handle = start_run(started, build_run_spec(found.settings), options, RunStore())
     try:
         handle.wait()
     finally:
@@ -224,10 +228,7 @@ def experiment(
         source = _source(one)
         of_task = bool(task and world is None and task.settings)
         found = program_settings(source, in_world, given, in_world=of_task or world is not None, of_task=of_task)
-        settings = found.settings
-        prelude = settings["preload"] or source.program.prelude
-        started = replace(source.program, prelude=prelude, arguments=tuple(arguments) or settings["arguments"])
-        subjects.append(Subject(started, settings, frozenset(given)))
+        subjects.append(Subject(_started(found, source, arguments), found.settings, frozenset(given)))
     if not subjects:
         raise ConfigError("no program is named", key="program")
     varied = {name: _choice(name, values) for name, values in (parameters or {}).items()}
