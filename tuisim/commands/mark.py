@@ -34,12 +34,11 @@ from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.goals.spec import Goal
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
 from tuisim.marks.feedback import write_feedback
-from tuisim.marks.frame import export_marks
 from tuisim.marks.journal import Journal, journal_of
 from tuisim.marks.outcome import Outcome
 from tuisim.marks.page import page_of, reports_folder
 from tuisim.marks.runs import STALL_LIMIT_S, MarkPlan, RunEntry, outcomes_of
-from tuisim.marks.sheet import Sheet, SheetColumn, lines_of, sheet_of, summary_of
+from tuisim.marks.sheet import Sheet, SheetColumn, export_marks, lines_of, sheet_of, summary_of
 from tuisim.marks.students import Student, StudentsFound, file_outside, find_students
 from tuisim.regular_file import of_the_machine
 from tuisim.runs.child.isolation import check_isolation

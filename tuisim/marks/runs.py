@@ -13,8 +13,7 @@ from tuisim.core.spec import RunSpec
 from tuisim.core.tree import to_plain
 from tuisim.goals.spec import Goal
 from tuisim.marks.journal import Journal
-from tuisim.marks.outcome import Outcome
-from tuisim.marks.results import outcome_of
+from tuisim.marks.outcome import Outcome, outcome_of
 from tuisim.marks.students import Student
 from tuisim.marks.workspace import StudentWorkspace, digest_of, program_in, temporary_workspace
 from tuisim.runs.handle import RunOptions
