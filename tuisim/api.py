@@ -209,10 +209,9 @@ def experiment(
     """
     from tuisim.batch.parameters import SEED, checked_seeds, parse_seeds
     from tuisim.batch.plan import Plan, Subject
-    from tuisim.batch.sweep import run_plan
+    from tuisim.batch.sweep import Workers, run_plan
     from tuisim.batch.table import Row, check_expressions, frame_of
     from tuisim.batch.task import MAX_JOBS, Keep
-    from tuisim.batch.workers import Workers
     from tuisim.goals.files import load_goals
 
     _check_timeout(timeout_s)

@@ -11,9 +11,9 @@ from tuisim.batch.batch_file import BatchFile, load_batch, means_batch
 from tuisim.batch.parameters import SEED, Choice, parse_seeds, parse_set
 from tuisim.batch.pictures import POSES, check_picture_file, parse_picture
 from tuisim.batch.plan import Plan, Subject
+from tuisim.batch.sweep import Workers
 from tuisim.batch.table import check_expressions
 from tuisim.batch.task import Keep
-from tuisim.batch.workers import Workers
 from tuisim.commands.batch_options import jobs_option, keep_option, workers_option
 from tuisim.commands.listings import names_of
 from tuisim.commands.notebooks import NotRun
