@@ -8,6 +8,7 @@ more than a second, and only if stderr is a terminal; long work writes a line a 
 from __future__ import annotations
 
 import json
+import math
 import os
 import shutil
 import sys
@@ -61,6 +62,13 @@ def echo_json_head(key: str, items: Iterable[Any], rest: Mapping[str, Any]) -> N
         sys.stdout.write("], " + _json(rest).removeprefix("{") + "\n")
 
 
+def finite(row: Mapping[Any, Any]) -> dict[Any, Any]:
+    """Return a row for JSON, which has no infinite numbers: they, and those that are missing, become None."""
+    return {
+        name: None if isinstance(value, float) and not math.isfinite(value) else value for name, value in row.items()
+    }
+
+
 def _json(data: Any) -> str:
     return json.dumps(data).replace("\x7f", "\\u007f")
 
@@ -111,6 +119,22 @@ class CsvOut:
         """Write text."""
         with progress_hidden(sys.stdout):
             sys.stdout.write("\n".join(map(printable, text.split("\n"))) if sys.stdout.isatty() else text)
+
+
+class Figure(float):
+    """A number in a table, written by a format spec of its own; one that is missing is empty."""
+
+    how: str
+    """The format spec, such as `.2f`."""
+
+    def __new__(cls, value: float, how: str) -> Self:
+        """Return the number with its format spec."""
+        figure = super().__new__(cls, value)
+        figure.how = how
+        return figure
+
+    def __str__(self) -> str:
+        return "" if math.isnan(self) else format(float(self), self.how)
 
 
 _GOOD_CELLS, _LEAST_CELLS = 20, 8
