@@ -43,7 +43,7 @@ from tuisim.marks.students import Student, StudentsFound, file_outside, find_stu
 from tuisim.regular_file import of_the_machine
 from tuisim.runs.child.isolation import check_isolation
 from tuisim.runs.child.supervisor import supervised
-from tuisim.runs.handle import RunOptions, user_python_path
+from tuisim.runs.handle import RunOptions
 
 PAGE_SUFFIXES = (".html", ".htm")
 DEFAULT_SEEDS = "0..19"
@@ -110,14 +110,13 @@ def mark(**given: Any) -> int:
         goals=tuple(task.goals),
         seeds=seeds,
         options=RunOptions(
-            time_limit_s=arguments.timeout, stall_limit_s=STALL_LIMIT_S, answers=_answers(arguments, task)
+            time_limit_s=arguments.timeout, stall_limit_s=STALL_LIMIT_S, answers=arguments.input or task.answers
         ),
         keep=Keep(arguments.keep or USUAL_KEEP),
         jobs=arguments.jobs,
         isolate=_isolates(arguments),
         version=__version__,
         arguments=settings_of(task.settings)["arguments"],
-        python_path=user_python_path(),
     )
     outcomes: dict[str, list[Outcome]] = {student.name: [] for student in students}
     with Progress("marking", in_lines=True):
@@ -220,10 +219,6 @@ def _columns(task: GoalsFile) -> list[SheetColumn]:
     """Return the goals that a student is shown: not those that are only parts of others."""
     shown = [goal for goal in task.goals if goal.points or goal.say]
     return [SheetColumn(goal.name, goal.say or goal.name, goal.points, goal.hint) for goal in shown]
-
-
-def _answers(arguments: Arguments, task: GoalsFile) -> tuple[str, ...]:
-    return tuple(arguments.input) or task.answers
 
 
 def _excluded(arguments: Arguments, task: GoalsFile) -> frozenset[Path]:

@@ -16,7 +16,7 @@ from tuisim.marks.journal import Journal
 from tuisim.marks.outcome import Outcome, outcome_of
 from tuisim.marks.students import Student
 from tuisim.marks.workspace import StudentWorkspace, digest_of, program_in, temporary_workspace
-from tuisim.runs.handle import RunOptions
+from tuisim.runs.handle import RunOptions, user_python_path
 
 STALL_LIMIT_S = 10.0
 """CPU seconds in one instant of simulated time after which a program counts as hung."""
@@ -38,8 +38,6 @@ class MarkPlan:
     version: str = ""
     """Version of tuisim: an interrupted marking is resumed only with the same."""
     arguments: tuple[str, ...] = ()
-    python_path: tuple[str, ...] = ()
-    """Folders in which all programs search modules besides their own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +88,7 @@ def _turns(entry: RunEntry, plan: MarkPlan) -> list[_Turn]:
         digest_of(student),
         repr(plan.goals),
     ]
-    basis += [plan.options.to_plain(), plan.keep, plan.isolate, plan.arguments, plan.python_path]
+    basis += [plan.options.to_plain(), plan.keep, plan.isolate, plan.arguments, user_python_path()]
     turns = []
     for seed in plan.seeds:
         text = json.dumps([*basis, to_plain(replace(entry.spec, seed=seed))], sort_keys=True, default=str)
@@ -120,9 +118,8 @@ def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[t
 def _tasks(turns: Sequence[_Turn], plan: MarkPlan, workspace: StudentWorkspace) -> Iterator[Task]:
     for index, turn in enumerate(turns):
         student = turn.entry.student
-        program = program_in(
-            student, workspace.copy(student, index), arguments=plan.arguments, python_path=plan.python_path
-        )
+        folder = workspace.copy(student, index)
+        program = program_in(student, folder, arguments=plan.arguments, python_path=user_python_path())
         yield Task(
             index=index,
             program=program,
