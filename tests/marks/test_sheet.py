@@ -16,16 +16,17 @@ from tests.marks.hazards import EVIL
 from tests.running import PATIENCE_S
 from tuisim.config.program_file import ProgramSource
 from tuisim.errors import printable
+from tuisim.goals.spec import FinishCondition, Goal
 from tuisim.marks.feedback import feedback_of, file_stems, write_feedback
 from tuisim.marks.outcome import GoalOutcome, Outcome
 from tuisim.marks.page import page_of
-from tuisim.marks.sheet import Sheet, SheetColumn, export_marks, frame_of, lines_of, sheet_of, summary_of
+from tuisim.marks.sheet import Sheet, export_marks, frame_of, lines_of, sheet_of, summary_of
 from tuisim.marks.students import Student
 from tuisim.source import Program
 
 COLUMNS = (
-    SheetColumn("place", "Stop at the place.", 7.0, "Measure the distance."),
-    SheetColumn("wall", "Do not touch the wall.", 3.0, ""),
+    Goal("place", FinishCondition(), "Stop at the place.", 7.0, "Measure the distance."),
+    Goal("wall", FinishCondition(), "Do not touch the wall.", 3.0),
 )
 TEXT = "drive()\nstop()  # <b>too late</b>\n"
 

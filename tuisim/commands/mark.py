@@ -38,7 +38,7 @@ from tuisim.marks.journal import Journal, journal_of
 from tuisim.marks.outcome import Outcome
 from tuisim.marks.page import page_of, reports_folder
 from tuisim.marks.runs import STALL_LIMIT_S, MarkPlan, RunEntry, outcomes_of
-from tuisim.marks.sheet import Sheet, SheetColumn, export_marks, lines_of, sheet_of, summary_of
+from tuisim.marks.sheet import Sheet, export_marks, lines_of, sheet_of, summary_of
 from tuisim.marks.students import Student, StudentsFound, file_outside, find_students
 from tuisim.regular_file import of_the_machine
 from tuisim.runs.child.isolation import check_isolation
@@ -215,10 +215,9 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
         raise ConfigError(f"{arguments.feedback} is no folder", "name a folder", key="--feedback")
 
 
-def _columns(task: GoalsFile) -> list[SheetColumn]:
-    """Return the goals that a student is shown: not those that are only parts of others."""
-    shown = [goal for goal in task.goals if goal.points or goal.say]
-    return [SheetColumn(goal.name, goal.say or goal.name, goal.points, goal.hint) for goal in shown]
+def _columns(task: GoalsFile) -> list[Goal]:
+    """Return the goals that a student is shown, in words: not those that are only parts of others."""
+    return [replace(goal, say=goal.say or goal.name) for goal in task.goals if goal.points or goal.say]
 
 
 def _excluded(arguments: Arguments, task: GoalsFile) -> frozenset[Path]:

@@ -19,7 +19,7 @@ from tuisim.goals.spec import ConditionKind, Goal
 from tuisim.marks.feedback import file_stems
 from tuisim.marks.outcome import GoalOutcome, Outcome, portable
 from tuisim.marks.page import reports_folder
-from tuisim.marks.sheet import Sheet, SheetColumn, in_words
+from tuisim.marks.sheet import Sheet, in_words
 from tuisim.protocol import End
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
@@ -98,7 +98,7 @@ def _digest(run: StoredRun) -> str:
 
 
 def _verdicts(
-    columns: Sequence[SheetColumn], goals: Sequence[Goal], outcome: Outcome, run: StoredRun
+    columns: Sequence[Goal], goals: Sequence[Goal], outcome: Outcome, run: StoredRun
 ) -> tuple[str, list[Pin]]:
     """Return the section with the goals of a run, and a pin for each goal that was decided at a place.
 

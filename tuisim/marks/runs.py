@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from tuisim.batch.pool import run_many
 from tuisim.batch.task import Keep, Task
@@ -15,8 +16,10 @@ from tuisim.goals.spec import Goal
 from tuisim.marks.journal import Journal
 from tuisim.marks.outcome import Outcome, outcome_of
 from tuisim.marks.students import Student
-from tuisim.marks.workspace import StudentWorkspace, digest_of, program_in, temporary_workspace
+from tuisim.marks.workspace import copy_of, digest_of, program_in
 from tuisim.runs.handle import RunOptions, user_python_path
+from tuisim.runs.removal import remove_tree
+from tuisim.runs.temporary import temporary_home
 
 STALL_LIMIT_S = 10.0
 """CPU seconds in one instant of simulated time after which a program counts as hung."""
@@ -105,20 +108,22 @@ def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[t
             unknown.append(turn)
     if not unknown:
         return
-    with temporary_workspace() as workspace:
+    with temporary_home("tuisim-mark-") as home:
+        # Its resolved path is what a program sees.
+        workspace = home.resolve()
         for result in run_many(_tasks(unknown, plan, workspace), plan.jobs):
-            turn = unknown[result.index]
-            outcome = outcome_of(result, turn.seed, workspace.path / str(result.index))
-            workspace.remove(result.index)
+            turn, place = unknown[result.index], workspace / str(result.index)
+            outcome = outcome_of(result, turn.seed, place)
+            remove_tree(place)
             if outcome.counts:
                 journal.add(turn.key, outcome)
             yield turn.entry.student.name, outcome
 
 
-def _tasks(turns: Sequence[_Turn], plan: MarkPlan, workspace: StudentWorkspace) -> Iterator[Task]:
+def _tasks(turns: Sequence[_Turn], plan: MarkPlan, workspace: Path) -> Iterator[Task]:
     for index, turn in enumerate(turns):
         student = turn.entry.student
-        folder = workspace.copy(student, index)
+        folder = copy_of(student, workspace / str(index))
         program = program_in(student, folder, arguments=plan.arguments, python_path=user_python_path())
         yield Task(
             index=index,

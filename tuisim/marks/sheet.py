@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.errors import counted, printable
+from tuisim.goals.spec import Goal
 from tuisim.logs.export import export_frame
 from tuisim.marks.outcome import Outcome
 from tuisim.marks.students import Student
@@ -26,16 +27,6 @@ DIGITS = 4
 MARKS_FORMAT = 1
 GOAL_PREFIX = "goal_"
 """Before the name of a goal in the name of its column."""
-
-
-@dataclass(frozen=True, slots=True)
-class SheetColumn:
-    """A goal as a column."""
-
-    name: str
-    say: str
-    points: float
-    hint: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +81,8 @@ class Sheet:
     """The marks of a class."""
 
     title: str
-    columns: tuple[SheetColumn, ...]
+    columns: tuple[Goal, ...]
+    """The goals that are shown."""
     rows: tuple[SheetRow, ...]
     seeds: tuple[int, ...]
 
@@ -102,7 +94,7 @@ class Sheet:
 
 def sheet_of(
     title: str,
-    columns: Sequence[SheetColumn],
+    columns: Sequence[Goal],
     seeds: Sequence[int],
     students: Sequence[Student],
     outcomes: Mapping[str, Sequence[Outcome]],
@@ -116,7 +108,7 @@ def sheet_of(
     return Sheet(title, tuple(columns), rows, tuple(seeds))
 
 
-def row_of(student: Student, columns: Sequence[SheetColumn], outcomes: Sequence[Outcome], seeds: int) -> SheetRow:
+def row_of(student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome], seeds: int) -> SheetRow:
     """Return the row of a student."""
     if not student.source:
         cells = tuple(Cell(0.0, 0, student.problem) for _ in columns)
@@ -149,13 +141,13 @@ def row_of(student: Student, columns: Sequence[SheetColumn], outcomes: Sequence[
     )
 
 
-def _points(columns: Sequence[SheetColumn], outcome: Outcome) -> float:
+def _points(columns: Sequence[Goal], outcome: Outcome) -> float:
     """Return the points of one run; one of which nothing is recorded has no judgements, and no points."""
     met = {goal.name for goal in outcome.goals if goal.met}
     return math.fsum(column.points for column in columns if column.name in met)
 
 
-def _cell(column: SheetColumn, outcomes: Sequence[Outcome]) -> Cell:
+def _cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
     goals = [(one, next((goal for goal in one.goals if goal.name == column.name), None)) for one in outcomes]
     met = sum(goal is not None and goal.met for _, goal in goals)
     points = _rounded(column.points * met / len(goals))
