@@ -119,10 +119,14 @@ def _in_world(world: str | Path | None, given: Mapping[str, Any]) -> Mapping[str
     return load_world(find_program(str(world)), given.get("mats")).settings if world is not None else {}
 
 
-def _started(found: ProgramSettings, source: ProgramSource, arguments: Sequence[str]) -> Program:
-    """Return the program to start; the arguments of the call take precedence over those of the settings."""
-    program = found.applied_to(source.program)
-    return replace(program, arguments=tuple(arguments)) if arguments else program
+def _prepared(
+    program: str | Path, arguments: Sequence[str], *layers: Mapping[str, Any], in_world: bool, of_task: bool = False
+) -> tuple[Program, ProgramSettings]:
+    """Return a program to start, and its settings; arguments of the call take precedence over those of the settings."""
+    source = _source(program)
+    found = program_settings(source, *layers, in_world=in_world, of_task=of_task)
+    started = found.applied_to(source.program)
+    return replace(started, arguments=tuple(arguments)) if arguments else started, found
 
 
 def _check_timeout(timeout_s: float) -> None:
@@ -156,11 +160,9 @@ def simulate(
         KeyboardInterrupt: ctrl-C; the run has been stopped, and its log is stored.
     """
     _check_timeout(timeout_s)
-    source = _source(program)
     given = choices_of(choices)
-    found = program_settings(source, _in_world(world, given), given, in_world=world is not None)
+    started, found = _prepared(program, arguments, _in_world(world, given), given, in_world=world is not None)
     options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers))
-    started = _started(found, source, arguments)
     handle = start_run(started, build_run_spec(found.settings), options, RunStore())
     try:
         handle.wait()
@@ -222,12 +224,12 @@ def experiment(
     given = choices_of(choices)
     task = load_goals(goals) if goals is not None else None
     in_world = task.settings if task and world is None else _in_world(world, given)
+    of_task = bool(task and world is None and task.settings)
+    where = {"in_world": of_task or world is not None, "of_task": of_task}
     subjects = []
     for one in [program] if isinstance(program, str | Path) else program:
-        source = _source(one)
-        of_task = bool(task and world is None and task.settings)
-        found = program_settings(source, in_world, given, in_world=of_task or world is not None, of_task=of_task)
-        subjects.append(Subject(_started(found, source, arguments), found.settings, frozenset(given)))
+        started, found = _prepared(one, arguments, in_world, given, **where)
+        subjects.append(Subject(started, found.settings, frozenset(given)))
     if not subjects:
         raise ConfigError("no program is named", key="program")
     varied = {name: _choice(name, values) for name, values in (parameters or {}).items()}

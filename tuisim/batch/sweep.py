@@ -34,15 +34,11 @@ class Workers:
         return run_on_cluster(tasks, self.scheduler, self.dask_workers)
 
 
-LOCAL = Workers()
-"""One worker process for each processor of this machine."""
-
-
 def run_plan(
     plan: Plan,
     rows: MutableMapping[int, Row],
     *,
-    workers: Workers = LOCAL,
+    workers: Workers,
     partial: PartialTable | None = None,
     on_row: Callable[[Row], None] = lambda _: None,
 ) -> None:

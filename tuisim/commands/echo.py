@@ -30,8 +30,7 @@ if TYPE_CHECKING:
 
 def echo(line: str = "") -> None:
     """Write one line to stdout."""
-    with progress_hidden(sys.stdout):
-        print(printable(line))
+    _print([line], sys.stdout)
 
 
 def echo_wrapped(line: str) -> None:
@@ -42,9 +41,7 @@ def echo_wrapped(line: str) -> None:
 
 def echo_lines(text: str) -> None:
     """Write a text of any number of lines to stdout."""
-    with progress_hidden(sys.stdout):
-        for line in text.split("\n"):
-            print(printable(line))
+    _print(text.split("\n"), sys.stdout)
 
 
 def echo_json(data: Any, *, flush: bool = False) -> None:
@@ -75,8 +72,7 @@ def _json(data: Any) -> str:
 
 def echo_error(line: str) -> None:
     """Write one line to stderr."""
-    with progress_hidden(sys.stderr):
-        print(printable(line), file=sys.stderr, flush=True)
+    _print([line], sys.stderr)
 
 
 def echo_written(file: str | Path) -> None:
@@ -89,9 +85,13 @@ def echo_written(file: str | Path) -> None:
 
 def echo_error_lines(text: str) -> None:
     """Write a text of any number of lines to stderr."""
-    with progress_hidden(sys.stderr):
-        for line in text.split("\n"):
-            print(printable(line), file=sys.stderr, flush=True)
+    _print(text.split("\n"), sys.stderr)
+
+
+def _print(lines: Iterable[str], stream: TextIO) -> None:
+    with progress_hidden(stream):
+        for line in lines:
+            print(printable(line), file=stream, flush=stream is sys.stderr)
 
 
 def echo_drawn(draw: Callable[[bool], Text], width: int) -> None:
