@@ -15,7 +15,7 @@ from tuisim.batch.sweep import Workers
 from tuisim.batch.table import check_expressions
 from tuisim.batch.task import Keep
 from tuisim.commands.batch_options import jobs_option, keep_option, workers_option
-from tuisim.commands.listings import names_of
+from tuisim.commands.listings import WORLD, names_of
 from tuisim.commands.notebooks import NotRun
 from tuisim.commands.resolve import check_arguments, prepare_runs
 from tuisim.commands.run_options import input_option, parse_press, press_actions, timeout_option
@@ -32,7 +32,7 @@ from tuisim.runs.handle import RunOptions
 _GRID, _RESULTS, _LIMITS = "Parameters", "Results", "Input and limits"
 OPTIONS = (
     argument("programs", "PROGRAM…|SPEC.toml", lambda: names_of("programs"), nargs=-1),
-    option("--world", metavar="FILE", type=WordType(), help="Use a world file; it may also precede the program."),
+    WORLD,
     jobs_option(),
     option("--scheduler", metavar="ADDRESS", help="Use the Dask cluster of a scheduler, such as tcp://host:8786."),
     workers_option("--workers", "Use a Dask cluster of this many workers on this machine."),
