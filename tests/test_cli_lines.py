@@ -8,6 +8,7 @@ import json
 import shlex
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -17,7 +18,7 @@ from tuisim.cli import run_command
 from tuisim.commands.runs import compact, export, list_runs, rerun_runs, rm, show
 from tuisim.config.options import Settings
 from tuisim.errors import ConfigError
-from tuisim.notebook.magic_line import MagicWords, parse_line
+from tuisim.notebook.magic_line import parse_line
 from tuisim.runs.store import RunStore
 
 TABLE = Path(__file__).with_name("cli_lines.jsonl")
@@ -56,15 +57,14 @@ class Stop(Exception):
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON has it; of a dataclass, the fields that are not at their defaults."""
+    """A value as JSON has it; of a magic line, the words that are not at their defaults."""
     match value:
         case Settings():
             bare = Settings()
             return {path: plain(value[path]) for path in value.given if value[path] != bare[path]}
-        case MagicWords():
-            defaults = MagicWords({})
-            items = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
-            return {name: plain(one) for name, one in items.items() if one != getattr(defaults, name)}
+        case SimpleNamespace():
+            defaults = vars(parse_line("", "sim_magic"))
+            return {name: plain(one) for name, one in vars(value).items() if one != defaults[name]}
         case str() | int() | float() | bool() | None:
             return value
         case Path():

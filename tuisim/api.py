@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import APP, OPTIONS, Option
 from tuisim.config.program_file import ProgramSource, find_program, program_of_text, read_program
-from tuisim.config.program_settings import program_settings
+from tuisim.config.program_settings import ProgramSettings, program_settings
 from tuisim.config.worlds import load_world
 from tuisim.errors import ConfigError, nearest
 from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S, RunOptions, start_run
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
+from tuisim.source import Program
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -118,6 +119,16 @@ def _in_world(world: str | Path | None, given: Mapping[str, Any]) -> Mapping[str
     return load_world(find_program(str(world)), given.get("mats")).settings if world is not None else {}
 
 
+def _prepared(
+    program: str | Path, arguments: Sequence[str], *layers: Mapping[str, Any], in_world: bool, of_task: bool = False
+) -> tuple[Program, ProgramSettings]:
+    """Return a program to start, and its settings; arguments of the call take precedence over those of the settings."""
+    source = _source(program)
+    found = program_settings(source, *layers, in_world=in_world, of_task=of_task)
+    started = found.applied_to(source.program)
+    return replace(started, arguments=tuple(arguments)) if arguments else started, found
+
+
 def _check_timeout(timeout_s: float) -> None:
     if not timeout_s > 0:
         raise ConfigError(f"must be above 0, got {timeout_s!r}", key="timeout_s")
@@ -149,15 +160,10 @@ def simulate(
         KeyboardInterrupt: ctrl-C; the run has been stopped, and its log is stored.
     """
     _check_timeout(timeout_s)
-    source = _source(program)
     given = choices_of(choices)
-    found = program_settings(source, _in_world(world, given), given, in_world=world is not None)
-    settings = found.settings
-    prelude = settings["preload"] or source.program.prelude
-    started = replace(source.program, prelude=prelude, arguments=tuple(arguments) or settings["arguments"])
-    store = RunStore()
+    started, found = _prepared(program, arguments, _in_world(world, given), given, in_world=world is not None)
     options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers))
-    handle = start_run(started, build_run_spec(settings), options, store)
+    handle = start_run(started, build_run_spec(found.settings), options, RunStore())
     try:
         handle.wait()
     finally:
@@ -205,10 +211,9 @@ def experiment(
     """
     from tuisim.batch.parameters import SEED, checked_seeds, parse_seeds
     from tuisim.batch.plan import Plan, Subject
-    from tuisim.batch.sweep import run_plan
+    from tuisim.batch.sweep import Workers, run_plan
     from tuisim.batch.table import Row, check_expressions, frame_of
     from tuisim.batch.task import MAX_JOBS, Keep
-    from tuisim.batch.workers import Workers
     from tuisim.goals.files import load_goals
 
     _check_timeout(timeout_s)
@@ -219,15 +224,12 @@ def experiment(
     given = choices_of(choices)
     task = load_goals(goals) if goals is not None else None
     in_world = task.settings if task and world is None else _in_world(world, given)
+    of_task = bool(task and world is None and task.settings)
+    where = {"in_world": of_task or world is not None, "of_task": of_task}
     subjects = []
     for one in [program] if isinstance(program, str | Path) else program:
-        source = _source(one)
-        of_task = bool(task and world is None and task.settings)
-        found = program_settings(source, in_world, given, in_world=of_task or world is not None, of_task=of_task)
-        settings = found.settings
-        prelude = settings["preload"] or source.program.prelude
-        started = replace(source.program, prelude=prelude, arguments=tuple(arguments) or settings["arguments"])
-        subjects.append(Subject(started, settings, frozenset(given)))
+        started, found = _prepared(one, arguments, in_world, given, **where)
+        subjects.append(Subject(started, found.settings, frozenset(given)))
     if not subjects:
         raise ConfigError("no program is named", key="program")
     varied = {name: _choice(name, values) for name, values in (parameters or {}).items()}

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.batch.stand_in import run_backwards
-from tuisim.batch import workers
+from tuisim.batch import sweep
 from tuisim.cli import run_command
 
 PROGRAM = "tank_drive.on_for_seconds(40, 40, 0.3)\nprint('Gyro: ' + str(gyro.angle))\n"
@@ -31,6 +31,6 @@ Batch = Callable[..., int]
 def batch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Batch:
     """Run the command in an own folder, with results that are computed and come in reverse order."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(workers, "run_many", run_backwards)
+    monkeypatch.setattr(sweep, "run_many", run_backwards)
     Path("mine.py").write_text(PROGRAM)
     return lambda *words: run_command(["batch", *words])

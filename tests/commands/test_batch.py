@@ -14,7 +14,7 @@ import pytest
 import tuisim
 from tests.batch.stand_in import result_of
 from tests.commands.conftest import PROGRAM, SPEC, Batch
-from tuisim.batch import workers
+from tuisim.batch import sweep
 from tuisim.batch.task import Result, Task
 from tuisim.cli import run_command
 from tuisim.goals.judgement import Change, GoalState, Judgement
@@ -80,7 +80,7 @@ def test_goals_are_judged_in_their_world(
                 task, judgements=tuple(Judgement(goal, (met,) * (task.spec.seed < 2)) for goal in task.goals)
             )
 
-    monkeypatch.setattr(workers, "run_many", judged)
+    monkeypatch.setattr(sweep, "run_many", judged)
     assert batch(*words, "--seeds", "0..2", "--out", "rows.csv") == 0
     assert pd.read_csv("rows.csv")[["goal.end", "points"]].to_numpy().tolist() == [[True, 2], [True, 2], [False, 0]]
     assert "end: met in 2 of 3 (67 %)" in capsys.readouterr().out
@@ -97,7 +97,7 @@ def test_several_programs_are_compared(batch: Batch, capsys: pytest.CaptureFixtu
 def test_an_interrupted_batch_keeps_what_is_done(
     batch: Batch, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(workers, "run_many", interrupt_after(2))
+    monkeypatch.setattr(sweep, "run_many", interrupt_after(2))
     assert batch("mine.py", "--seeds", "0..4", "--out", "rows.csv") == 130
     assert pd.read_csv("rows.csv")["seed"].tolist() == [0, 1]
     assert "interrupted after 2 of 5 runs; rows.csv has these rows, and --resume goes on" in capsys.readouterr().err
@@ -111,7 +111,7 @@ def test_a_resumed_batch_runs_the_rest_and_gives_the_same_bytes(
     words = ("mine.py", "--seeds", "0..4", "--set", "noise.motor=0,9", "--out")
     assert batch(*words, f"whole.{suffix}") == 0
     with monkeypatch.context() as patch:
-        patch.setattr(workers, "run_many", interrupt_after(3))
+        patch.setattr(sweep, "run_many", interrupt_after(3))
         assert batch(*words, f"rows.{suffix}") == 130
     run: list[int] = []
 
@@ -120,7 +120,7 @@ def test_a_resumed_batch_runs_the_rest_and_gives_the_same_bytes(
             run.append(task.index)
             yield result_of(task)
 
-    monkeypatch.setattr(workers, "run_many", rest)
+    monkeypatch.setattr(sweep, "run_many", rest)
     assert batch(*words, f"rows.{suffix}", "--resume") == 0
     assert run == [3, 4, 5, 6, 7, 8, 9]
     assert Path(f"rows.{suffix}").read_bytes() == Path(f"whole.{suffix}").read_bytes()
@@ -142,7 +142,7 @@ def test_a_complete_batch_is_not_run_again_for_another_picture(
     words = ("mine.py", "--seeds", "10..14", "--set", "robot.weight=light,heavy", "--expr", "a=x_mm + 1", "--out")
     assert batch(*words, f"rows.{suffix}") == 1
     summary, whole = capsys.readouterr().out, Path(f"rows.{suffix}").read_bytes()
-    monkeypatch.setattr(workers, "run_many", lambda tasks, jobs: iter([1 / 0 for _ in tasks]))
+    monkeypatch.setattr(sweep, "run_many", lambda tasks, jobs: (1 / 0 for _ in tasks))
     assert batch(*words, f"rows.{suffix}", "--resume", "--picture", "c.svg") == 1
     assert (capsys.readouterr().out, Path(f"rows.{suffix}").read_bytes()) == (summary, whole)
     assert Path("c.svg").exists()
@@ -159,7 +159,7 @@ def test_the_rows_of_an_interrupted_batch_are_not_lost(
     batch: Batch, words: tuple[str, ...], message: str, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
-    monkeypatch.setattr(workers, "run_many", interrupt_after(2))
+    monkeypatch.setattr(sweep, "run_many", interrupt_after(2))
     batch("mine.py", "--seeds", "0..4", "--out", "rows.csv")
     part = Path("rows.csv.part").read_bytes()
     assert batch("mine.py", "--seeds", "0..4", "--out", "rows.csv", *words) == 2

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from tests.commands.conftest import SPEC, Batch
-from tuisim.batch import workers
+from tuisim.batch import sweep
 
 
 @pytest.mark.parametrize(
@@ -61,7 +61,7 @@ def test_what_is_wrong_is_said_before_anything_is_run(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(workers, "run_many", None)
+    monkeypatch.setattr(sweep, "run_many", None)
     assert batch("mine.py", *words) == 2
     assert message in capsys.readouterr().err
 

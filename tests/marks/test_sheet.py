@@ -16,17 +16,17 @@ from tests.marks.hazards import EVIL
 from tests.running import PATIENCE_S
 from tuisim.config.program_file import ProgramSource
 from tuisim.errors import printable
+from tuisim.goals.spec import FinishCondition, Goal
 from tuisim.marks.feedback import feedback_of, file_stems, write_feedback
-from tuisim.marks.frame import export_marks, frame_of
-from tuisim.marks.outcome import GoalOutcome, Outcome, outcome_from_plain
+from tuisim.marks.outcome import GoalOutcome, Outcome
 from tuisim.marks.page import page_of
-from tuisim.marks.sheet import Sheet, SheetColumn, lines_of, sheet_of, summary_of
+from tuisim.marks.sheet import Sheet, export_marks, frame_of, lines_of, sheet_of, summary_of
 from tuisim.marks.students import Student
 from tuisim.source import Program
 
 COLUMNS = (
-    SheetColumn("place", "Stop at the place.", 7.0, "Measure the distance."),
-    SheetColumn("wall", "Do not touch the wall.", 3.0, ""),
+    Goal("place", FinishCondition(), "Stop at the place.", 7.0, "Measure the distance."),
+    Goal("wall", FinishCondition(), "Do not touch the wall.", 3.0),
 )
 TEXT = "drive()\nstop()  # <b>too late</b>\n"
 
@@ -226,11 +226,6 @@ def test_a_frame_has_a_row_a_student_and_a_column_a_goal() -> None:
         "source_line", "seed",
     ]  # fmt: skip
     assert frame.loc[1, ["student", "points", "goal_place"]].tolist() == ["ben", 8.25, 5.25]
-
-
-def test_an_outcome_survives_its_plain_form() -> None:
-    outcome = OUTCOMES["ben"][2]
-    assert outcome_from_plain(outcome.to_plain()) == outcome
 
 
 def test_a_class_that_was_interrupted_has_rows_without_runs() -> None:

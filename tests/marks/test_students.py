@@ -15,7 +15,7 @@ from tuisim.marks import students
 from tuisim.marks.journal import Journal
 from tuisim.marks.outcome import GoalOutcome, Outcome
 from tuisim.marks.students import Student, file_outside, find_students
-from tuisim.marks.workspace import digest_of, program_in, temporary_workspace
+from tuisim.marks.workspace import copy_of, digest_of, program_in
 
 
 def _folder(tmp_path: Path, *files: str) -> Path:
@@ -96,8 +96,8 @@ def test_what_is_no_file_or_has_an_odd_name_affects_its_own_row_only(tmp_path: P
     found = {one.name: one for one in find_students([str(folder)]).students}
     assert {name for name, one in found.items() if one.source} == {"ada", "bad?"}
     assert {name for name, one in found.items() if one.problem} == {"loop", "pipe", "zero"}
-    with temporary_workspace() as workspace:
-        assert Path(program_in(found["bad?"], workspace.copy(found["bad?"], 0)).path).is_file()
+    place = copy_of(found["bad?"], tmp_path / "copy")
+    assert Path(program_in(found["bad?"], place).path).is_file()
 
 
 @pytest.mark.parametrize("word", ["nowhere", "class"])
@@ -112,15 +112,12 @@ def test_a_program_sees_a_copy_of_its_own_files_only(tmp_path: Path) -> None:
     os.mkfifo(folder / "ada" / "pipe")
     (folder / "ada" / "link").symlink_to("data/hops.csv")
     ada, ben = find_students([str(folder)]).students
-    with temporary_workspace() as workspace:
-        program = program_in(ada, workspace.copy(ada, 0))
-        place = Path(program.working_directory)
-        assert sorted(path.name for path in place.iterdir()) == ["data", "link", "main.py"]
-        assert (place / "link").is_symlink() and Path(program.path) == place / "main.py"
-        assert [path.name for path in workspace.copy(ben, 1).iterdir()] == ["ben.py"]
-        workspace.remove(0)
-        assert not place.exists()
-    assert not workspace.path.exists()
+    program = program_in(ada, copy_of(ada, tmp_path / "0"))
+    place = Path(program.working_directory)
+    assert place == tmp_path / "0"
+    assert sorted(path.name for path in place.iterdir()) == ["data", "link", "main.py"]
+    assert (place / "link").is_symlink() and Path(program.path) == place / "main.py"
+    assert [path.name for path in copy_of(ben, tmp_path / "1").iterdir()] == ["ben.py"]
 
 
 def test_a_digest_changes_with_every_file(tmp_path: Path) -> None:

@@ -1,10 +1,9 @@
-"""Who is admitted, and what counts as done by a visitor."""
+"""Who is admitted."""
 
 from __future__ import annotations
 
 import pytest
 
-from tuisim.web.activity import Activity, is_done_by_a_person
 from tuisim.web.gate import Gate, new_token
 
 HERE = "127.0.0.1:8000"
@@ -48,35 +47,3 @@ def test_only_the_address_and_its_own_pages_are_admitted(
 def test_each_token_is_long_and_new() -> None:
     tokens = {new_token() for _ in range(100)}
     assert (len(tokens), min(map(len, tokens))) == (100, 32)
-
-
-INPUT = {
-    "a letter": ("R", True),
-    "escape": ("\x1b", True),
-    "an arrow": ("\x1b[A", True),
-    "ctrl and an arrow": ("\x1b[1;5C", True),
-    "F5": ("\x1b[15~", True),
-    "F1": ("\x1bOP", True),
-    "the mouse": ("\x1b[<35;10;20M", True),
-    "a paste": ("\x1b[200~text\x1b[201~", True),
-    "an answer and a key": ("\x1b[12;40R.", True),
-    "nothing": ("", False),
-    "the cursor's place": ("\x1b[12;40R", False),
-    "two answers": ("\x1b[12;40R\x1b[?2026;2$y", False),
-    "the size of a cell": ("\x1b[6;21;9t", False),
-    "what the terminal can do": ("\x1b[?1;2c", False),
-    "its name": ("\x1bP>|xterm.js\x1b\\", False),
-    "its background": ("\x1b]11;rgb:0000/0000/0000\x07", False),
-}
-
-
-@pytest.mark.parametrize(("text", "by_a_person"), INPUT.values(), ids=INPUT)
-def test_answers_of_the_terminal_do_not_count_as_done(text: str, by_a_person: bool) -> None:
-    assert is_done_by_a_person(text) is by_a_person
-
-
-def test_a_visitor_is_idle_since_the_last_input() -> None:
-    clock = iter([100.0, 130.0, 135.0]).__next__
-    activity = Activity(clock)
-    activity.note()
-    assert activity.idle_s == 5.0

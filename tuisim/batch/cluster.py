@@ -9,7 +9,7 @@ from __future__ import annotations
 import logging
 import queue
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator
 from contextlib import suppress
 from itertools import islice
 from typing import TYPE_CHECKING, Any
@@ -38,7 +38,7 @@ _folders: dict[str, Path] = {}
 """Folder for recordings in this process, if it is a worker."""
 
 
-def run_on_cluster(tasks: Iterable[Task], scheduler: str = "", workers: int = 0) -> Iterator[Result]:
+def run_on_cluster(tasks: Iterable[Task], scheduler: str = "", workers: int = 0) -> Generator[Result]:
     """Execute tasks on a Dask cluster, and yield their results in the order in which they arrive. Each `next` blocks.
 
     A result does not depend on the worker. Tasks of a worker that has died are executed on another one.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 from tuisim.batch.parameters import SEED
 from tuisim.batch.plan import Plan
 from tuisim.batch.table import POSE, PROGRAM
-from tuisim.charts.files import write_whole
-from tuisim.errors import ConfigError, ExportError, counted, printable
-from tuisim.logs.export import check_place
+from tuisim.charts.files import check_format, image_of, png_of, svg_of, write_whole
+from tuisim.errors import ConfigError, counted, printable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -44,10 +42,7 @@ def check_picture_file(path: Path) -> None:
     Raises:
         ExportError: unknown suffix, or it cannot be written.
     """
-    if path.suffix.lower() not in WRITERS:
-        allowed = ", ".join(WRITERS)
-        raise ExportError(f"cannot write {path}: unknown format {path.suffix!r}", f"a picture ends in {allowed}")
-    check_place(path)
+    check_format(path, "picture", WRITERS)
 
 
 def write_poses(frame: pd.DataFrame, plan: Plan, path: Path) -> None:
@@ -94,19 +89,8 @@ def text_of(frame: pd.DataFrame, plan: Plan, width: int, height: int, colors: bo
     return text_of_poses(end_poses(frame, plan), width, height, colors=colors)
 
 
-def _svg(drawing: Drawing) -> bytes:
-    from tuisim.charts.files import svg_of
-
-    return svg_of(drawing).encode()
-
-
-def _png(drawing: Drawing) -> bytes:
-    from tuisim.charts.files import image_of
-
-    content = io.BytesIO()
-    image_of(drawing).save(content, "png")
-    return content.getvalue()
-
-
-WRITERS: Mapping[str, Callable[[Drawing], bytes]] = {".svg": _svg, ".png": _png}
-"""Every format of a picture by the suffix of its files. To add one: write its function and a line here."""
+WRITERS: Mapping[str, Callable[[Drawing], bytes]] = {
+    ".svg": lambda drawing: svg_of(drawing).encode(),
+    ".png": lambda drawing: png_of(image_of(drawing)),
+}
+"""Every format of a picture by the suffix of its files. To add one: a line here."""

@@ -7,7 +7,7 @@ import signal
 import sys
 import threading
 import types
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Generator, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from itertools import islice
@@ -40,7 +40,7 @@ def default_jobs() -> int:
         return os.cpu_count() or 1
 
 
-def run_many(tasks: Iterable[Task], jobs: int = 0) -> Iterator[Result]:
+def run_many(tasks: Iterable[Task], jobs: int = 0) -> Generator[Result]:
     """Execute tasks, and yield their results in the order in which they finish. Each `next` blocks.
 
     A result does not depend on the number of jobs. Tasks of a worker that has died are executed again. Closing the

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -37,6 +37,22 @@ if TYPE_CHECKING:
 Size = tuple[int, int]
 
 
+_SIZE = re.compile(r"(\d{1,6})[x×](\d{1,6})")
+
+
+def parse_size(text: str, least: Size, most: Size) -> Size | None:
+    """Return a size such as `800x600`; None if it is none, or not within the limits."""
+    match = _SIZE.fullmatch(text)
+    size = (int(match[1]), int(match[2])) if match else (0, 0)
+    is_allowed = all(low <= side <= high for low, side, high in zip(least, size, most, strict=True))
+    return size if is_allowed else None
+
+
+def limits_in_words(least: Size, most: Size) -> str:
+    """Return the limits of a size, such as `200x150 to 6000x6000`."""
+    return " to ".join(f"{width}x{height}" for width, height in (least, most))
+
+
 @dataclass(frozen=True, slots=True)
 class ChartFormat:
     """One line of `CHART_FORMATS`."""
@@ -56,8 +72,13 @@ def _svg(chart: ChartData, size: Size) -> bytes:
 
 
 def _png(chart: ChartData, size: Size) -> bytes:
+    return png_of(image_of(laid_out(chart, *size)))
+
+
+def png_of(image: Image) -> bytes:
+    """Return an image as the content of a PNG file."""
     content = io.BytesIO()
-    image_of(laid_out(chart, *size)).save(content, "png")
+    image.save(content, "png")
     return content.getvalue()
 
 
@@ -84,12 +105,24 @@ def format_of(path: Path) -> ChartFormat:
     Raises:
         ExportError: unknown suffix, or it cannot be written.
     """
-    found = CHART_FORMATS.get(path.suffix.lower())
-    if found is None:
-        allowed = ", ".join(CHART_FORMATS)
-        raise ExportError(f"cannot write {path}: unknown format {path.suffix!r}", f"a chart ends in {allowed}")
+    check_format(path, "chart", CHART_FORMATS)
+    return CHART_FORMATS[path.suffix.lower()]
+
+
+def check_format(path: Path, what: str, formats: Collection[str]) -> None:
+    """Check that something can be written to a file.
+
+    Args:
+        what: What is written, such as `chart`.
+        formats: The suffixes that its files may have.
+
+    Raises:
+        ExportError: unknown suffix, or it cannot be written.
+    """
+    if path.suffix.lower() not in formats:
+        allowed = ", ".join(formats)
+        raise ExportError(f"cannot write {path}: unknown format {path.suffix!r}", f"a {what} ends in {allowed}")
     check_place(path)
-    return found
 
 
 def save_chart(chart_of: Callable[[int, int], ChartData], path: Path, size: Size | None = None) -> None:
@@ -178,9 +211,7 @@ def _svg_shape(shape: Shape) -> str:
             path = "M" + "L".join(points)
             return f'<path d="{path}" fill="none" stroke="{color}" stroke-width="1.8" stroke-linejoin="round"/>'
         case Raster():
-            content = io.BytesIO()
-            _image(shape).save(content, "png")
-            data = base64.b64encode(content.getvalue()).decode()
+            data = base64.b64encode(png_of(_image(shape))).decode()
             return f'<image {_place(shape)} preserveAspectRatio="none" href="data:image/png;base64,{data}"/>'
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tuisim import __version__
-from tuisim.commands.listings import names_of
+from tuisim.commands.listings import WORLD, names_of
 from tuisim.commands.log import COLUMNS, TELEMETRY
 from tuisim.config.command_line import Arguments, WordType, argument, command, option
 from tuisim.config.shared_options import shared_options
@@ -33,7 +33,7 @@ _WORLD = frozenset({"background", "robot", "obstacles"})
 
 OPENED: Sequence[click.Parameter] = (
     argument("words", "[PROGRAM]", lambda: names_of("programs"), nargs=-1),
-    option("--world", metavar="FILE", type=WordType(), help="Use a world file; it may also precede the program."),
+    WORLD,
     option(
         "--goals",
         metavar="FILE",

@@ -30,7 +30,18 @@ from tuisim.batch.table import (
 )
 from tuisim.commands import exit_status
 from tuisim.commands.batch_request import OPTIONS, Request, read_request
-from tuisim.commands.echo import Progress, echo, echo_drawn, echo_error, echo_json, echo_lines, table, tell
+from tuisim.commands.echo import (
+    Figure,
+    Progress,
+    echo,
+    echo_drawn,
+    echo_error,
+    echo_json,
+    echo_lines,
+    finite,
+    table,
+    tell,
+)
 from tuisim.commands.interruption import Interrupted, signals_raise
 from tuisim.commands.listings import names_of
 from tuisim.config.command_line import Arguments, command
@@ -156,7 +167,7 @@ class _Batch:
     def _print(self, frame: pd.DataFrame) -> None:
         if self.as_json:
             for row in frame.to_dict("records"):
-                echo_json({name: _plain(value) for name, value in row.items()})
+                echo_json(finite(row))
         elif self.rows:
             self._print_summary(frame)
 
@@ -212,7 +223,7 @@ def _summary_table(lines: Sequence[ColumnSummary], width: int) -> str:
         for line in lines:
             of = line.statistics
             chosen = [of.quantiles[QUANTILES.index(part)] for part in quantiles]
-            figures = map(_Figure, (of.mean, of.std, of.min, *chosen, of.max))
+            figures = map(_figure, (of.mean, of.std, of.min, *chosen, of.max))
             cells.append([line.column, *line.group.values(), *figures])
         found = table(heads, cells)
         if max(map(len, found.split("\n"))) <= width:
@@ -226,15 +237,9 @@ def _exit_code(row: Row) -> int:
     return exit_status.exit_code_of(End(row["end"]), row["exit_code"])
 
 
-def _plain(value: Any) -> Any:
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-class _Figure(float):
-    """A number with few digits, for tables; a mere rounding error is 0."""
-
-    def __str__(self) -> str:
-        return "" if math.isnan(self) else "0" if abs(self) < _ROUNDING else f"{float(self):.4g}"
+def _figure(value: float) -> Figure:
+    """Return a number with few digits; a mere rounding error is 0."""
+    return Figure(0.0 if abs(value) < _ROUNDING else value, ".4g")
 
 
 def _duration(seconds: float) -> str:

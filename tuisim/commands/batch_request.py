@@ -11,11 +11,11 @@ from tuisim.batch.batch_file import BatchFile, load_batch, means_batch
 from tuisim.batch.parameters import SEED, Choice, parse_seeds, parse_set
 from tuisim.batch.pictures import POSES, check_picture_file, parse_picture
 from tuisim.batch.plan import Plan, Subject
+from tuisim.batch.sweep import Workers
 from tuisim.batch.table import check_expressions
 from tuisim.batch.task import Keep
-from tuisim.batch.workers import Workers
 from tuisim.commands.batch_options import jobs_option, keep_option, workers_option
-from tuisim.commands.listings import names_of
+from tuisim.commands.listings import WORLD, names_of
 from tuisim.commands.notebooks import NotRun
 from tuisim.commands.resolve import check_arguments, prepare_runs
 from tuisim.commands.run_options import input_option, parse_press, press_actions, timeout_option
@@ -32,7 +32,7 @@ from tuisim.runs.handle import RunOptions
 _GRID, _RESULTS, _LIMITS = "Parameters", "Results", "Input and limits"
 OPTIONS = (
     argument("programs", "PROGRAM…|SPEC.toml", lambda: names_of("programs"), nargs=-1),
-    option("--world", metavar="FILE", type=WordType(), help="Use a world file; it may also precede the program."),
+    WORLD,
     jobs_option(),
     option("--scheduler", metavar="ADDRESS", help="Use the Dask cluster of a scheduler, such as tcp://host:8786."),
     workers_option("--workers", "Use a Dask cluster of this many workers on this machine."),

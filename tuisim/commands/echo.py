@@ -8,6 +8,7 @@ more than a second, and only if stderr is a terminal; long work writes a line a 
 from __future__ import annotations
 
 import json
+import math
 import os
 import shutil
 import sys
@@ -29,8 +30,7 @@ if TYPE_CHECKING:
 
 def echo(line: str = "") -> None:
     """Write one line to stdout."""
-    with progress_hidden(sys.stdout):
-        print(printable(line))
+    _print([line], sys.stdout)
 
 
 def echo_wrapped(line: str) -> None:
@@ -41,9 +41,7 @@ def echo_wrapped(line: str) -> None:
 
 def echo_lines(text: str) -> None:
     """Write a text of any number of lines to stdout."""
-    with progress_hidden(sys.stdout):
-        for line in text.split("\n"):
-            print(printable(line))
+    _print(text.split("\n"), sys.stdout)
 
 
 def echo_json(data: Any, *, flush: bool = False) -> None:
@@ -61,14 +59,20 @@ def echo_json_head(key: str, items: Iterable[Any], rest: Mapping[str, Any]) -> N
         sys.stdout.write("], " + _json(rest).removeprefix("{") + "\n")
 
 
+def finite(row: Mapping[Any, Any]) -> dict[Any, Any]:
+    """Return a row for JSON, which has no infinite numbers: they, and those that are missing, become None."""
+    return {
+        name: None if isinstance(value, float) and not math.isfinite(value) else value for name, value in row.items()
+    }
+
+
 def _json(data: Any) -> str:
     return json.dumps(data).replace("\x7f", "\\u007f")
 
 
 def echo_error(line: str) -> None:
     """Write one line to stderr."""
-    with progress_hidden(sys.stderr):
-        print(printable(line), file=sys.stderr, flush=True)
+    _print([line], sys.stderr)
 
 
 def echo_written(file: str | Path) -> None:
@@ -81,9 +85,13 @@ def echo_written(file: str | Path) -> None:
 
 def echo_error_lines(text: str) -> None:
     """Write a text of any number of lines to stderr."""
-    with progress_hidden(sys.stderr):
-        for line in text.split("\n"):
-            print(printable(line), file=sys.stderr, flush=True)
+    _print(text.split("\n"), sys.stderr)
+
+
+def _print(lines: Iterable[str], stream: TextIO) -> None:
+    with progress_hidden(stream):
+        for line in lines:
+            print(printable(line), file=stream, flush=stream is sys.stderr)
 
 
 def echo_drawn(draw: Callable[[bool], Text], width: int) -> None:
@@ -111,6 +119,22 @@ class CsvOut:
         """Write text."""
         with progress_hidden(sys.stdout):
             sys.stdout.write("\n".join(map(printable, text.split("\n"))) if sys.stdout.isatty() else text)
+
+
+class Figure(float):
+    """A number in a table, written by a format spec of its own; one that is missing is empty."""
+
+    how: str
+    """The format spec, such as `.2f`."""
+
+    def __new__(cls, value: float, how: str) -> Self:
+        """Return the number with its format spec."""
+        figure = super().__new__(cls, value)
+        figure.how = how
+        return figure
+
+    def __str__(self) -> str:
+        return "" if math.isnan(self) else format(float(self), self.how)
 
 
 _GOOD_CELLS, _LEAST_CELLS = 20, 8

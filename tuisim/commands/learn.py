@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from tuisim.commands.echo import Progress, echo, echo_json, echo_lines, table, tell
-from tuisim.config.command_line import AS_JSON, Command, Group, WordType, argument, command, option
+from tuisim.config.command_line import AS_JSON, Group, WordType, argument, command, option
 from tuisim.config.folders import user_path
 from tuisim.errors import ConfigError, counted
 from tuisim.lessons.catalogue import find_lesson, lesson_paths, load_all, shipped_paths
@@ -48,7 +48,7 @@ def open_lesson(word: str | None, folder: str | None, as_text: bool) -> int:
     if word is None and not in_app:
         return _list(folder, as_json=False)
     progress = load_progress()
-    lesson = load_lesson(find_lesson(word, folder, _SUBCOMMANDS)) if word else _next_lesson(load_all(folder), progress)
+    lesson = load_lesson(find_lesson(word, folder, learn.listing)) if word else _next_lesson(load_all(folder), progress)
     if not in_app:
         echo_lines(text_of(lesson, progress.get(lesson.name, LessonProgress())))
         return 0
@@ -200,15 +200,6 @@ def new(path: str) -> int:
     return 0
 
 
-_SUBCOMMANDS: dict[str, Command] = {
-    "open": open_lesson,
-    "list": list_lessons,
-    "status": status,
-    "check": check,
-    "new": new,
-}
-
-
 class _Learn(Group):
     """The command `learn`: a word that is no subcommand is a lesson."""
 
@@ -219,10 +210,9 @@ class _Learn(Group):
         return [self.default, *args]
 
 
-learn = _Learn(
+learn = _Learn.of(
     "learn",
-    {name: (one.help or "").partition("\n")[0].partition(". ")[0].rstrip(".") for name, one in _SUBCOMMANDS.items()},
-    _SUBCOMMANDS.__getitem__,
+    (open_lesson, list_lessons, status, check, new),
     default="open",
     help="""Learn to program the robot, step by step.
 

@@ -55,6 +55,8 @@ def names_of(field: str) -> Iterable[str]:
 
 COLUMN = WordType(names=lambda: names_of("columns"))
 """The value of an option in which the columns of a recording can be named."""
+WORLD = option("--world", metavar="FILE", type=WordType(), help="Use a world file; it may also precede the program.")
+"""The option of the commands that run or open programs."""
 
 
 # Mats

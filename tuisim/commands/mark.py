@@ -34,17 +34,16 @@ from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.goals.spec import Goal
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
 from tuisim.marks.feedback import write_feedback
-from tuisim.marks.frame import export_marks
 from tuisim.marks.journal import Journal, journal_of
 from tuisim.marks.outcome import Outcome
 from tuisim.marks.page import page_of, reports_folder
 from tuisim.marks.runs import STALL_LIMIT_S, MarkPlan, RunEntry, outcomes_of
-from tuisim.marks.sheet import Sheet, SheetColumn, lines_of, sheet_of, summary_of
+from tuisim.marks.sheet import Sheet, export_marks, lines_of, sheet_of, summary_of
 from tuisim.marks.students import Student, StudentsFound, file_outside, find_students
 from tuisim.regular_file import of_the_machine
 from tuisim.runs.child.isolation import check_isolation
 from tuisim.runs.child.supervisor import supervised
-from tuisim.runs.handle import RunOptions, user_python_path
+from tuisim.runs.handle import RunOptions
 
 PAGE_SUFFIXES = (".html", ".htm")
 DEFAULT_SEEDS = "0..19"
@@ -111,14 +110,13 @@ def mark(**given: Any) -> int:
         goals=tuple(task.goals),
         seeds=seeds,
         options=RunOptions(
-            time_limit_s=arguments.timeout, stall_limit_s=STALL_LIMIT_S, answers=_answers(arguments, task)
+            time_limit_s=arguments.timeout, stall_limit_s=STALL_LIMIT_S, answers=arguments.input or task.answers
         ),
         keep=Keep(arguments.keep or USUAL_KEEP),
         jobs=arguments.jobs,
         isolate=_isolates(arguments),
         version=__version__,
         arguments=settings_of(task.settings)["arguments"],
-        python_path=user_python_path(),
     )
     outcomes: dict[str, list[Outcome]] = {student.name: [] for student in students}
     with Progress("marking", in_lines=True):
@@ -217,14 +215,9 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
         raise ConfigError(f"{arguments.feedback} is no folder", "name a folder", key="--feedback")
 
 
-def _columns(task: GoalsFile) -> list[SheetColumn]:
-    """Return the goals that a student is shown: not those that are only parts of others."""
-    shown = [goal for goal in task.goals if goal.points or goal.say]
-    return [SheetColumn(goal.name, goal.say or goal.name, goal.points, goal.hint) for goal in shown]
-
-
-def _answers(arguments: Arguments, task: GoalsFile) -> tuple[str, ...]:
-    return tuple(arguments.input) or task.answers
+def _columns(task: GoalsFile) -> list[Goal]:
+    """Return the goals that a student is shown, in words: not those that are only parts of others."""
+    return [replace(goal, say=goal.say or goal.name) for goal in task.goals if goal.points or goal.say]
 
 
 def _excluded(arguments: Arguments, task: GoalsFile) -> frozenset[Path]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
     from tuisim.movies.painter import Size
     from tuisim.runs.run_folder import StoredRun
 
-_SIZE = re.compile(r"(\d{1,6})[x×](\d{1,6})")
 _PANELS = "world, chart, arrays"
 _FAST_S = 60
 """A longer run is shown faster, unless the speed is given."""
@@ -141,13 +139,13 @@ def _panels_of(text: str | None) -> tuple[ClipPanel, ...]:
 
 
 def _size_of(text: str) -> Size | None:
+    from tuisim.charts.files import limits_in_words, parse_size
     from tuisim.movies.painter import LEAST, MOST
 
     if not text:
         return None
-    match = _SIZE.fullmatch(text)
-    size = (int(match[1]), int(match[2])) if match else (0, 0)
-    if not all(low <= side <= high for low, side, high in zip(LEAST, size, MOST, strict=True)):
-        allowed = " to ".join(f"{width}x{height}" for width, height in (LEAST, MOST))
-        raise ConfigError(f"no such size {text!r}", f"width and height in pixels, {allowed}", key="--size")
+    size = parse_size(text, LEAST, MOST)
+    if size is None:
+        allowed = f"width and height in pixels, {limits_in_words(LEAST, MOST)}"
+        raise ConfigError(f"no such size {text!r}", allowed, key="--size")
     return size

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from itertools import groupby
 from types import FrameType
-from typing import Self, TextIO
+from typing import TextIO
 
 from tuisim.commands.echo import echo_error, progress_hidden, tell
 from tuisim.errors import EXIT_BROKEN_PIPE, SIGNALLED
@@ -32,21 +31,18 @@ class RelayInterrupts:
         """128 + the signal's number; 0 if there was none."""
         self._handle: RunHandle | None = None
 
-    def __enter__(self) -> Self:
-        self._before = {number: signal.signal(number, self._on_signal) for number in (signal.SIGINT, signal.SIGTERM)}
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        for number, handler in self._before.items():
-            signal.signal(number, handler)
-
     def watch(self, handle: RunHandle) -> None:
         """Make a run the one that a signal stops."""
         self._handle = handle
         if self.exit_code:
             handle.stop()
 
-    def _on_signal(self, number: int, frame: FrameType | None) -> None:
+    def handle(self, number: int, frame: FrameType | None) -> None:
+        """Handle a signal.
+
+        Raises:
+            KeyboardInterrupt: it is the second one.
+        """
         if self.exit_code:
             if self._handle is not None and self._handle.ended is None:
                 self._handle.kill()

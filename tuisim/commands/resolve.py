@@ -117,12 +117,9 @@ def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Argument
     layers = [*([world.settings] if world else []), arguments.settings]
     said = partial(program_settings, file, *layers, in_world=world is not None, of_task=_decides_robot(world))
     found = said(below=_defaults(world, config))
-    settings = found.settings
-    prelude = settings["preload"] or file.program.prelude
-    program = replace(file.program, prelude=prelude, arguments=settings["arguments"])
-    spec = _spec(settings)
+    program, spec = found.applied_to(file.program), _spec(found.settings)
     changed = _from_config(spec, world, config, said().decided.layer, file.options, arguments.settings)
-    return Prepared(program, settings, spec, world, from_config=changed, decided=found.decided)
+    return Prepared(program, found.settings, spec, world, from_config=changed, decided=found.decided)
 
 
 def _decides_robot(world: WorldFile | None) -> bool:

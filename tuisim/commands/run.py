@@ -9,7 +9,8 @@ from typing import Any
 from tuisim.breakpoints import parse_breakpoints, parse_watch
 from tuisim.commands import exit_status
 from tuisim.commands.echo import Progress, echo_error, echo_written, is_watched, tell
-from tuisim.commands.listings import COLUMN, names_of
+from tuisim.commands.interruption import signals_handled
+from tuisim.commands.listings import COLUMN, WORLD, names_of
 from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
 from tuisim.commands.relay import Follower, RelayInterrupts
 from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
@@ -34,7 +35,7 @@ GO, STOP = "go", "stop"
 _REPORTS, _BREAKPOINTS = "Data and limits", "Breakpoints"
 _OPTIONS = (
     argument("programs", "PROGRAM…", lambda: names_of("programs"), nargs=-1),
-    option("--world", metavar="FILE", type=WordType(), help="Use a world file; it may also precede the program."),
+    WORLD,
     option("--export", multiple=True, metavar="FILE", type=WordType(), group=_REPORTS,
            help=f"Write the samples of all programs ({', '.join(EXPORTERS)}); may be repeated."),
     option("--telemetry", metavar="FILE", type=WordType(), group=_REPORTS,
@@ -99,8 +100,8 @@ def run(**given: Any) -> int:
     check_targets(target for target in (*arguments.export, telemetry) if target is not None)
     if telemetry is not None and len(prepared) > 1:
         raise ConfigError("takes one program", f"got {len(prepared)}", key="--telemetry")
-    store = RunStore()
-    with RelayInterrupts() as interrupts, Progress(""):
+    store, interrupts = RunStore(), RelayInterrupts()
+    with signals_handled(interrupts.handle), Progress(""):
         code, results = _run_all(prepared, arguments, store, interrupts)
         if done := [run for _, run in results if run is not None]:
             _export(done, arguments)

@@ -74,6 +74,11 @@ class ProgramSettings:
     settings: Settings
     decided: Decided
 
+    def applied_to(self, program: Program) -> Program:
+        """Return a program with the prelude and the arguments that are chosen."""
+        prelude = self.settings["preload"] or program.prelude
+        return replace(program, prelude=prelude, arguments=self.settings["arguments"])
+
 
 def facts_of(program: Program) -> SourceFacts:
     """Return what the source of a program says; nothing if it is not Python, or too deeply nested to be read."""

@@ -9,7 +9,8 @@ from textwrap import fill
 
 from tuisim.atomic import replacing
 from tuisim.errors import ExportError, printable
-from tuisim.marks.sheet import Cell, Sheet, SheetColumn, SheetRow, in_words
+from tuisim.goals.spec import Goal
+from tuisim.marks.sheet import Cell, Sheet, SheetRow, in_words
 from tuisim.source import source_lines
 
 SUFFIX = ".txt"
@@ -67,7 +68,7 @@ def _how_often(row: SheetRow) -> list[str]:
                      f"{full} of {row.runs} runs met every goal."), ""]  # fmt: skip
 
 
-def _goal(column: SheetColumn, cell: Cell, runs: int, lines: Sequence[str]) -> list[str]:
+def _goal(column: Goal, cell: Cell, runs: int, lines: Sequence[str]) -> list[str]:
     is_met = bool(runs) and cell.met == runs
     mark = "met" if is_met else "missed" if not cell.met else "met in part"
     points = f" ({in_words(cell.points)} of {in_words(column.points)})" if column.points else ""

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import IO, Self
+
+import msgspec
 
 from tuisim.atomic import make_private_folder, private
 from tuisim.config.folders import home_folder
 from tuisim.errors import LogError
-from tuisim.marks.outcome import Outcome, outcome_from_plain
+from tuisim.marks.outcome import Outcome
 
 FOLDER = "marks"
 """In the user's data folder."""
@@ -57,7 +60,7 @@ class Journal:
     def add(self, key: str, outcome: Outcome) -> None:
         """Append an outcome; it is in the file when this returns."""
         assert self._file is not None
-        line = json.dumps({"key": key, "outcome": outcome.to_plain()}).encode() + b"\n"
+        line = json.dumps({"key": key, "outcome": asdict(outcome)}).encode() + b"\n"
         try:
             self._file.write(line)
             self._file.flush()
@@ -74,8 +77,8 @@ class Journal:
         for line in filter(None, lines):
             try:
                 entry = json.loads(line)
-                found[str(entry["key"])] = outcome_from_plain(entry["outcome"])
-            except (ValueError, TypeError, KeyError, RecursionError):
+                found[str(entry["key"])] = msgspec.convert(entry["outcome"], Outcome)
+            except (ValueError, TypeError, KeyError, RecursionError, msgspec.ValidationError):
                 continue
         return found
 

@@ -1,15 +1,30 @@
-"""The outcome of one run of a student's program, without anything that differs from machine to machine."""
+"""The outcome of one run of a student's program, without anything that differs from machine to machine.
+
+Its texts have no paths, addresses and control characters.
+"""
 
 from __future__ import annotations
 
+import os
+import re
+import sys
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
+from pathlib import Path
 
-import msgspec
-
+from tuisim.batch.task import Result
+from tuisim.errors import printable, shortened
+from tuisim.goals.judgement import GoalState, Judgement
+from tuisim.goals.spec import AllOf
 from tuisim.protocol import End
+from tuisim.runs.handle import user_python_path
+from tuisim.source import source_lines
 
+_ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{6,}\b")
+MOST_CHARACTERS = 300
+"""Longest reason; the rest is cut off."""
+_ERROR_HEAD, _ERROR_TAIL = 1000, 3000
+"""Characters of a long traceback that are kept, at its beginning and its end."""
 _GIVEN_UP = frozenset(
     {End.STALLED, End.OUTPUT_LIMIT, End.CRASHED, End.KILLED, End.FALSIFIED, End.STOPPED, End.DISK_FULL}
 )
@@ -57,19 +72,74 @@ class Outcome:
         """Whether it hung, flooded or died, so that further seeds would only cost as much time again."""
         return self.end in _GIVEN_UP
 
-    def to_plain(self) -> dict[str, Any]:
-        """Return it in the form of JSON."""
-        return asdict(self)
 
+def outcome_of(result: Result, seed: int, folder: Path) -> Outcome:
+    """Return the outcome of a task.
 
-def outcome_from_plain(data: Mapping[str, Any]) -> Outcome:
-    """Return the outcome that `to_plain` has described.
-
-    Raises:
-        TypeError, KeyError: it is not the description of an outcome.
+    Args:
+        result: The result of the task.
+        seed: Its seed.
+        folder: The folder in which the program ran; its path does not appear in the outcome.
     """
-    outcome = Outcome(**{**data, "goals": tuple(GoalOutcome(**goal) for goal in data["goals"])})
-    try:
-        return msgspec.convert(outcome.to_plain(), Outcome)
-    except msgspec.ValidationError as error:
-        raise TypeError(f"not the description of an outcome: {error}") from None
+    failure = "" if result.end == End.FINISHED and not result.exit_code else _failure(result)
+    judgements = {one.goal.name: one for one in result.judgements}
+    goals = []
+    for name, one in judgements.items():
+        if one.state is GoalState.MET:
+            goals.append(GoalOutcome(name, True))
+        else:
+            cause = _cause(one, judgements)
+            goals.append(GoalOutcome(name, False, _one_line(portable(cause.reason, folder)), cause.line))
+    return Outcome(
+        seed,
+        result.end,
+        _one_line(portable(failure, folder)),
+        result.error_line,
+        _head_and_tail("\n".join(map(printable, source_lines(portable(result.error, folder))))),
+        result.time_s,
+        tuple(goals),
+        result.run_id,
+    )
+
+
+def portable(text: str, folder: Path | str) -> str:
+    """Return a text without addresses in memory, and without what its paths say about this machine.
+
+    Of files in the folder in which the program ran, in those of modules, and of Python, the path in the folder is left.
+    """
+    if "/" in text:
+        modules = {*map(os.path.abspath, (*sys.path, *user_python_path())), sys.prefix, sys.base_prefix} - {"/"}
+        # Inner folders first.
+        places = "|".join(map(re.escape, (str(folder), *sorted(modules, reverse=True))))
+        text = re.sub(rf"(?<![\w/.~-])(?:{places})/", "", text)
+    return _ADDRESS.sub("0x…", text)
+
+
+def _cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Judgement:
+    """Return the judgement that says why a goal was missed: of goals that must all be met, the first that was not."""
+    if isinstance(judgement.goal.condition, AllOf):
+        for name in judgement.goal.condition.goals:
+            if judgements[name].state is not GoalState.MET:
+                return _cause(judgements[name], judgements)
+    return judgement
+
+
+def _failure(result: Result) -> str:
+    """Return why a program did not finish."""
+    if result.end == End.STOPPED:
+        return "stopped, because the run took too much real time"
+    if result.end == End.STALLED:
+        # Who has noticed it, the program's process or its host, depends on the machine.
+        return "stuck: no simulated time passed"
+    lines = source_lines(result.error.rstrip("\n"))
+    return result.summary or (lines[-1] if lines else result.end.replace("_", " ")) or "did not finish"
+
+
+def _head_and_tail(text: str) -> str:
+    if len(text) <= _ERROR_HEAD + _ERROR_TAIL:
+        return text
+    return f"{text[:_ERROR_HEAD]}…\n…{text[-_ERROR_TAIL:]}"
+
+
+def _one_line(text: str) -> str:
+    return shortened(printable(text.strip()), MOST_CHARACTERS)

@@ -9,7 +9,8 @@ from urllib.parse import quote
 
 from tuisim.analysis.report import page, paragraph, section, table
 from tuisim.charts.files import clean
-from tuisim.marks.sheet import Cell, Sheet, SheetColumn, SheetRow, in_words, summary_of
+from tuisim.goals.spec import Goal
+from tuisim.marks.sheet import Cell, Sheet, SheetRow, in_words, summary_of
 
 _STYLE = """<style>
 body { max-width: 90rem; }
@@ -74,7 +75,7 @@ def _level(points: float, most: float) -> str:
     return "met" if points >= most else "part" if points else "missed"
 
 
-def _cell(cell: Cell, column: SheetColumn, row: SheetRow) -> str:
+def _cell(cell: Cell, column: Goal, row: SheetRow) -> str:
     # A goal without points is met or missed, too.
     level = "met" if row.runs and cell.met == row.runs else "part" if cell.met else "missed"
     seeds = f"met in {cell.met} of {row.runs} runs" if row.runs > 1 else ""

@@ -1,4 +1,4 @@
-"""The reports of kept runs, beside the page of a class."""
+"""The reports of kept runs, beside the page of a class; each has the goals, and where on the mat they were decided."""
 
 from __future__ import annotations
 
@@ -9,21 +9,24 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from tuisim.analysis.report import report_of
+from tuisim.analysis.pins import Pin
+from tuisim.analysis.report import report_of, section, table
 from tuisim.analysis.source import LogRequest, opening
 from tuisim.charts.files import write_whole
 from tuisim.errors import ExportError, LogError
-from tuisim.goals.spec import Goal
+from tuisim.goals.judgement import Change
+from tuisim.goals.spec import ConditionKind, Goal
 from tuisim.marks.feedback import file_stems
+from tuisim.marks.outcome import GoalOutcome, Outcome, portable
 from tuisim.marks.page import reports_folder
-from tuisim.marks.results import portable
-from tuisim.marks.sheet import Sheet
-from tuisim.marks.verdicts import verdicts
+from tuisim.marks.sheet import Sheet, in_words
+from tuisim.protocol import End
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
 MOST_OUTPUT_BYTES = 4 << 20
 """Runs that printed more get no report: a browser could hardly show it."""
+_HEADS = ("", "goal", "result", "why", "points")
 
 
 def write_reports(sheet: Sheet, goals: Sequence[Goal], page: Path) -> Iterator[tuple[str, int, str]]:
@@ -51,7 +54,7 @@ def write_reports(sheet: Sheet, goals: Sequence[Goal], page: Path) -> Iterator[t
                 name = f"{stem}-seed-{outcome.seed}.html"
                 *_, opened = opening(LogRequest(runs=(run.id,)))
                 opened = replace(opened, runs=tuple(map(_portable, opened.runs)))
-                shown, pins = verdicts(sheet.columns, goals, outcome, run)
+                shown, pins = _verdicts(sheet.columns, goals, outcome, run)
                 title = f"{row.name}, seed {outcome.seed}"
                 _write(folder / name, report_of(opened, title=title, pins=pins, parts=[shown]))
                 written[recorded] = f"{folder.name}/{name}"
@@ -92,3 +95,48 @@ def _digest(run: StoredRun) -> str:
         text = row.replace(folder, b"")
         found.update(b"%d %d " % (stream, len(text)) + text)
     return found.hexdigest()
+
+
+def _verdicts(
+    columns: Sequence[Goal], goals: Sequence[Goal], outcome: Outcome, run: StoredRun
+) -> tuple[str, list[Pin]]:
+    """Return the section with the goals of a run, and a pin for each goal that was decided at a place.
+
+    Args:
+        columns: The goals that are shown, in their order.
+        goals: All goals of the task.
+        outcome: What the run has achieved.
+    """
+    found = {one.name: one for one in outcome.goals}
+    judged = _judged(goals, outcome, run)
+    rows, pins = [], []
+    for number, column in enumerate(columns, start=1):
+        goal = found.get(column.name, GoalOutcome(column.name, False, outcome.failure))
+        result = "met" if goal.met else "missed"
+        why = f"{goal.reason} (line {goal.line})" if goal.line else goal.reason
+        points = f"{in_words(column.points if goal.met else 0)} of {in_words(column.points)}"
+        if (event := judged.get(column.name)) is not None:
+            result += f" at {event.time_s:.2f} s, x {event.x_mm:.0f}, y {event.y_mm:.0f} mm"
+            said = f"{number}. {column.say} {result}"
+            pins.append(Pin(str(number), event.x_mm, event.y_mm, goal.met, f"{said}: {why}" if why else said))
+        rows.append([str(number), column.say, result, why, points])
+    return section("Goals", table(_HEADS, rows, numbers=len(_HEADS) - 1)), pins
+
+
+def _judged(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str, Change]:
+    """Return when and where goals were met or missed, of those that were at a time and a place."""
+    if outcome.end == End.FALSIFIED:
+        return {}
+    # Judging is slow to import, and most runs have been judged.
+    from tuisim.goals.judge import judge
+
+    try:
+        judgements = judge(goals, run)
+    except LogError:
+        # What is known of the run is in its outcome.
+        return {}
+    return {one.goal.name: one.event for one in judgements if one.event and not _is_of_the_text(one.goal)}
+
+
+def _is_of_the_text(goal: Goal) -> bool:
+    return all(part.KIND is ConditionKind.FIXED for part in goal.parts)

@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from tuisim.batch.pool import run_many
 from tuisim.batch.task import Keep, Task
@@ -13,11 +14,12 @@ from tuisim.core.spec import RunSpec
 from tuisim.core.tree import to_plain
 from tuisim.goals.spec import Goal
 from tuisim.marks.journal import Journal
-from tuisim.marks.outcome import Outcome
-from tuisim.marks.results import outcome_of
+from tuisim.marks.outcome import Outcome, outcome_of
 from tuisim.marks.students import Student
-from tuisim.marks.workspace import StudentWorkspace, digest_of, program_in, temporary_workspace
-from tuisim.runs.handle import RunOptions
+from tuisim.marks.workspace import copy_of, digest_of, program_in
+from tuisim.runs.handle import RunOptions, user_python_path
+from tuisim.runs.removal import remove_tree
+from tuisim.runs.temporary import temporary_home
 
 STALL_LIMIT_S = 10.0
 """CPU seconds in one instant of simulated time after which a program counts as hung."""
@@ -39,8 +41,6 @@ class MarkPlan:
     version: str = ""
     """Version of tuisim: an interrupted marking is resumed only with the same."""
     arguments: tuple[str, ...] = ()
-    python_path: tuple[str, ...] = ()
-    """Folders in which all programs search modules besides their own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +91,7 @@ def _turns(entry: RunEntry, plan: MarkPlan) -> list[_Turn]:
         digest_of(student),
         repr(plan.goals),
     ]
-    basis += [plan.options.to_plain(), plan.keep, plan.isolate, plan.arguments, plan.python_path]
+    basis += [plan.options.to_plain(), plan.keep, plan.isolate, plan.arguments, user_python_path()]
     turns = []
     for seed in plan.seeds:
         text = json.dumps([*basis, to_plain(replace(entry.spec, seed=seed))], sort_keys=True, default=str)
@@ -108,22 +108,23 @@ def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[t
             unknown.append(turn)
     if not unknown:
         return
-    with temporary_workspace() as workspace:
+    with temporary_home("tuisim-mark-") as home:
+        # Its resolved path is what a program sees.
+        workspace = home.resolve()
         for result in run_many(_tasks(unknown, plan, workspace), plan.jobs):
-            turn = unknown[result.index]
-            outcome = outcome_of(result, turn.seed, workspace.path / str(result.index))
-            workspace.remove(result.index)
+            turn, place = unknown[result.index], workspace / str(result.index)
+            outcome = outcome_of(result, turn.seed, place)
+            remove_tree(place)
             if outcome.counts:
                 journal.add(turn.key, outcome)
             yield turn.entry.student.name, outcome
 
 
-def _tasks(turns: Sequence[_Turn], plan: MarkPlan, workspace: StudentWorkspace) -> Iterator[Task]:
+def _tasks(turns: Sequence[_Turn], plan: MarkPlan, workspace: Path) -> Iterator[Task]:
     for index, turn in enumerate(turns):
         student = turn.entry.student
-        program = program_in(
-            student, workspace.copy(student, index), arguments=plan.arguments, python_path=plan.python_path
-        )
+        folder = copy_of(student, workspace / str(index))
+        program = program_in(student, folder, arguments=plan.arguments, python_path=user_python_path())
         yield Task(
             index=index,
             program=program,

@@ -1,29 +1,32 @@
-"""The sheet of a class: one row a student, with points, robustness and the reason of failure."""
+"""The sheet of a class: one row a student, with points, robustness and the reason of failure.
+
+It becomes a text table, or a data frame for CSV, Parquet, JSONL and Arrow files.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from tuisim.errors import counted, printable
+from tuisim.goals.spec import Goal
+from tuisim.logs.export import export_frame
 from tuisim.marks.outcome import Outcome
 from tuisim.marks.students import Student
 from tuisim.source import source_lines
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 NOT_RUN = "not run"
 DIGITS = 4
 """Points and shares are rounded to so many decimals: sums of floats are not exact."""
-
-
-@dataclass(frozen=True, slots=True)
-class SheetColumn:
-    """A goal as a column."""
-
-    name: str
-    say: str
-    points: float
-    hint: str
+MARKS_FORMAT = 1
+GOAL_PREFIX = "goal_"
+"""Before the name of a goal in the name of its column."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +81,8 @@ class Sheet:
     """The marks of a class."""
 
     title: str
-    columns: tuple[SheetColumn, ...]
+    columns: tuple[Goal, ...]
+    """The goals that are shown."""
     rows: tuple[SheetRow, ...]
     seeds: tuple[int, ...]
 
@@ -90,7 +94,7 @@ class Sheet:
 
 def sheet_of(
     title: str,
-    columns: Sequence[SheetColumn],
+    columns: Sequence[Goal],
     seeds: Sequence[int],
     students: Sequence[Student],
     outcomes: Mapping[str, Sequence[Outcome]],
@@ -104,7 +108,7 @@ def sheet_of(
     return Sheet(title, tuple(columns), rows, tuple(seeds))
 
 
-def row_of(student: Student, columns: Sequence[SheetColumn], outcomes: Sequence[Outcome], seeds: int) -> SheetRow:
+def row_of(student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome], seeds: int) -> SheetRow:
     """Return the row of a student."""
     if not student.source:
         cells = tuple(Cell(0.0, 0, student.problem) for _ in columns)
@@ -137,13 +141,13 @@ def row_of(student: Student, columns: Sequence[SheetColumn], outcomes: Sequence[
     )
 
 
-def _points(columns: Sequence[SheetColumn], outcome: Outcome) -> float:
+def _points(columns: Sequence[Goal], outcome: Outcome) -> float:
     """Return the points of one run; one of which nothing is recorded has no judgements, and no points."""
     met = {goal.name for goal in outcome.goals if goal.met}
     return math.fsum(column.points for column in columns if column.name in met)
 
 
-def _cell(column: SheetColumn, outcomes: Sequence[Outcome]) -> Cell:
+def _cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
     goals = [(one, next((goal for goal in one.goals if goal.name == column.name), None)) for one in outcomes]
     met = sum(goal is not None and goal.met for _, goal in goals)
     points = _rounded(column.points * met / len(goals))
@@ -209,3 +213,47 @@ def summary_of(sheet: Sheet) -> str:
     size = f"{counted(len(sheet.rows), 'student')}, {counted(len(sheet.seeds), 'seed')}"
     points = f"mean {in_words(mean)} of {in_words(sheet.most_points)} points"
     return f"{size}: {points}; {full} with all points" + (" for every seed" if len(sheet.seeds) > 1 else "")
+
+
+def frame_of(sheet: Sheet) -> pd.DataFrame:
+    """Return the sheet as a frame: one row a student, for each goal a column `goal_NAME` with its mean points."""
+    import pandas as pd
+
+    rows = sheet.rows
+    columns: dict[str, list[Any]] = {
+        "student": [row.name for row in rows],
+        "program": [row.program for row in rows],
+        "points": [row.points for row in rows],
+        "robustness": [row.robustness for row in rows],
+        "runs": [row.runs for row in rows],
+    }
+    for at, column in enumerate(sheet.columns):
+        columns[f"{GOAL_PREFIX}{column.name}"] = [row.cells[at].points for row in rows]
+    columns |= {
+        "reason": [row.reason for row in rows],
+        "line": [row.line for row in rows],
+        "source_line": [row.source_line for row in rows],
+        "seed": [row.seed for row in rows],
+    }
+    return pd.DataFrame(columns)
+
+
+def metadata_of(sheet: Sheet) -> dict[str, Any]:
+    """Return the metadata of an exported sheet: the goals with their points, and the seeds."""
+    return {
+        "format": MARKS_FORMAT,
+        "table": "marks",
+        "title": sheet.title,
+        "goals": [{"name": one.name, "say": one.say, "points": one.points} for one in sheet.columns],
+        "points": sheet.most_points,
+        "seeds": list(sheet.seeds),
+    }
+
+
+def export_marks(sheet: Sheet, path: Path) -> None:
+    """Write the sheet in the format of the suffix; an existing file is replaced.
+
+    Raises:
+        ExportError: it cannot be written; an existing file is unchanged.
+    """
+    export_frame(frame_of(sheet), path, metadata_of(sheet))

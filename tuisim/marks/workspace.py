@@ -7,61 +7,36 @@ import hashlib
 import os
 import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from tuisim.errors import LogError
 from tuisim.marks.students import LEFT_OUT, Student
-from tuisim.runs.removal import remove_tree
-from tuisim.runs.temporary import temporary_home
 from tuisim.source import Program
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 """Errors about the copy, not about the file."""
 
 
-@dataclass(frozen=True, slots=True)
-class StudentWorkspace:
-    """A folder with a copy of a student's files for each run."""
+def copy_of(student: Student, place: Path) -> Path:
+    """Return a new folder with a copy of a student's files.
 
-    path: Path
-    """Its resolved path: that is what a program sees."""
-
-    def copy(self, student: Student, index: int) -> Path:
-        """Return a new folder with a copy of a student's files.
-
-        Files that cannot be read are left out, as the program could not read them either.
-
-        Raises:
-            LogError: the copy cannot be written.
-        """
-        place = self.path / str(index)
-        try:
-            if os.path.isdir(student.path):
-                _copy_folder(student.path, place)
-            else:
-                place.mkdir()
-                _copy_file(student.path, place / student.main)
-        except OSError as error:
-            raise LogError(f"cannot be written: {error.strerror or error}", file=str(place)) from error
-        return place
-
-    def remove(self, index: int) -> None:
-        """Delete the folder of a run."""
-        remove_tree(self.path / str(index))
-
-
-@contextmanager
-def temporary_workspace() -> Iterator[StudentWorkspace]:
-    """Create an empty workspace, and delete it afterwards.
+    Files that cannot be read are left out, as the program could not read them either.
 
     Raises:
-        LogError: it cannot be created.
+        LogError: the copy cannot be written.
     """
-    with temporary_home("tuisim-mark-") as folder:
-        yield StudentWorkspace(folder.resolve())
+    try:
+        if os.path.isdir(student.path):
+            _copy_folder(student.path, place)
+        else:
+            place.mkdir()
+            _copy_file(student.path, place / student.main)
+    except OSError as error:
+        raise LogError(f"cannot be written: {error.strerror or error}", file=str(place)) from error
+    return place
 
 
 def _copy_folder(folder: Path, place: Path) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-import io
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -12,7 +11,7 @@ from typing import Any
 from IPython.core.getipython import get_ipython
 from IPython.display import DisplayHandle, display
 
-from tuisim.charts.files import image_of
+from tuisim.charts.files import image_of, png_of
 from tuisim.charts.layout import laid_out
 from tuisim.charts.sample_chart import sample_chart
 from tuisim.config.mat_cache import FieldFiles, mat_pixels, open_field
@@ -40,9 +39,7 @@ Row = tuple[str, str]
 
 def picture_bundle(picture: Any, name: str) -> dict[str, Any]:
     """Return a Pillow image as a displayable object."""
-    png = io.BytesIO()
-    picture.save(png, "PNG")
-    return {"image/png": png.getvalue(), "text/plain": f"<{name}, {picture.width} × {picture.height} pixels>"}
+    return {"image/png": png_of(picture), "text/plain": f"<{name}, {picture.width} × {picture.height} pixels>"}
 
 
 def table_bundle(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) -> dict[str, Any]:

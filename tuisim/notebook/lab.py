@@ -18,13 +18,13 @@ from tuisim.protocol import Wheels
 if TYPE_CHECKING:
     import pandas as pd
 
+    from tuisim.config.command_line import Arguments
     from tuisim.config.mat_cache import FieldFiles
     from tuisim.config.options import Settings
     from tuisim.core.spec import RunSpec
     from tuisim.notebook.cell_run import Listener
     from tuisim.notebook.display import Scene, Stage
     from tuisim.notebook.image_log import LoggedArray
-    from tuisim.notebook.magic_line import MagicWords
     from tuisim.runs.run_folder import StoredRun
     from tuisim.scene.pen import Piece
     from tuisim.source import Program
@@ -196,7 +196,7 @@ class Lab:
 
     # Cells
 
-    def apply(self, words: MagicWords, text: str | None, prelude: str) -> None:
+    def apply(self, words: Arguments, text: str | None, prelude: str) -> None:
         """Apply a cell's magic; on an error nothing changes.
 
         Args:
@@ -227,7 +227,7 @@ class Lab:
             scene, status = self._scene(plan)
             stage.show(scene, f"nothing is running · {status}" if words.stop else status)
 
-    def _checked(self, words: MagicWords, text: str | None, prelude: str) -> _CellPlan:
+    def _checked(self, words: Arguments, text: str | None, prelude: str) -> _CellPlan:
         from tuisim.config.build import build_run_spec
         from tuisim.config.options import settings_of
         from tuisim.config.program_file import ProgramSource
@@ -269,7 +269,7 @@ class Lab:
 
         return Listener(responder, self._in_texts, None if handler is None else handled)
 
-    def _run(self, plan: _CellPlan, stage: Stage, words: MagicWords, listener: Listener) -> None:
+    def _run(self, plan: _CellPlan, stage: Stage, words: Arguments, listener: Listener) -> None:
         from tuisim.notebook.cell_run import CellRun, run_cell
         from tuisim.scene.pen import pen_trace
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from tuisim.config.command_line import Arguments, Command, GroupedOption, WordType, help_of, option, parse
@@ -23,24 +22,6 @@ PERSISTENT = frozenset({"background", "mats", "robot", "obstacles", "profile", *
 
 OF_THE_MAT = (*START, "obstacles")
 """Paths of settings that a new mat resets."""
-
-
-@dataclass(frozen=True, slots=True)
-class MagicWords:
-    """A parsed magic line."""
-
-    settings: Mapping[str, Any]
-    """By path."""
-    sim: str | None = None
-    """Name of the simulator variable."""
-    preview: bool = False
-    preview_code: bool = False
-    stop: bool = False
-    move_back: bool = False
-    refresh_s: float = DEFAULT_REFRESH_S
-    collaborative: bool = False
-    help: str = ""
-    """The help text, if it was requested."""
 
 
 def _of_every_magic(**how: str) -> list[GroupedOption]:
@@ -69,8 +50,8 @@ def _command(magic: str) -> Command:
     return Command(f"%{magic}", params=params, add_help_option=False)
 
 
-def parse_line(line: str, magic: str) -> MagicWords:
-    """Parse the words after a magic.
+def parse_line(line: str, magic: str) -> Arguments:
+    """Parse the words after a magic that sets the world; `help` is the help text, if it was requested.
 
     Raises:
         ConfigError: a word is no option, or a value is wrong.
@@ -81,7 +62,8 @@ def parse_line(line: str, magic: str) -> MagicWords:
         found = parse(command, words)
     except ConfigError as error:
         raise ConfigError(error.message, f"see %{magic} -h" if not error.hint else error.hint) from None
-    return MagicWords(**vars(found) | {"help": help_of(command) if found.help else ""})
+    found.help = help_of(command) if found.help else ""
+    return found
 
 
 def _split(line: str, magic: str) -> list[str]:

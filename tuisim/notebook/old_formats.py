@@ -111,18 +111,16 @@ class ImagePair(NamedTuple):
     right: Image
 
     def _repr_png_(self) -> bytes:
-        import io
-
         from PIL import Image
+
+        from tuisim.charts.files import png_of
 
         scale, gap = 10, 10
         width, height = self.left.width * scale, self.left.height * scale
         both = Image.new("L", (width + gap + self.right.width * scale, height), _GAP_GREY)
         for at, picture in ((0, self.left), (width + gap, self.right)):
             both.paste(picture.resize((picture.width * scale, picture.height * scale), 0), (at, 0))
-        png = io.BytesIO()
-        both.save(png, "PNG")
-        return png.getvalue()
+        return png_of(both)
 
 
 def image_pair(arrays: Iterable[Sequence[LoggedArray]], index: int = -1) -> ImagePair:

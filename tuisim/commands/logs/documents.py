@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 import shutil
 from dataclasses import replace
 from functools import partial
@@ -13,7 +12,7 @@ from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.model import Model
 from tuisim.analysis.report import check_report, default_name, write_report
 from tuisim.analysis.source import LogRequest, OpenedLog, opening
-from tuisim.charts.files import CHART_FORMATS, Size, format_of, save_chart
+from tuisim.charts.files import CHART_FORMATS, Size, format_of, limits_in_words, parse_size, save_chart
 from tuisim.commands.echo import echo, echo_drawn, echo_error
 from tuisim.commands.logs.sources import asked, names_of, the_source
 from tuisim.config.command_line import Arguments
@@ -21,7 +20,6 @@ from tuisim.errors import ConfigError, LogError, listed
 from tuisim.logs.derived import with_named_columns
 from tuisim.logs.log import Log
 
-_SIZE = re.compile(r"(\d{1,6})[x×](\d{1,6})")
 _LEAST_COLUMNS, _ROWS = 20, (12, 32)
 """Size of the chart in the shell: minimum width, and limits of its height."""
 
@@ -61,11 +59,10 @@ def _check_visible(model: Model) -> None:
 
 
 def _size(text: str, least: Size, most: Size) -> Size:
-    match = _SIZE.fullmatch(text)
-    size = (int(match[1]), int(match[2])) if match else None
-    if size is None or not all(low <= side <= high for low, side, high in zip(least, size, most, strict=True)):
-        allowed = " to ".join(f"{width}x{height}" for width, height in (least, most))
-        raise ConfigError(f"cannot draw a chart of {text!r}", f"width and height, {allowed}", key="--size")
+    size = parse_size(text, least, most)
+    if size is None:
+        allowed = f"width and height, {limits_in_words(least, most)}"
+        raise ConfigError(f"cannot draw a chart of {text!r}", allowed, key="--size")
     return size
 
 

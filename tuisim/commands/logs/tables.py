@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tuisim.analysis.events import THRESHOLD_FORM, Threshold, threshold_of
-from tuisim.commands.echo import CsvOut, echo_json, echo_lines, echo_wrapped, echo_written, table
+from tuisim.commands.echo import CsvOut, Figure, echo_json, echo_lines, echo_wrapped, echo_written, finite, table
 from tuisim.commands.logs.sources import names_of, open_sources, the_source
 from tuisim.config.command_line import Arguments
 from tuisim.core.conditions import Operator
@@ -255,7 +254,7 @@ def show_rows(rows: Sequence[Mapping[str, Any]], arguments: Arguments, formats: 
 
         write_frame(pd.DataFrame(list(rows), columns=list(rows[0]) if rows else list(formats)), arguments)
     elif arguments.json:
-        echo_json([{name: _plain(value) for name, value in row.items()} for row in rows])
+        echo_json([finite(row) for row in rows])
     else:
         heads = [name.upper().replace("_", " ") for name in formats]
         echo_lines(table(heads, [[_written(row[name], how) for name, how in formats.items()] for row in rows]))
@@ -275,7 +274,7 @@ def _print_json(frame: pd.DataFrame) -> None:
     """Print each row as a JSON object with numbers in full precision, which `DataFrame.to_json` does not keep."""
     names = [str(name) for name in frame.columns]
     for cells in zip(*(frame[name].tolist() for name in frame.columns), strict=True):
-        echo_json({name: _plain(cell) for name, cell in zip(names, cells, strict=True)})
+        echo_json(finite(dict(zip(names, cells, strict=True))))
 
 
 def write_frame(frame: pd.DataFrame, arguments: Arguments) -> None:
@@ -286,22 +285,5 @@ def write_frame(frame: pd.DataFrame, arguments: Arguments) -> None:
     echo_written(arguments.out)
 
 
-def _plain(value: Any) -> Any:
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-class _Number(float):
-    """A float with a format spec of its own, for tables."""
-
-    how: str
-
-    def __str__(self) -> str:
-        return "" if math.isnan(self) else format(float(self), self.how)
-
-
 def _written(value: Any, how: str) -> Any:
-    if not how or not isinstance(value, float):
-        return value
-    number = _Number(value)
-    number.how = how
-    return number
+    return Figure(value, how) if how and isinstance(value, float) else value

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import stat
 import time
@@ -17,7 +16,7 @@ from tuisim.config.folders import cache_folder
 from tuisim.runs.catalogue import CATALOGUE_FILE
 from tuisim.runs.removal import remove_tree
 from tuisim.runs.run_folder import RUN_FILE
-from tuisim.runs.side_files import LOCK_FILE, is_held
+from tuisim.runs.side_files import LOCK_FILE, is_held, is_locked
 from tuisim.runs.store import REMOVED, RUNS_FOLDER
 from tuisim.runs.temporary import PREFIX, places
 
@@ -78,7 +77,7 @@ class _Use:
     def is_unlocked(self, folder: Path) -> bool:
         """Return whether no process holds a folder by its lock; one without a lock may be about to get it."""
         locks = [path for path in folder.glob(f"*{LOCK_FILE}*") if stat.S_ISREG(path.lstat().st_mode)]
-        return self.is_free(folder) if not locks else not any(map(_is_locked, locks))
+        return self.is_free(folder) if not locks else all(is_locked(path) is False for path in locks)
 
     @cached_property
     def _open(self) -> frozenset[str] | None:
@@ -93,22 +92,6 @@ class _Use:
                     with suppress(OSError):
                         found.add(os.readlink(link))
         return frozenset(found)
-
-
-def _is_locked(path: Path) -> bool:
-    try:
-        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC)
-    except FileNotFoundError:
-        return False
-    except OSError:
-        return True
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except OSError:
-        return True
-    finally:
-        os.close(descriptor)
-    return False
 
 
 def _entries(folder: Path) -> list[Path]:

@@ -4,98 +4,88 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import Any
 
 from tuisim.core.sensors import SENSORS
 from tuisim.errors import NotSimulated, shortened
 from tuisim.shim.motor import KINDS
+from tuisim.shim.unsupported.modules import CAMERA, Hardware, refused_as
 
 SIMULATED = frozenset({kind.driver_name for kind in SENSORS.values()} | {kind.driver_name for kind in KINDS.values()})
 """Drivers of the devices that a robot can have."""
-
-
-@dataclass(frozen=True, slots=True)
-class Unsimulated:
-    """A kind of device that no robot here can have."""
-
-    title: str
-    instead: str
-    """What a program can do instead."""
 
 
 _LIGHT = "use a ColorSensor: it measures reflected and ambient light"
 _DISTANCE = "use an UltrasonicSensor or an InfraredSensor"
 _TURN = "use a GyroSensor"
 _MUX = "plug each sensor directly into one of the brick's four inputs"
-_SEE = "use a ColorSensor for colours, and an UltrasonicSensor for distances"
 _MOTOR = "use a LargeMotor or a MediumMotor"
 _ALONE = "the simulated sensors are those of ev3dev2.sensor.lego for colour, distance, turning, touch and infrared"
 
-DRIVERS: Mapping[str, Unsimulated] = {
-    "lego-nxt-light": Unsimulated("the NXT light sensor", _LIGHT),
-    "lego-nxt-sound": Unsimulated("the NXT sound sensor", "it is silent here: start by a TouchSensor or a Button"),
-    "lego-nxt-touch": Unsimulated("the NXT touch sensor", "use the one of the EV3, lego-ev3-touch"),
-    "lego-nxt-us": Unsimulated("the NXT ultrasonic sensor", "use the one of the EV3, lego-ev3-us"),
-    "lego-nxt-motor": Unsimulated("the NXT motor", "use a LargeMotor, lego-ev3-l-motor"),
-    "lego-nxt-*": Unsimulated("an NXT sensor", _ALONE),
-    "lego-power-storage": Unsimulated("the energy meter", "PowerSupply has the voltage and the current of the battery"),
-    "ht-nxt-smux": Unsimulated("the HiTechnic multiplexer", _MUX),
-    "ht-nxt-color*": Unsimulated("the HiTechnic colour sensor", _LIGHT),
-    "ht-nxt-eopd": Unsimulated("the HiTechnic EOPD", _LIGHT),
-    "ht-nxt-ir-*": Unsimulated("the HiTechnic infrared sensor", "use an InfraredSensor"),
-    "ht-nxt-pir": Unsimulated("the HiTechnic PIR sensor", _DISTANCE),
-    "ht-nxt-compass": Unsimulated("the HiTechnic compass", _TURN),
-    "ht-nxt-gyro": Unsimulated("the HiTechnic gyro", _TURN),
-    "ht-nxt-angle": Unsimulated("the HiTechnic angle sensor", "a motor has its own: position"),
-    "ht-*": Unsimulated("a HiTechnic sensor", _ALONE),
-    "mi-*": Unsimulated("the Microinfinity gyro", _TURN),
-    "ms-*mux": Unsimulated("a mindsensors multiplexer", _MUX),
-    "ms-8ch-servo": Unsimulated("the mindsensors servo controller", _MOTOR),
-    "ms-nxtmmx": Unsimulated("the mindsensors motor multiplexer", "a robot has up to four motors, outA to outD"),
-    "ms-light-array": Unsimulated("the mindsensors light array", "use ColorSensors: a robot can have four"),
-    "ms-line-leader": Unsimulated("the mindsensors line leader", "use ColorSensors: a robot can have four"),
-    "ms-absolute-imu": Unsimulated("the mindsensors IMU", _TURN),
-    "ms-nxtcam*": Unsimulated("the mindsensors camera", _SEE),
-    "ms-pixy-adapter": Unsimulated("the Pixy camera", _SEE),
-    "ms-*": Unsimulated("a mindsensors sensor", _ALONE),
-    "pixy-*": Unsimulated("the Pixy camera", _SEE),
-    "fcl-*": Unsimulated("a FatcatLab sensor", _ALONE),
-    "di-*": Unsimulated("a sensor of Dexter Industries", _ALONE),
-    "wedo-*": Unsimulated("the WeDo hub with its sensors", _ALONE),
-    "nxt-analog": Unsimulated("an analog sensor", _ALONE),
-    "nxt-i2c-*": Unsimulated("an I2C sensor", _ALONE),
-    "ev3-analog-*": Unsimulated("an analog sensor", _ALONE),
-    "ev3-uart-*": Unsimulated("an UART sensor", _ALONE),
-    "act-l12-*": Unsimulated("a linear motor of Actuonix", _MOTOR),
-    "fi-l12-*": Unsimulated("a linear motor of Firgelli", _MOTOR),
-    "rcx-motor": Unsimulated("a motor without a rotation sensor", _MOTOR),
-    "rcx-led": Unsimulated("a lamp on a motor port", "use Leds, the lights of the brick"),
+DRIVERS: Mapping[str, Hardware] = {
+    "lego-nxt-light": Hardware("the NXT light sensor", _LIGHT),
+    "lego-nxt-sound": Hardware("the NXT sound sensor", "it is silent here: start by a TouchSensor or a Button"),
+    "lego-nxt-touch": Hardware("the NXT touch sensor", "use the one of the EV3, lego-ev3-touch"),
+    "lego-nxt-us": Hardware("the NXT ultrasonic sensor", "use the one of the EV3, lego-ev3-us"),
+    "lego-nxt-motor": Hardware("the NXT motor", "use a LargeMotor, lego-ev3-l-motor"),
+    "lego-nxt-*": Hardware("an NXT sensor", _ALONE),
+    "lego-power-storage": Hardware("the energy meter", "PowerSupply has the voltage and the current of the battery"),
+    "ht-nxt-smux": Hardware("the HiTechnic multiplexer", _MUX),
+    "ht-nxt-color*": Hardware("the HiTechnic colour sensor", _LIGHT),
+    "ht-nxt-eopd": Hardware("the HiTechnic EOPD", _LIGHT),
+    "ht-nxt-ir-*": Hardware("the HiTechnic infrared sensor", "use an InfraredSensor"),
+    "ht-nxt-pir": Hardware("the HiTechnic PIR sensor", _DISTANCE),
+    "ht-nxt-compass": Hardware("the HiTechnic compass", _TURN),
+    "ht-nxt-gyro": Hardware("the HiTechnic gyro", _TURN),
+    "ht-nxt-angle": Hardware("the HiTechnic angle sensor", "a motor has its own: position"),
+    "ht-*": Hardware("a HiTechnic sensor", _ALONE),
+    "mi-*": Hardware("the Microinfinity gyro", _TURN),
+    "ms-*mux": Hardware("a mindsensors multiplexer", _MUX),
+    "ms-8ch-servo": Hardware("the mindsensors servo controller", _MOTOR),
+    "ms-nxtmmx": Hardware("the mindsensors motor multiplexer", "a robot has up to four motors, outA to outD"),
+    "ms-light-array": Hardware("the mindsensors light array", "use ColorSensors: a robot can have four"),
+    "ms-line-leader": Hardware("the mindsensors line leader", "use ColorSensors: a robot can have four"),
+    "ms-absolute-imu": Hardware("the mindsensors IMU", _TURN),
+    "ms-nxtcam*": Hardware("the mindsensors camera", CAMERA),
+    "ms-pixy-adapter": Hardware("the Pixy camera", CAMERA),
+    "ms-*": Hardware("a mindsensors sensor", _ALONE),
+    "pixy-*": Hardware("the Pixy camera", CAMERA),
+    "fcl-*": Hardware("a FatcatLab sensor", _ALONE),
+    "di-*": Hardware("a sensor of Dexter Industries", _ALONE),
+    "wedo-*": Hardware("the WeDo hub with its sensors", _ALONE),
+    "nxt-analog": Hardware("an analog sensor", _ALONE),
+    "nxt-i2c-*": Hardware("an I2C sensor", _ALONE),
+    "ev3-analog-*": Hardware("an analog sensor", _ALONE),
+    "ev3-uart-*": Hardware("an UART sensor", _ALONE),
+    "act-l12-*": Hardware("a linear motor of Actuonix", _MOTOR),
+    "fi-l12-*": Hardware("a linear motor of Firgelli", _MOTOR),
+    "rcx-motor": Hardware("a motor without a rotation sensor", _MOTOR),
+    "rcx-led": Hardware("a lamp on a motor port", "use Leds, the lights of the brick"),
 }
 """Kinds of devices, by patterns of driver names; the first that matches tells."""
 
-_OTHER = Unsimulated("a device that tuisim does not know", f"the simulated drivers are {', '.join(sorted(SIMULATED))}")
+_OTHER = Hardware("a device that tuisim does not know", f"the simulated drivers are {', '.join(sorted(SIMULATED))}")
 
-CLASSES: Mapping[str, Unsimulated] = {
-    "dc-motor": Unsimulated("a motor without a rotation sensor", _MOTOR),
-    "servo-motor": Unsimulated("a servo motor", "use a MediumMotor: on_to_position() turns it to an angle"),
+CLASSES: Mapping[str, Hardware] = {
+    "dc-motor": Hardware("a motor without a rotation sensor", _MOTOR),
+    "servo-motor": Hardware("a servo motor", "use a MediumMotor: on_to_position() turns it to an angle"),
 }
 """Classes of devices without any that a robot can have, by their kernel names."""
 
-PORT_MODES: Mapping[str, Unsimulated] = {"dc-motor": DRIVERS["rcx-motor"], "led": DRIVERS["rcx-led"]}
+PORT_MODES: Mapping[str, Hardware] = {"dc-motor": DRIVERS["rcx-motor"], "led": DRIVERS["rcx-led"]}
 """Port modes that are for a single kind of device."""
 
 _PORT = re.compile(r"(?:ev3-ports:)?(?:in[1-4]|out[A-D]):.")
 """The beginning of an address behind a port, such as `ev3-ports:in1:i2c80:mux1`."""
-ADDRESSES: Mapping[str, Unsimulated] = {
-    "mux": Unsimulated("a sensor multiplexer", _MUX),
-    "i2c": Unsimulated("an I2C sensor", _ALONE),
-    "": Unsimulated("a device behind a multiplexer", _MUX),
+ADDRESSES: Mapping[str, Hardware] = {
+    "mux": Hardware("a sensor multiplexer", _MUX),
+    "i2c": Hardware("an I2C sensor", _ALONE),
+    "": Hardware("a device behind a multiplexer", _MUX),
 }
 """What is behind a port, by a part of the address."""
 _BOARDS = ("spi0.1:", "serial0-0:", "ttyAMA0:", "pistorms:")
-_BOARD = Unsimulated("a port of a BrickPi or PiStorms", "this is an EV3: use OUTPUT_A to OUTPUT_D, INPUT_1 to INPUT_4")
+_BOARD = Hardware("a port of a BrickPi or PiStorms", "this is an EV3: use OUTPUT_A to OUTPUT_D, INPUT_1 to INPUT_4")
 
 FOREIGN_MODES: Mapping[str, str] = {
     **dict.fromkeys(("ALL", *(f"SIG{n}" for n in range(1, 8))), "pixy-lego"),
@@ -109,14 +99,14 @@ FOREIGN_MODES: Mapping[str, str] = {
 """Modes of sensors that are not simulated, by the driver that is best known for the mode."""
 
 
-def of_driver(name: str) -> Unsimulated | None:
+def of_driver(name: str) -> Hardware | None:
     """Return the kind of a driver; None if it is simulated, which part of a name suffices for, as in the library."""
     if any(name in simulated for simulated in SIMULATED):
         return None
     return next((kind for pattern, kind in DRIVERS.items() if fnmatchcase(name, pattern)), _OTHER)
 
 
-def refusal(where: str, kind: Unsimulated, name: str = "") -> NotSimulated:
+def refusal(where: str, kind: Hardware, name: str = "") -> NotSimulated:
     """Return the error about the use of a kind.
 
     Args:
@@ -148,13 +138,10 @@ def refused_device(device: Any, class_name: str, missing: type[Exception]) -> Ex
     found = _refused(class_name, _texts(wanted.get("driver_name")), _texts(wanted.get("address")))
     if found is None:
         return None
-    told = refusal(_named(type(device)), *found)
-    both: Any = type("NotSimulated", (NotSimulated, missing), {"__module__": NotSimulated.__module__})
-    error: Exception = both(told.message, told.hint)
-    return error
+    return refused_as(missing, refusal(_named(type(device)), *found))
 
 
-def _refused(class_name: str, drivers: list[str], addresses: list[str]) -> tuple[Unsimulated, str] | None:
+def _refused(class_name: str, drivers: list[str], addresses: list[str]) -> tuple[Hardware, str] | None:
     if class_name in CLASSES:
         return CLASSES[class_name], class_name
     kinds = [of_driver(name) for name in drivers]

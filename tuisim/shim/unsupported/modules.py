@@ -19,14 +19,14 @@ from tuisim.errors import NotSimulated
 
 _RADIO = "to drive by hand, use the brick's buttons or RemoteControlledTank; parts of a program can talk by queue.Queue"
 _BUS = "the sensors of ev3dev2.sensor.lego are simulated"
-_CAMERA = "use a ColorSensor for colours, and an UltrasonicSensor for distances"
+CAMERA = "use a ColorSensor for colours, and an UltrasonicSensor for distances"
 _GAMEPAD = "to drive by hand, use the brick's buttons or RemoteControlledTank"
 _MICROPHONE = "it is silent here: start by a TouchSensor or a Button; ev3dev2.sound makes sounds"
 
 
 @dataclass(frozen=True, slots=True)
 class Hardware:
-    """What a module is for."""
+    """What no robot here can have: what a module is for, or a kind of device."""
 
     title: str
     instead: str
@@ -56,7 +56,7 @@ ON_THE_BRICK: Mapping[str, Hardware] = {
     "usb": _USB,
     "hid": _USB,
     "pyudev": _USB,
-    "pixycamev3": Hardware("the Pixy camera", _CAMERA),
+    "pixycamev3": Hardware("the Pixy camera", CAMERA),
     "approxeng": Hardware("a gamepad", _GAMEPAD),
     "alsaaudio": _SOUND_CARD,
     "pyaudio": _SOUND_CARD,
@@ -65,7 +65,7 @@ ON_THE_BRICK: Mapping[str, Hardware] = {
 """Modules that can be imported but not used, by name."""
 
 _PI = Hardware("the Raspberry Pi", "this is an EV3: use ev3dev2")
-_PI_CAMERA = Hardware("the camera of the Raspberry Pi", _CAMERA)
+_PI_CAMERA = Hardware("the camera of the Raspberry Pi", CAMERA)
 _BRICKPI = Hardware("the BrickPi", "this is an EV3: use ev3dev2")
 
 ELSEWHERE: Mapping[str, Hardware] = {
@@ -102,6 +102,13 @@ _ERRORS = ("Error", "Exception", "Timeout")
 def _refused(name: str) -> NotSimulated:
     hardware = ON_THE_BRICK.get(top := name.partition(".")[0]) or ELSEWHERE[top]
     return NotSimulated(f"{name}: {hardware.title} is not simulated", hardware.instead)
+
+
+def refused_as(kind: type[Exception], told: NotSimulated) -> Exception:
+    """Return an error that is of another kind, too: a program may try what there is, and do without it."""
+    both: Any = type("NotSimulated", (NotSimulated, kind), {"__module__": NotSimulated.__module__})
+    error: Exception = both(told.message, told.hint)
+    return error
 
 
 class _Part(type):
@@ -162,9 +169,7 @@ class HardwareFinder:
             NotSimulated: it is for another computer.
         """
         if (top := spec.name.partition(".")[0]) in ELSEWHERE:
-            told = _refused(spec.name)
-            both: Any = type("NotSimulated", (NotSimulated, ImportError), {"__module__": NotSimulated.__module__})
-            raise both(told.message, told.hint)
+            raise refused_as(ImportError, _refused(spec.name))
         module = HardwareModule(spec.name, f"{ON_THE_BRICK[top].title}, which is not simulated.")
         if spec.name == top:
             vars(module)["__all__"] = list(ON_THE_BRICK[top].names)

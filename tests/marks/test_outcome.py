@@ -12,8 +12,7 @@ from ev3dev2 import motor
 from tuisim.batch.task import Result
 from tuisim.goals.judgement import Change, GoalState, Judgement
 from tuisim.goals.spec import AllOf, FinishCondition, Goal, ReachCondition
-from tuisim.marks.outcome import GoalOutcome
-from tuisim.marks.results import outcome_of
+from tuisim.marks.outcome import GoalOutcome, outcome_of
 
 FOLDER = Path("/copy-of/student/7")
 DONE = Result(7, {}, "finished", 0, "", "", 0, 100, 1.0, 0.0, 0.0, 0.0)
