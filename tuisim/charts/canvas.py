@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -11,6 +10,7 @@ from typing import Any
 import numpy as np
 from rich.color import Color
 from rich.style import Style
+from rich.text import Text
 
 from tuisim.charts import axes
 from tuisim.charts.axes import Limits
@@ -23,7 +23,6 @@ TextRun = tuple[str, Rgb | None]
 """A piece of a row in one colour, None where nothing is drawn."""
 
 BRAILLE = "braille"
-_CODES = re.compile(r"\x1b\[([0-9;]*)m")
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,8 +82,7 @@ def canvas(curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y
             marker = plotext.marker(curve.marker, curve.rgb)
             signal = figure.signal(times_s.tolist(), values.tolist(), marker=marker)
             figure.draw(signal.lines(curve.joined and curve.marker == BRAILLE))
-    text = figure.build().string()
-    return [_runs(line, columns) for line in text.split("\n")[:rows]]
+    return [[*_runs(line, columns)] for line in figure.build().string().split("\n")[:rows]]
 
 
 def _on_rows(values: FloatArray, limits: Limits, rows: int) -> FloatArray:
@@ -98,22 +96,29 @@ def _on_rows(values: FloatArray, limits: Limits, rows: int) -> FloatArray:
     return on_rows
 
 
-def _runs(line: str, columns: int) -> list[TextRun]:
-    """Parse a row with colour codes; crop or pad it to `columns`."""
+@lru_cache(maxsize=512)
+def _runs(codes: str, columns: int) -> tuple[TextRun, ...]:
+    """Return a row as pieces of one colour; crop or pad it to `columns`.
+
+    While a chart grows, most of its rows stay as they are.
+    """
+    line = Text.from_ansi(codes)
+    line.set_length(columns)
     runs: list[TextRun] = []
-    rgb: Rgb | None = None
-    left = columns
-    # re.split with one group gives text, codes, text, codes, …
-    for at, part in enumerate(_CODES.split(line)):
-        if at % 2:
-            numbers = part.split(";")
-            rgb = (int(numbers[2]), int(numbers[3]), int(numbers[4])) if numbers[:2] == ["38", "2"] else None
-        elif part and left:
-            runs.append((part[:left], rgb))
-            left -= len(part[:left])
-    if left:
-        runs.append((" " * left, None))
-    return runs
+    at = 0
+    for start, end, style in line.spans:
+        runs += [(line.plain[at:start], None), (line.plain[start:end], _rgb_of(style))]
+        at = end
+    runs.append((line.plain[at:], None))
+    return tuple(run for run in runs if run[0])
+
+
+def _rgb_of(style: str | Style) -> Rgb | None:
+    color = style.color if isinstance(style, Style) else None
+    if color is None or color.triplet is None:
+        return None
+    red, green, blue = color.triplet
+    return red, green, blue
 
 
 AXIS, PLAIN = Style(color="#a8a8a8"), Style(color="#d8dee6")
