@@ -92,6 +92,9 @@ def source(path: Path) -> Source:
     return Source(path)
 
 
+WITH_COLORS = frozenset({"css_colors.py", "html.py", "palette.py", "pins.py", "report.py", "themes.py"})
+"""The palette, tables of colours of others, and pages for browsers, which have style sheets of their own."""
+
 PROGRAMS = frozenset({"brick_programs", "real_programs"})
 """Folders with programs as other people write them."""
 
@@ -243,6 +246,10 @@ def untested(source: Source) -> Iterable[object]:
     return ["needs no exception"] if is_tested or not beside.is_file() else []
 
 
+def hex_colors(source: Source) -> Iterable[object]:
+    return re.findall(r"#[0-9a-fA-F]{6}\b", source.text) if source.path.name not in WITH_COLORS else []
+
+
 def misnamed(source: Source) -> Iterable[object]:
     name = source.path.relative_to(ROOT / "tests").as_posix()
     return ["named after no module"] if bool(subject(source.path)) == (name in OF_NO_MODULE) else []
@@ -260,6 +267,7 @@ RULES: dict[str, tuple[Callable[[Source], Iterable[object]], list[Path]]] = {
     "no test is skipped": (skipped_tests, TESTS),
     "long modules have tests of their own": (untested, PACKAGE),
     "tests are named after modules": (misnamed, MIRRORED),
+    "colours have names": (hex_colors, [*PACKAGE, *sorted((ROOT / "tuisim").rglob("*.tcss"))]),
 }
 
 

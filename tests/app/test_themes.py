@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import re
 from pathlib import Path
 
 import numpy as np
@@ -17,9 +16,10 @@ from textual.theme import BUILTIN_THEMES
 import tuisim.app
 from tests.app.app_help import LOGS, ready, settings, until
 from tests.bench.cells import lab_of
+from tuisim import palette
 from tuisim.app.app import LabApp
 from tuisim.app.terminal_app import Palette
-from tuisim.app.themes import HIGH_CONTRAST, LIGHT, OWN_COLORS, UNUSED_THEMES, ThemeColors, contrast
+from tuisim.app.themes import HIGH_CONTRAST, LIGHT, UNUSED_THEMES, ThemeColors, contrast
 from tuisim.charts.traces import TRACE_COLORS
 
 THEMES = [
@@ -31,13 +31,19 @@ TEXT = ["#d8dee6", "#ffffff", "#9fb0c3", "#8fa0b2", "#7f8fa1", "#5fafff", "#ffd7
 GROUNDS = ["#10151c", "#18202a", "#1c242e", "#263545"]
 
 
-def test_every_colour_of_the_app_is_known() -> None:
-    folder = Path(tuisim.app.__file__).parent
-    files = [path for path in folder.rglob("*") if path.suffix in (".py", ".tcss") and path.name != "themes.py"]
+def test_every_colour_of_the_palette_is_used_and_named_once() -> None:
+    folder = Path(tuisim.app.__file__).parents[1]
+    files = [path for path in folder.rglob("*") if path.suffix in (".py", ".tcss") and path.name != "palette.py"]
+    text = "".join(path.read_text("utf-8") for path in files)
 
-    named = {color.lower() for path in files for color in re.findall(r"#[0-9a-fA-F]{6}\b", path.read_text("utf-8"))}
+    used = {name for name in palette.COLORS if f"palette.{name}" in text or f"$tuisim-{_in_css(name)}" in text}
 
-    assert named == OWN_COLORS
+    assert used == set(palette.COLORS)
+    assert len(set(palette.COLORS.values())) == len(palette.COLORS)
+
+
+def _in_css(name: str) -> str:
+    return name.lower().replace("_", "-")
 
 
 def shown(colors: ThemeColors, style: Style) -> tuple[Color, Color]:

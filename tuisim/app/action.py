@@ -19,6 +19,7 @@ from textual.keys import format_key
 from textual.message import Message
 from textual.widget import Widget
 
+from tuisim import palette
 from tuisim.errors import TuisimError
 from tuisim.terminal.textual_internals import bindings_of, is_leaving
 
@@ -337,7 +338,7 @@ def _column(groups: list[_Group]) -> Table:
     table.add_column()
     for group, keys in groups:
         if group:
-            table.add_row("", Text(group, "bold #5fafff"))
+            table.add_row("", Text(group, f"bold {palette.BLUE}"))
         for key, title in keys:
             table.add_row(Text(key), Text(title))
         table.add_row()

@@ -29,6 +29,7 @@ from textual.theme import Theme, ThemeProvider
 from textual.widget import WidgetError
 from textual.worker import Worker, WorkerFailed
 
+from tuisim import palette
 from tuisim.app import background
 from tuisim.app.action import ActionHost, with_keys_of
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
@@ -201,6 +202,10 @@ class TerminalApp(HookedApp):
         if (chosen := str(load_config().value(THEME))) in self.available_themes:
             self.theme = chosen
         self._take_theme()
+
+    def get_theme_variable_defaults(self) -> dict[str, str]:
+        """Return the names of the palette's colours in style sheets, such as `$tuisim-ink`."""
+        return {f"tuisim-{name.lower().replace('_', '-')}": color for name, color in palette.COLORS.items()}
 
     def on_mount(self) -> None:
         self.theme_changed_signal.subscribe(self, self._theme_changed)

@@ -18,6 +18,7 @@ from textual.color import Color
 from textual.filter import LineFilter
 from textual.theme import BUILTIN_THEMES, Theme
 
+from tuisim import palette
 from tuisim.terminal.pixels import Rgb
 
 OWN_THEME = "textual-dark"
@@ -40,15 +41,7 @@ def theme_names() -> list[str]:
     return [*(name for name in BUILTIN_THEMES if name not in UNUSED_THEMES), HIGH_CONTRAST.name, LIGHT.name]
 
 
-OWN_COLORS = frozenset({
-    "#101010", "#10151c", "#18202a", "#1c242e", "#1c2733", "#263545", "#2a333d", "#2c4a2c", "#2f4a63", "#2f4a66",
-    "#2f4a68", "#2f5f8f", "#44505e", "#4a4f57", "#5f6f80", "#5fafff", "#6a7a8c", "#6c7a89", "#6e1f28", "#7c8b9a",
-    "#7f8fa1", "#87afff", "#87d7af", "#87d7ff", "#8c99a6", "#8fa0b2", "#9fb0c3", "#9fd3ff", "#a6d189", "#a8a8a8",
-    "#b8c4d0", "#d7a0ff", "#d7af5f", "#d8d8d8", "#d8dee6", "#e8e8e8", "#ff6e6e", "#ff8787", "#ffaf5f", "#ffaf6e",
-    "#ffd75f", "#ffd866", "#ffffff",
-})  # fmt: skip
-"""Every colour that the style sheet and the panels name; those of Textual's own widgets follow the theme already."""
-_ROLES = {"#5fafff": "primary", "#ffd75f": "warning", "#ff6e6e": "error", "#87d7af": "success"}
+_ROLES = {palette.BLUE: "primary", palette.YELLOW: "warning", palette.RED: "error", palette.GREEN: "success"}
 _DARKEST = 0.086
 """Lightness of the dark design's background."""
 _LEAST_CONTRAST, _HIGH_CONTRAST = 4.5, 7.0
@@ -71,7 +64,7 @@ class ThemeColors(LineFilter):
         self._foreground = Color.parse(theme.foreground or ("#e0e0e0" if theme.dark else "#101010"))
         self._contrast = _HIGH_CONTRAST if theme.name == HIGH_CONTRAST.name else _LEAST_CONTRAST
         roles = {own: getattr(theme, role) or own for own, role in _ROLES.items()}
-        own = {Color.parse(name).rgb for name in OWN_COLORS} | set(traces)
+        own = {Color.parse(name).rgb for name in palette.COLORS.values()} | set(traces)
         self._replaced = {rgb: self._replacement(rgb) for rgb in own}
         self._replaced |= {Color.parse(name).rgb: Color.parse(color).rgb for name, color in roles.items()}
         self._style = lru_cache(maxsize=4096)(self._themed)
@@ -128,7 +121,7 @@ class ThemeColors(LineFilter):
 
 
 _WHITE = (255, 255, 255)
-_LINE = Color.parse("#44505e").rgb
+_LINE = Color.parse(palette.LINE).rgb
 """Frames need not be as strong as text."""
 
 

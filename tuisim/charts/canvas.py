@@ -12,6 +12,7 @@ from rich.color import Color
 from rich.style import Style
 from rich.text import Text
 
+from tuisim import palette
 from tuisim.charts import axes
 from tuisim.charts.axes import Limits
 from tuisim.charts.traces import min_max
@@ -121,8 +122,8 @@ def _rgb_of(style: str | Style) -> Rgb | None:
     return red, green, blue
 
 
-AXIS, PLAIN = Style(color="#a8a8a8"), Style(color="#d8dee6")
-_HERE = Style(color="#000000", bgcolor="#ffffff", bold=True)
+AXIS, PLAIN = Style(color=palette.LABEL), Style(color=palette.INK)
+_HERE = Style(color=palette.BLACK, bgcolor=palette.WHITE, bold=True)
 DOTS_X, DOTS_Y = 2, 4
 """Dots of a braille character."""
 

@@ -9,6 +9,7 @@ import numpy as np
 from rich.style import Style
 from rich.text import Text
 
+from tuisim import palette
 from tuisim.charts import axes
 from tuisim.charts.axes import Limits
 from tuisim.charts.canvas import AXIS, BRAILLE, PLAIN, Curve, TextRun, canvas, styled, xy_lines
@@ -19,8 +20,8 @@ from tuisim.errors import printable
 from tuisim.runs.arrays import FloatArray
 from tuisim.terminal.text_runs import Run, cut
 
-_CURSOR = Style(color="#ffffff", bgcolor="#44505e")
-_STRONG = Style(color="#ffffff", bold=True)
+_CURSOR = Style(color=palette.WHITE, bgcolor=palette.LINE)
+_STRONG = Style(color=palette.WHITE, bold=True)
 
 _ROWS_A_LEGEND_LINE = 8
 """Rows of a chart per line of tick boxes, so that most rows are left for the curves."""

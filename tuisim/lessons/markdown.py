@@ -9,21 +9,22 @@ from rich.markdown import Markdown
 from rich.style import Style
 from rich.theme import Theme
 
+from tuisim import palette
 from tuisim.terminal.text_runs import Line, Run
 
 _THEME = Theme(
     {
-        "markdown.code": Style(color="#ffd75f"),
-        "markdown.code_block": Style(color="#ffd75f"),
-        "markdown.strong": Style(color="#ffffff", bold=True),
-        "markdown.item.bullet": Style(color="#87d7af"),
-        "markdown.item.number": Style(color="#87d7af"),
-        "markdown.h2": Style(color="#5fafff", bold=True),
+        "markdown.code": Style(color=palette.YELLOW),
+        "markdown.code_block": Style(color=palette.YELLOW),
+        "markdown.strong": Style(color=palette.WHITE, bold=True),
+        "markdown.item.bullet": Style(color=palette.GREEN),
+        "markdown.item.number": Style(color=palette.GREEN),
+        "markdown.h2": Style(color=palette.BLUE, bold=True),
         "markdown.h3": Style(bold=True),
-        "markdown.link": Style(color="#87afff"),
+        "markdown.link": Style(color=palette.LINK),
     }
 )
-PLAIN = Style(color="#d8dee6")
+PLAIN = Style(color=palette.INK)
 """The style of a text that is nothing special."""
 
 

@@ -10,6 +10,7 @@ from rich.style import Style
 from textual import events
 from textual.message import Message
 
+from tuisim import palette
 from tuisim.analysis.chart import event_marks
 from tuisim.analysis.traces import DISTANCE
 from tuisim.app.plot_view import PlotView
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from tuisim.analysis.model import Model
     from tuisim.analysis.traces import LogTrace
 
-_EVENTS = Style(color="#ffaf5f", bold=True)
+_EVENTS = Style(color=palette.EVENT, bold=True)
 _LEAST_FACET_ROWS = 6
 """Minimum height of the chart of one variable."""
 FACETS_ROWS = 2 * _LEAST_FACET_ROWS
@@ -57,8 +58,11 @@ class LogChart(LinesPanel):
     """The chart."""
 
     ALLOW_SELECT = False
-    DEFAULT_CSS = """
-    LogChart { height: 1fr; border: round #44505e; border-title-color: #9fb0c3; border-subtitle-color: #87d7af; }
+    DEFAULT_CSS = f"""
+    LogChart {{
+        height: 1fr; border: round {palette.LINE}; border-title-color: {palette.SOFT};
+        border-subtitle-color: {palette.GREEN};
+    }}
     """
 
     @dataclass
@@ -189,7 +193,7 @@ def _measured(model: Model, unit: str, width: int) -> list[list[Run]]:
     """Return the line with the differences between the two cursors."""
     if model.mark_s is None or not model.log.rows:
         return []
-    plain, strong = Style(color="#9fb0c3"), Style(color="#ffffff", bold=True)
+    plain, strong = Style(color=palette.SOFT), Style(color=palette.WHITE, bold=True)
     start_s, stop_s = sorted((model.mark_s, model.cursor_s))
     trace = model.trace
     before, after = trace.at(model.mark_s), trace.at(model.cursor_s)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar, overload
 from rich.style import Style
 from textual.worker import get_current_worker
 
+from tuisim import palette
 from tuisim.analysis.events import Event
 from tuisim.analysis.model import Model
 from tuisim.analysis.table import AT_ONCE
@@ -32,10 +33,10 @@ if TYPE_CHECKING:
 
 Cells = tuple[str, ...]
 
-PLAIN, DIM = Style(color="#d8dee6"), Style(color="#9fb0c3")
-HEAD = Style(color="#5fafff", bold=True)
-HERE = Style(color="#ffffff", bgcolor="#2f4a66")
-CHOSEN = Style(color="#ffd75f", bold=True)
+PLAIN, DIM = Style(color=palette.INK), Style(color=palette.SOFT)
+HEAD = Style(color=palette.BLUE, bold=True)
+HERE = Style(color=palette.WHITE, bgcolor=palette.CHOSEN)
+CHOSEN = Style(color=palette.YELLOW, bold=True)
 _WIDEST = 28
 _SAMPLED = 40
 """Number of rows that determine the width of a table's column, besides the visible ones."""
@@ -356,8 +357,11 @@ class PaneView(LinesPanel):
     """
 
     ALLOW_SELECT = False
-    DEFAULT_CSS = """
-    PaneView { height: 1fr; border: round #44505e; border-title-color: #9fb0c3; border-subtitle-color: #87d7af; }
+    DEFAULT_CSS = f"""
+    PaneView {{
+        height: 1fr; border: round {palette.LINE}; border-title-color: {palette.SOFT};
+        border-subtitle-color: {palette.GREEN};
+    }}
     """
 
     def __init__(self, complain: Callable[[TuisimError], None]) -> None:

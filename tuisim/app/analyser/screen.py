@@ -15,6 +15,7 @@ from textual.containers import Horizontal, Vertical
 from textual.events import Event, Key
 from textual.widget import Widget
 
+from tuisim import palette
 from tuisim.analysis.model import RECKONING, Model
 from tuisim.analysis.source import LogRequest, OpenedLog, opening
 from tuisim.analysis.table import AT_ONCE, TableTask
@@ -62,14 +63,14 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             takes the place of the world until the key of the world is pressed.
     """
 
-    DEFAULT_CSS = """
-    LogScreen { background: #10151c; color: #d8dee6; }
-    LogScreen #title { height: 1; background: #1c242e; color: #ffffff; }
-    LogScreen #log { width: 1fr; }
-    LogScreen .beside {
-        width: 34%; min-width: 32; height: 1fr; background: #10151c; border: round #44505e;
-        border-title-color: #9fb0c3; border-subtitle-color: #7f8fa1;
-    }
+    DEFAULT_CSS = f"""
+    LogScreen {{ background: {palette.GROUND}; color: {palette.INK}; }}
+    LogScreen #title {{ height: 1; background: {palette.BAR}; color: {palette.WHITE}; }}
+    LogScreen #log {{ width: 1fr; }}
+    LogScreen .beside {{
+        width: 34%; min-width: 32; height: 1fr; background: {palette.GROUND}; border: round {palette.LINE};
+        border-title-color: {palette.SOFT}; border-subtitle-color: {palette.SUBTITLE};
+    }}
     """
 
     def __init__(self, request: LogRequest, beside: Widget | None = None) -> None:

@@ -12,6 +12,7 @@ from rich.style import Style
 from textual.app import ComposeResult
 from textual.containers import Vertical
 
+from tuisim import palette
 from tuisim.app import background
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.arrays import Arrays
@@ -38,8 +39,8 @@ if TYPE_CHECKING:
     from tuisim.runs.run_folder import StoredRun
 
 _POSE = ("x_mm", "y_mm", "heading_deg")
-_PLAIN, _DIM = Style(color="#d8dee6"), Style(color="#7f8fa1")
-_HERE = Style(color="#ffffff", bgcolor="#263545", bold=True)
+_PLAIN, _DIM = Style(color=palette.INK), Style(color=palette.SUBTITLE)
+_HERE = Style(color=palette.WHITE, bgcolor=palette.HERE, bold=True)
 _BESIDE_COLS = 60
 """In a narrower terminal the chart gets the whole width, until the key of the world is pressed."""
 NO_POSES = "This log has no robot positions"
@@ -131,11 +132,11 @@ def world_at(opened: OpenedLog, run: int) -> WorldAt | None:
 class WorldPane(Vertical):
     """The column at the right."""
 
-    DEFAULT_CSS = """
-    WorldPane { width: 34%; min-width: 30; }
-    WorldPane .frame { border: round #44505e; border-title-color: #9fb0c3; height: 1fr; }
-    WorldPane .frame > * { height: 1fr; width: 1fr; }
-    WorldPane > Arrays { height: 13; border: round #44505e; border-title-color: #9fb0c3; }
+    DEFAULT_CSS = f"""
+    WorldPane {{ width: 34%; min-width: 30; }}
+    WorldPane .frame {{ border: round {palette.LINE}; border-title-color: {palette.SOFT}; height: 1fr; }}
+    WorldPane .frame > * {{ height: 1fr; width: 1fr; }}
+    WorldPane > Arrays {{ height: 13; border: round {palette.LINE}; border-title-color: {palette.SOFT}; }}
     """
 
     def __init__(self) -> None:

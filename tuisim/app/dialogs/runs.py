@@ -16,6 +16,7 @@ from textual.containers import VerticalScroll
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
+from tuisim import palette
 from tuisim.app.branch import BRANCH_TAG
 from tuisim.app.dialogs.chooser import ListDialog
 from tuisim.app.dialogs.dialog import Dialog
@@ -58,13 +59,13 @@ def run_line(run: RunInfo, marked: bool = False) -> Text:
     """Return one line of the list, below `_HEADS`."""
     line = Text(no_wrap=True, overflow="ellipsis")
     line.append(f"{run.number:>4}{'●' if marked else ' '}", "bold")
-    line.append(f"{_when(run)[5:]:<11} ", "#9fb0c3")
+    line.append(f"{_when(run)[5:]:<11} ", palette.SOFT)
     line.append(f"{cut(run.program, 12):<12} ", "bold")
     line.append(f"{cut(Path(run.background).name, 10):<10} ")
-    line.append(f"{cut(end_label(run.end), 9):<9} ", "" if run.end in GOOD_ENDS else "#ff6e6e")
+    line.append(f"{cut(end_label(run.end), 9):<9} ", "" if run.end in GOOD_ENDS else palette.RED)
     line.append(f"{run.time_s or 0:>6.2f} {run.samples or 0:>7,}")
     if run.tags or run.summary:
-        line.append(f"  {run.tags or run.summary}", "#9fb0c3")
+        line.append(f"  {run.tags or run.summary}", palette.SOFT)
     return line
 
 
@@ -82,10 +83,10 @@ class RunChooser(ListDialog):
         compared: The run to compare the chosen one with, if any.
     """
 
-    DEFAULT_CSS = """
-    RunChooser .dialog { width: 110; padding: 1 0; }
-    RunChooser .heads { height: 1; text-wrap: nowrap; color: #9fb0c3; }
-    RunChooser OptionList { text-wrap: nowrap; text-overflow: ellipsis; }
+    DEFAULT_CSS = f"""
+    RunChooser .dialog {{ width: 110; padding: 1 0; }}
+    RunChooser .heads {{ height: 1; text-wrap: nowrap; color: {palette.SOFT}; }}
+    RunChooser OptionList {{ text-wrap: nowrap; text-overflow: ellipsis; }}
     """
     TITLE_TEXT: str = "Runs"
     HINT: str = "Enter opens · type to search · Escape closes"

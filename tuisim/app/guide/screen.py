@@ -15,6 +15,7 @@ from textual.containers import Horizontal, VerticalScroll
 from textual.widgets import Input, Static, Tree
 from textual.widgets.tree import TreeNode
 
+from tuisim import palette
 from tuisim.app import background
 from tuisim.app.action import KeyWord, key_table
 from tuisim.app.dialogs.dialog import Dialog
@@ -100,7 +101,7 @@ class _Contents(Tree[Place | None]):
         self.clear()
         self.root.add_leaf(keys, KEYS)
         for part, names in CONTENTS.items():
-            branch = self.root.add(Text(part, "bold #5fafff"), None, expand=True)
+            branch = self.root.add(Text(part, f"bold {palette.BLUE}"), None, expand=True)
             for name in names:
                 self._add_page(branch, name)
 

@@ -10,6 +10,7 @@ from rich.style import Style
 from textual.app import ComposeResult
 from textual.widget import Widget
 
+from tuisim import palette
 from tuisim.core.sensors.color import pixel_array
 from tuisim.scene.discs import CORNER_16_RGB, CORNER_RGB, FULL_PX, DiscLayout, draw_discs, lay_out
 from tuisim.terminal.cell_view import LinesView, PixelView
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 _PERIOD_S = 0.25
 """All pixels of both discs may change at once: a shorter period would saturate a slow link."""
 
-_LABEL = Style(color="#a8a8a8")
+_LABEL = Style(color=palette.LABEL)
 
 
 class Arrays(Widget):

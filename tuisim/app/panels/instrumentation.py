@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from rich.color import Color
 from rich.style import Style
 
+from tuisim import palette
 from tuisim.app.snapshot import RunPhase, Snapshot, end_label
 from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.sensors.color import ColorReading
@@ -18,10 +19,10 @@ from tuisim.terminal.text_runs import Line, Run, cut
 _PERIOD_S = 0.1
 """Values that change faster cannot be read."""
 
-_LABEL = Style(color="#a8a8a8")
-_VALUE = Style(color="#ffffff", bold=True)
-_UNIT = Style(color="#a8a8a8")
-_WARNING = Style(color="#ff6e6e", bold=True)
+_LABEL = Style(color=palette.LABEL)
+_VALUE = Style(color=palette.WHITE, bold=True)
+_UNIT = Style(color=palette.LABEL)
+_WARNING = Style(color=palette.RED, bold=True)
 _COLUMN = 12
 """Width of the labels if there is room."""
 

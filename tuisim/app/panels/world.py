@@ -14,6 +14,7 @@ from textual.app import ComposeResult
 from textual.message import Message
 from textual.widget import Widget
 
+from tuisim import palette
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.obstacles import BoxGrip, box_at
 from tuisim.app.snapshot import AT_REST, RunPhase, Snapshot
@@ -406,16 +407,16 @@ class WorldView(PixelView):
 MIN_BAR_COLS = 12
 """Minimum length of the bar, whatever the text beside it."""
 
-_PAST, _LATER, _BEYOND = Style(color="#5fafff"), Style(color="#44505e"), Style(color="#2a333d")
-_CURSOR = Style(color="#10151c", bgcolor="#ffd75f", bold=True)
-_WORDS, _STRONG = Style(color="#9fb0c3"), Style(color="#ffd75f", bold=True)
+_PAST, _LATER, _BEYOND = Style(color=palette.BLUE), Style(color=palette.LINE), Style(color=palette.TRACK)
+_CURSOR = Style(color=palette.GROUND, bgcolor=palette.YELLOW, bold=True)
+_WORDS, _STRONG = Style(color=palette.SOFT), Style(color=palette.YELLOW, bold=True)
 
 # By priority: of several markers in one cell, the first in this order is shown.
 _MARKS: Mapping[Mark, tuple[str, Style]] = {
-    Mark.ERROR: ("✗", Style(color="#ff6e6e", bold=True)),
-    Mark.BREAK: ("●", Style(color="#ff8787")),
-    Mark.ACTION: ("◆", Style(color="#d7a0ff")),
-    Mark.SAMPLE: ("╵", Style(color="#87d7af")),
+    Mark.ERROR: ("✗", Style(color=palette.RED, bold=True)),
+    Mark.BREAK: ("●", Style(color=palette.BREAKPOINT)),
+    Mark.ACTION: ("◆", Style(color=palette.KEYWORD)),
+    Mark.SAMPLE: ("╵", Style(color=palette.GREEN)),
 }
 
 

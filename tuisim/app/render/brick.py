@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from rich.color import Color
 from rich.style import Style
 
+from tuisim import palette
 from tuisim.core.css_colors import Rgb
 from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, ROW_BYTES, BrickState, TextScreen
 from tuisim.scene.discs import shrunk
@@ -20,9 +21,9 @@ _PAPER_RGB, _INK_RGB = (172, 186, 158), (22, 28, 20)
 _PAPER = Style(color=Color.from_rgb(*_INK_RGB), bgcolor=Color.from_rgb(*_PAPER_RGB))
 _INVERSE = Style(color=Color.from_rgb(*_PAPER_RGB), bgcolor=Color.from_rgb(*_INK_RGB))
 _PLAIN = Style()
-_CAPTION = Style(color="#a8a8a8")
-_BUTTON = Style(color="#e8e8e8", bgcolor="#4a4f57", bold=True)
-_PRESSED = Style(color="#101010", bgcolor="#ffd866", bold=True)
+_CAPTION = Style(color=palette.LABEL)
+_BUTTON = Style(color=palette.LIGHT, bgcolor=palette.BUTTON, bold=True)
+_PRESSED = Style(color=palette.BLACK, bgcolor=palette.PRESSED, bold=True)
 _DARK_LED_RGB = (48, 48, 48)
 
 HALF_BLOCK_SCALE = 0.7
@@ -194,7 +195,7 @@ def _lamps(face: BrickState) -> list[tuple[int, int]]:
 def _lamp(lamp: tuple[int, int], named: bool, columns: int) -> Run:
     """Return one row of a pair of lights; the word is for terminals and users without colour."""
     red, green, blue = led_rgb(*lamp)
-    ink = "#101010" if 3 * red + 6 * green > 1000 else "#d8d8d8"
+    ink = palette.BLACK if 3 * red + 6 * green > 1000 else palette.INK
     style = Style(color=ink, bgcolor=Color.from_rgb(red, green, blue))
     name = led_name(*lamp) if named else ""
     if len(name) > columns:

@@ -11,19 +11,20 @@ from typing import assert_never
 
 from rich.style import Style
 
+from tuisim import palette
 from tuisim.app.snapshot import RunPhase
 from tuisim.protocol import FrameState, Inspected, Paused, PauseReason, Variable
 from tuisim.terminal.text_runs import Line, cut
 
-_PLAIN = Style(color="#d8dee6")
-_NAME = Style(color="#9fd3ff")
-_VALUE = Style(color="#ffffff")
-_CHANGED = Style(color="#ffd75f", bold=True)
-_HEAD = Style(color="#87d7af", bold=True)
-_PALE = Style(color="#8c99a6")
-_WAITS = Style(color="#101010", bgcolor="#d7af5f")
-_ERROR = Style(color="#ff6e6e")
-_CHOSEN = Style(color="#ffffff", bgcolor="#2f4a68")
+_PLAIN = Style(color=palette.INK)
+_NAME = Style(color=palette.NAME)
+_VALUE = Style(color=palette.WHITE)
+_CHANGED = Style(color=palette.YELLOW, bold=True)
+_HEAD = Style(color=palette.GREEN, bold=True)
+_PALE = Style(color=palette.PALE)
+_WAITS = Style(color=palette.BLACK, bgcolor=palette.WAITING)
+_ERROR = Style(color=palette.RED)
+_CHOSEN = Style(color=palette.WHITE, bgcolor=palette.CHOSEN)
 
 _NAME_COLUMN = 16
 

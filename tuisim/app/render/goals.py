@@ -9,19 +9,20 @@ from typing import assert_never
 
 from rich.style import Style
 
+from tuisim import palette
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.goals.spec import ConditionKind, Goal
 from tuisim.terminal.text_runs import Line, cut
 
-_NAME = Style(color="#ffffff", bold=True)
-_PLAIN = Style(color="#d8dee6")
-_PALE = Style(color="#9fb0c3")
-_HEAD = Style(color="#87d7af", bold=True)
-_HINT = Style(color="#ffd75f")
+_NAME = Style(color=palette.WHITE, bold=True)
+_PLAIN = Style(color=palette.INK)
+_PALE = Style(color=palette.SOFT)
+_HEAD = Style(color=palette.GREEN, bold=True)
+_HINT = Style(color=palette.YELLOW)
 _STATES = {
     GoalState.OPEN: ("·", _PALE),
-    GoalState.MET: ("✓", Style(color="#87d7af", bold=True)),
-    GoalState.MISSED: ("✗", Style(color="#ff6e6e", bold=True)),
+    GoalState.MET: ("✓", Style(color=palette.GREEN, bold=True)),
+    GoalState.MISSED: ("✗", Style(color=palette.RED, bold=True)),
 }
 _STATE_COLUMNS = 9
 """Columns of the sign and the word, such as `✗ missed `."""

@@ -9,6 +9,7 @@ from enum import StrEnum
 
 from rich.style import Style
 
+from tuisim import palette
 from tuisim.app.panels import PANELS
 from tuisim.app.render.code_rows import code_rows
 from tuisim.goals.judgement import GoalState, Judgement
@@ -28,13 +29,13 @@ from tuisim.lessons.spec import (
 )
 from tuisim.terminal.text_runs import Line, cut
 
-_NAME = Style(color="#ffffff", bold=True)
-_PLAIN = Style(color="#d8dee6")
-_PALE = Style(color="#9fb0c3")
-_GOOD = Style(color="#87d7af", bold=True)
-_BAD = Style(color="#ff6e6e")
-_HINT = Style(color="#ffd75f")
-_CODE = Style(color="#ffd75f")
+_NAME = Style(color=palette.WHITE, bold=True)
+_PLAIN = Style(color=palette.INK)
+_PALE = Style(color=palette.SOFT)
+_GOOD = Style(color=palette.GREEN, bold=True)
+_BAD = Style(color=palette.RED)
+_HINT = Style(color=palette.YELLOW)
+_CODE = Style(color=palette.YELLOW)
 _MARKS = {StepState.OPEN: ("·", _PALE), StepState.DONE: ("✓", _GOOD), StepState.SKIPPED: ("–", _PALE)}
 _GOAL_MARKS = {GoalState.OPEN: ("· ", _PALE), GoalState.MET: ("✓ ", _GOOD), GoalState.MISSED: ("✗ ", _BAD)}
 
