@@ -44,6 +44,7 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Course]:
     return dict(zip(jobs, courses(jobs.values(), tmp_path_factory.mktemp("lab")), strict=True))
 
 
+@pytest.mark.slow_cases("on_spin")
 @pytest.mark.parametrize("name", RECORDS)
 def test_a_recorded_program(name: str, lab: Mapping[str, Course]) -> None:
     record, done = RECORDS[name], lab[name]
