@@ -314,17 +314,6 @@ LEAST_ROWS = 8
 """Minimum height of a chart of one variable."""
 
 
-class _Drawn(Traces):
-    """The lines of a chart as traces for `ChartPainter`."""
-
-    def __init__(self, lines: tuple[Line, ...]) -> None:
-        super().__init__()
-        for line in lines:
-            trace = self._by_name[line.name] = _trace(line)
-            trace.on, trace.other_scale = True, line.other_scale
-            trace.add(line.xs.tolist(), line.ys.tolist())
-
-
 def text_of(chart: ChartData, width: int, height: int, *, colors: bool = False) -> Text:
     """Return a chart as text of a given size in characters.
 
@@ -347,7 +336,7 @@ def text_of(chart: ChartData, width: int, height: int, *, colors: bool = False) 
             state = ChartState(
                 x_limits=chart.x_limits, grey=grey, marks=chart.marks, unit=_unit(chart), zoomed=chart.zoomed
             )
-            shown += ChartPainter().paint(_Drawn(part), state, width, rows).lines
+            shown += ChartPainter().paint(Traces({line.name: _trace(line) for line in part}), state, width, rows).lines
     lines = [Text(chart.title, "bold"), *(Text.assemble(*map(_on_any_ground, line)) for line in shown)]
     for at in lines:
         at.rstrip()
@@ -357,7 +346,8 @@ def text_of(chart: ChartData, width: int, height: int, *, colors: bool = False) 
 
 def _trace(line: Line) -> Trace:
     trace = Trace(printable(line.name), line.number)
-    trace.rgb = color_of(line)
+    trace.rgb, trace.other_scale = color_of(line), line.other_scale
+    trace.add(line.xs.tolist(), line.ys.tolist())
     return trace
 
 
