@@ -92,8 +92,8 @@ def source(path: Path) -> Source:
     return Source(path)
 
 
-WITH_COLORS = frozenset({"css_colors.py", "html.py", "palette.py", "pins.py", "report.py", "themes.py"})
-"""The palette, tables of colours of others, and pages for browsers, which have style sheets of their own."""
+WITH_COLORS = frozenset({"css_colors.py", "palette.py", "themes.py"})
+"""The palette, and tables of colours of others."""
 
 PROGRAMS = frozenset({"brick_programs", "real_programs"})
 """Folders with programs as other people write them."""
@@ -247,7 +247,7 @@ def untested(source: Source) -> Iterable[object]:
 
 
 def hex_colors(source: Source) -> Iterable[object]:
-    return re.findall(r"#[0-9a-fA-F]{6}\b", source.text) if source.path.name not in WITH_COLORS else []
+    return re.findall(r"#(?:[0-9a-fA-F]{3,4}){1,2}\b", source.text) if source.path.name not in WITH_COLORS else []
 
 
 def misnamed(source: Source) -> Iterable[object]:

@@ -15,7 +15,7 @@ from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.model import Model
 from tuisim.charts.files import image_of, svg_of
 from tuisim.charts.layout import COLORS, Rule, Stroke, laid_out
-from tuisim.charts.text_chart import text_of
+from tuisim.charts.text_chart import ChartPainter, ChartState, text_of
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
 
@@ -62,6 +62,27 @@ def test_every_format_is_whole(columns: dict[str, object], view: View) -> None:
         lines = text_of(chart_of(model, view, 2 * width, 4 * height), width, height).plain.split("\n")
         assert max(map(cell_len, lines)) <= width
         assert not re.search(r"[\x00-\x1f\x7f]", "".join(lines))
+
+
+@pytest.mark.parametrize("columns", COLUMNS.values(), ids=COLUMNS)
+def test_a_screen_and_a_file_have_the_same_scales(columns: dict[str, object]) -> None:
+    model = log_of(columns)
+    drawing = laid_out(chart_of(model, View(), 960, 420), 960, 420)
+    for trace in model.traces.ticked():
+        trace.prepare(model.x_limits(), 960, False)
+
+    picture = ChartPainter().paint(model.traces, ChartState(x_limits=model.x_limits()), 400, 24)
+
+    if picture.plot is None:
+        assert not model.traces.drawn()
+        return
+    (frame,) = drawing.plots
+    assert (picture.plot.x_limits, picture.plot.y_limits) == (frame.x, frame.y)
+    drawn = sum(
+        isinstance(shape, Stroke) and len(shape.points) and shape.points[0, 1] >= frame.top - 1
+        for shape in drawing.shapes
+    )
+    assert drawn == len(picture.plot.curves)
 
 
 def test_a_chart_is_cut_off_at_its_limits() -> None:

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 from tuisim.charts.files import clean
 from tuisim.core.spec import RobotSpec
+from tuisim.palette import MET, MISSED
 from tuisim.scene.pictures import world_view
 
 _NEAR_PX = 14.0
 """Pins nearer than this share a ring: their labels would cover each other."""
 _RING_PX, _TEXT_PX = 7.0, 15.0
-_GOOD, _BAD = "#1f8a4c", "#c0392b"
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,11 +46,11 @@ def svg_of_pins(pins: Sequence[Pin], robot: RobotSpec) -> str:
 
 
 def _ring(x: float, y: float, pins: Sequence[Pin], width: int) -> str:
-    color = _GOOD if all(pin.is_good for pin in pins) else _BAD
+    color = MET if all(pin.is_good for pin in pins) else MISSED
     right = x > 0.8 * width
     side, anchor = (-1, "end") if right else (1, "start")
     labels = " ".join(
-        f'<tspan fill="{_GOOD if pin.is_good else _BAD}">{"✓" if pin.is_good else "✗"}{clean(pin.label)}</tspan>'
+        f'<tspan fill="{MET if pin.is_good else MISSED}">{"✓" if pin.is_good else "✗"}{clean(pin.label)}</tspan>'
         for pin in pins
     )
     said = clean("\n".join(pin.text for pin in pins))
@@ -58,5 +58,5 @@ def _ring(x: float, y: float, pins: Sequence[Pin], width: int) -> str:
         f'<g><title>{said}</title><circle cx="{x:.1f}" cy="{y:.1f}" r="{_RING_PX:g}" fill="{color}33" '
         f'stroke="{color}" stroke-width="2.5"/><text x="{x + side * (_RING_PX + 4):.1f}" '
         f'y="{y - _RING_PX:.1f}" text-anchor="{anchor}" font-size="{_TEXT_PX:g}" font-weight="700" '
-        f'font-family="sans-serif" stroke="#fff" stroke-width="4" paint-order="stroke">{labels}</text></g>'
+        f'font-family="sans-serif" stroke="white" stroke-width="4" paint-order="stroke">{labels}</text></g>'
     )

@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tuisim import palette
 from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.model import Model
 from tuisim.analysis.pins import Pin, svg_of_pins
@@ -364,11 +365,7 @@ _OF_ONE_RUN = frozenset({"run", "made"})
 """Facts that differ between identical runs."""
 
 
-_STYLE = """
-:root { color-scheme: light dark; --ink: #1d2329; --soft: #5c6670; --paper: #fff; --rule: #d5dade; --area: #f4f6f8; }
-@media (prefers-color-scheme: dark) {
-  :root { --ink: #d8dee6; --soft: #9aa6b2; --paper: #14191f; --rule: #38424d; --area: #1c242c; }
-}
+_STYLE = """\
 * { box-sizing: border-box; }
 body { margin: 2rem auto; padding: 0 1rem; max-width: 62rem; color: var(--ink); background: var(--paper);
   font: 16px/1.45 system-ui, sans-serif; overflow-wrap: anywhere; }
@@ -396,7 +393,6 @@ pre { padding: .5rem; white-space: pre-wrap; }
 .code td { border: 0; padding: 0 .6rem; white-space: pre-wrap; }
 .code .number { width: 1%; color: var(--soft); border-right: 1px solid var(--rule); user-select: none; }
 @media print {
-  :root { color-scheme: light; --ink: #000; --soft: #444; --paper: #fff; --rule: #bbb; --area: #fff; }
   body { margin: 0; padding: 0; max-width: none; font-size: 10pt; }
   .wide { overflow: visible; }
   .movie { display: none; }
@@ -409,7 +405,7 @@ def page(title: str, body: Sequence[str]) -> str:
     return "\n".join((
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
-        f"<title>{clean(title)}</title>\n<style>{_STYLE}</style>\n</head>\n<body>",
+        f"<title>{clean(title)}</title>\n<style>\n{palette.PAGE}{_STYLE}</style>\n</head>\n<body>",
         *body,
         "</body>\n</html>\n",
     ))  # fmt: skip

@@ -158,7 +158,6 @@ def write_whole(path: Path, content: bytes) -> None:
         raise ExportError(f"cannot write {path}: {error.strerror or error}") from error
 
 
-_SVG_INK, _SVG_PAPER = "#222", "#fff"
 _FONT = "system-ui, sans-serif"
 _INVALID = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufdd0-\ufdef\ufffe\uffff]")
 """Control characters, lone surrogates and noncharacters."""
@@ -168,13 +167,13 @@ def svg_of(drawing: Drawing, *, inside: bool = False) -> str:
     """Return a picture as SVG: a file, or `inside` a page, whose colours it then uses."""
     size = f'viewBox="0 0 {drawing.width} {drawing.height}" width="{drawing.width}" height="{drawing.height}"'
     look = f'font-family="{_FONT}" font-size="{FONT_PX}" role="img"'
-    ink = "" if inside else f' color="{_SVG_INK}"'
+    ink = "" if inside else f' color="{_hex(_INK)}"'
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" {size} {look}{ink}>',
         f"<title>{clean(drawing.title)}</title>",
     ]
     if not inside:
-        parts.append(f'<rect width="100%" height="100%" fill="{_SVG_PAPER}"/>')
+        parts.append('<rect width="100%" height="100%" fill="white"/>')
     parts += [_svg_shape(shape) for shape in drawing.shapes]
     return "\n".join([*parts, "</svg>", ""])
 

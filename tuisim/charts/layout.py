@@ -197,15 +197,16 @@ def laid_out(chart: ChartData, width: int, height: int, *, titled: bool = True) 
     if titled:
         shapes.append(Words(PAD, top + LINE_PX / 2, shortened(chart.title, width - 2 * PAD), strong=True))
         top += LINE_PX + 4
+    groups = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
+    scales = [_scales_of(group, chart.zoomed or chart.path) for group in groups]
     if not chart.facets:
-        legend, lines = _legend(chart.lines, width, top)
+        legend, lines = _legend(chart.lines, scales[0].right is not None, width, top)
         shapes += legend
         top += lines * LINE_PX + 4
-    groups = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
-    scales = [_Scales.of(group, chart.zoomed or chart.path) for group in groups]
     plots: list[Frame] = []
-    left = PAD + max(scale.left_px for scale in scales)
-    right = max(width - PAD - max(max(scale.right_px for scale in scales), 3 * LETTER_PX), left + 1)
+    left = PAD + max(_widest(scale.left) for scale in scales)
+    right_px = max([3 * LETTER_PX, *(_widest(scale.right) for scale in scales if scale.right)])
+    right = max(width - PAD - right_px, left + 1)
     bottom = height - PAD - 2 * LINE_PX
     each = (bottom - top) / len(groups)
     for at, (group, scale) in enumerate(zip(groups, scales, strict=True)):
@@ -278,13 +279,14 @@ def shortened(text: str, width_px: float) -> str:
     return text if len(text) <= most else text[: most - 1] + "…"
 
 
-def _legend(lines: Sequence[Line], width: int, top: float) -> tuple[list[Shape], int]:
+def _legend(lines: Sequence[Line], two_scales: bool, width: int, top: float) -> tuple[list[Shape], int]:
     """Return the legend and its number of text lines: a stroke and a name per line, and which use the right scale."""
     shapes: list[Shape] = []
     x, row = float(PAD), 0
-    two = _with_two_scales(lines)
     for line in lines:
-        text = shortened(line.label + (", right scale" if two and line.other_scale else ""), width - 2 * PAD - 30)
+        text = shortened(
+            line.label + (", right scale" if two_scales and line.other_scale else ""), width - 2 * PAD - 30
+        )
         width_px = 30 + len(text) * LETTER_PX
         if x > PAD and x + width_px > width - PAD:
             x, row = float(PAD), row + 1
@@ -295,41 +297,39 @@ def _legend(lines: Sequence[Line], width: int, top: float) -> tuple[list[Shape],
     return shapes, row + 1 if lines else 0
 
 
+Variable: TypeAlias = tuple[str, FloatArray, bool]
+"""Name and finite values of a variable, and whether it uses the right scale."""
+
+
 @dataclass(frozen=True, slots=True)
-class _Scales:
+class Scales:
     """The vertical scale on the left, and perhaps another on the right."""
 
     left: Limits
     right: Limits | None
 
     @classmethod
-    def of(cls, lines: Sequence[Line], zoomed: bool) -> _Scales:
-        two = _with_two_scales(lines)
-        return cls(
-            _limits([line for line in lines if not line.other_scale] if two else lines, zoomed),
-            _limits([line for line in lines if line.other_scale], zoomed) if two else None,
-        )
+    def of(cls, variables: Sequence[Variable], zoomed: bool, *, has_room: bool = True) -> Scales:
+        """Return the scales of a chart; all variables use the left one without room for another."""
+        others = [one for one in variables if one[2]]
+        if not (has_room and 0 < len(others) < len(variables)):
+            return cls(_limits(variables, zoomed), None)
+        return cls(_limits([one for one in variables if not one[2]], zoomed), _limits(others, zoomed))
 
-    @property
-    def left_px(self) -> float:
-        return _widest(self.left)
-
-    @property
-    def right_px(self) -> float:
-        return _widest(self.right) if self.right else 0.0
-
-
-def _with_two_scales(lines: Sequence[Line]) -> bool:
-    return 0 < sum(line.other_scale for line in lines) < len(lines)
+    def on_left(self, values: FloatArray) -> FloatArray:
+        """Return where values of the right scale are on the left one."""
+        if self.right is None:
+            return values
+        share = (values - self.right[0]) / (self.right[1] - self.right[0])
+        return self.left[0] + share * (self.left[1] - self.left[0])
 
 
-def _limits(lines: Sequence[Line], zoomed: bool) -> Limits:
-    ends = [(line.name, float(line.ys.min()), float(line.ys.max())) for line in lines if len(line.ys)]
-    return limits_of(ends, zoomed)
+def _scales_of(lines: Sequence[Line], zoomed: bool) -> Scales:
+    return Scales.of([(line.name, line.ys, line.other_scale) for line in lines], zoomed)
 
 
-def limits_of(ends: Sequence[tuple[str, float, float]], zoomed: bool) -> Limits:
-    """Return the limits of a vertical scale, from name, least and greatest value of each variable."""
+def _limits(variables: Sequence[Variable], zoomed: bool) -> Limits:
+    ends = [(name, float(values.min()), float(values.max())) for name, values, _ in variables if len(values)]
     if not ends:
         return 0.0, 1.0
     from_zero = not zoomed and any(units.begins_at_zero(*one) for one in ends)
@@ -391,7 +391,7 @@ def borders_of(frame: Frame) -> list[Shape]:
     ]
 
 
-def _axes(frame: Frame, scale: _Scales, *, with_x: bool) -> list[Shape]:
+def _axes(frame: Frame, scale: Scales, *, with_x: bool) -> list[Shape]:
     shapes = grid_of(frame, with_x=with_x)
     if scale.right:
         other = frame.with_y(scale.right)
@@ -402,7 +402,7 @@ def _axes(frame: Frame, scale: _Scales, *, with_x: bool) -> list[Shape]:
     return shapes + borders_of(frame)
 
 
-def _strokes(chart: ChartData, lines: Sequence[Line], scale: _Scales, frame: Frame) -> list[Shape]:
+def _strokes(chart: ChartData, lines: Sequence[Line], scale: Scales, frame: Frame) -> list[Shape]:
     shapes: list[Shape] = []
     for line in lines:
         own = frame.with_y(scale.right) if scale.right and line.other_scale else frame

@@ -13,11 +13,10 @@ from tuisim import palette
 from tuisim.charts import axes
 from tuisim.charts.axes import Limits
 from tuisim.charts.canvas import AXIS, BRAILLE, PLAIN, Curve, TextRun, canvas, styled, xy_lines
-from tuisim.charts.layout import COLORS, ChartData, Line, color_of, limits_of
+from tuisim.charts.layout import COLORS, ChartData, Line, Scales, color_of
 from tuisim.charts.plot_image import Plot
 from tuisim.charts.traces import Trace, Traces
 from tuisim.errors import printable
-from tuisim.runs.arrays import FloatArray
 from tuisim.terminal.text_runs import Run, cut
 
 _CURSOR = Style(color=palette.WHITE, bgcolor=palette.LINE)
@@ -141,30 +140,26 @@ class ChartPainter:
         curves: Sequence[Curve],
     ) -> None:
         points = [(trace.name, len(trace.times_s)) for trace in drawn]
-        key = (points, scales.left, scales.right, columns, rows, x_limits, [curve.marker for curve in curves])
+        key = (points, scales.both, columns, rows, x_limits, [curve.marker for curve in curves])
         if key == self._key:
             return
         self._key = key
-        self._canvas = canvas(curves, columns, rows, x_limits, scales.left)
+        self._canvas = canvas(curves, columns, rows, x_limits, scales.both.left)
 
 
 @dataclass(frozen=True, slots=True)
 class _CellScales:
-    """The vertical scale on the left, and perhaps another on the right."""
+    """The vertical scales with their labels by row."""
 
-    left: Limits
-    right: Limits | None
+    both: Scales
     left_labels: dict[int, str]
     right_labels: dict[int, str]
 
     @classmethod
     def of(cls, drawn: list[Trace], width: int, rows: int, zoomed: bool) -> _CellScales:
-        others = [trace for trace in drawn if trace.other_scale]
-        two = 0 < len(others) < len(drawn) and width >= _MIN_TWO_SCALES
-        left = _limits([trace for trace in drawn if not trace.other_scale] if two else drawn, zoomed)
-        right = _limits(others, zoomed) if two else None
-        labels = axes.row_labels(right, rows) if right else {}
-        return cls(left, right, axes.row_labels(left, rows), labels)
+        variables = [(trace.name, trace.values, trace.other_scale) for trace in drawn]
+        both = Scales.of(variables, zoomed, has_room=width >= _MIN_TWO_SCALES)
+        return cls(both, axes.row_labels(both.left, rows), axes.row_labels(both.right, rows) if both.right else {})
 
     @property
     def left_width(self) -> int:
@@ -172,16 +167,10 @@ class _CellScales:
 
     @property
     def right_width(self) -> int:
-        return max(map(len, self.right_labels.values()), default=0) + 1 if self.right else 0
-
-    def _on_left(self, values: FloatArray, right: Limits) -> FloatArray:
-        share = (values - right[0]) / (right[1] - right[0])
-        return self.left[0] + share * (self.left[1] - self.left[0])
+        return max(map(len, self.right_labels.values()), default=0) + 1 if self.both.right else 0
 
     def curve(self, trace: Trace, marks: bool) -> Curve:
-        values = trace.values
-        if self.right and trace.other_scale:
-            values = self._on_left(values, self.right)
+        values = self.both.on_left(trace.values) if trace.other_scale else trace.values
         return Curve(trace.times_s, values, trace.rgb, trace.mark if marks else BRAILLE)
 
     def plot(
@@ -189,22 +178,22 @@ class _CellScales:
         *, has_time_line: bool,
     ) -> Plot:  # fmt: skip
         right_ticks = None
-        if self.right:
-            right_ticks = tuple(self._on_left(np.array(axes.row_ticks(self.right, rows)), self.right).tolist())
+        if self.both.right:
+            right_ticks = tuple(self.both.on_left(np.array(axes.row_ticks(self.both.right, rows))).tolist())
         return Plot(
-            curves, columns, rows, x_limits, self.left, tuple(axes.time_ticks(x_limits, columns)),
-            tuple(axes.row_ticks(self.left, rows)), right_ticks, has_time_line, tuple(cursors),
+            curves, columns, rows, x_limits, self.both.left, tuple(axes.time_ticks(x_limits, columns)),
+            tuple(axes.row_ticks(self.both.left, rows)), right_ticks, has_time_line, tuple(cursors),
         )  # fmt: skip
 
     def labelled(self, row: int, columns: int) -> list[Run]:
         """Return the labels of a row of a canvas of which an image is drawn."""
         text = self.left_labels.get(row, "").rjust(self.left_width - 1) + " " * (1 + columns)
-        return [(text + " " + self.right_labels.get(row, "") if self.right else text, AXIS)]
+        return [(text + " " + self.right_labels.get(row, "") if self.both.right else text, AXIS)]
 
     def framed(self, row: int, inside: list[Run]) -> list[Run]:
         text = self.left_labels.get(row, "")
         line = [(text.rjust(self.left_width - 1) + ("┤" if text else "│"), AXIS), *inside]
-        if self.right:
+        if self.both.right:
             text = self.right_labels.get(row, "")
             line.append((("├" if text else "│") + text.ljust(self.right_width - 1), AXIS))
         return line
@@ -214,11 +203,6 @@ def _time_limits(end_s: float, grows: bool) -> Limits:
     if grows:
         return axes.growing_limits(end_s)
     return 0.0, end_s if end_s > 0 else 1.0
-
-
-def _limits(traces: Sequence[Trace], zoomed: bool) -> Limits:
-    ends = [(trace.name, float(trace.values.min()), float(trace.values.max())) for trace in traces]
-    return limits_of(ends, zoomed)
 
 
 def _with_cursors(runs: list[TextRun], columns: Sequence[int]) -> list[Run]:
@@ -314,17 +298,6 @@ LEAST_ROWS = 8
 """Minimum height of a chart of one variable."""
 
 
-class _Drawn(Traces):
-    """The lines of a chart as traces for `ChartPainter`."""
-
-    def __init__(self, lines: tuple[Line, ...]) -> None:
-        super().__init__()
-        for line in lines:
-            trace = self._by_name[line.name] = _trace(line)
-            trace.on, trace.other_scale = True, line.other_scale
-            trace.add(line.xs.tolist(), line.ys.tolist())
-
-
 def text_of(chart: ChartData, width: int, height: int, *, colors: bool = False) -> Text:
     """Return a chart as text of a given size in characters.
 
@@ -347,7 +320,7 @@ def text_of(chart: ChartData, width: int, height: int, *, colors: bool = False) 
             state = ChartState(
                 x_limits=chart.x_limits, grey=grey, marks=chart.marks, unit=_unit(chart), zoomed=chart.zoomed
             )
-            shown += ChartPainter().paint(_Drawn(part), state, width, rows).lines
+            shown += ChartPainter().paint(Traces({line.name: _trace(line) for line in part}), state, width, rows).lines
     lines = [Text(chart.title, "bold"), *(Text.assemble(*map(_on_any_ground, line)) for line in shown)]
     for at in lines:
         at.rstrip()
@@ -357,7 +330,8 @@ def text_of(chart: ChartData, width: int, height: int, *, colors: bool = False) 
 
 def _trace(line: Line) -> Trace:
     trace = Trace(printable(line.name), line.number)
-    trace.rgb = color_of(line)
+    trace.rgb, trace.other_scale = color_of(line), line.other_scale
+    trace.add(line.xs.tolist(), line.ys.tolist())
     return trace
 
 

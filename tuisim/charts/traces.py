@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -100,10 +100,14 @@ class Trace:
 
 
 class Traces:
-    """All traces, those that the program logged first."""
+    """All traces, those that the program logged first.
 
-    def __init__(self) -> None:
-        self._by_name: dict[str, Trace] = {}
+    Args:
+        traces: Those that are there at first, by name.
+    """
+
+    def __init__(self, traces: Mapping[str, Trace] | None = None) -> None:
+        self._by_name = dict(traces or {})
         self._cleared: dict[str, Trace] = {}
         """Traces without points since `clear`: each gets its tick and its colour again with its next points."""
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from markdown_it import MarkdownIt
 
+from tuisim import palette
 from tuisim.atomic import replacing
 from tuisim.errors import ExportError
 from tuisim.guide.catalogue import CONTENTS, Page, pages
@@ -15,18 +16,16 @@ from tuisim.guide.tables import markdown_of
 
 _STYLE = """\
 body { margin: 0 auto; max-width: 75rem; display: flex; gap: 2rem; padding: 1rem; line-height: 1.5;
-       font-family: system-ui, sans-serif; color: #1c2330; background: #fff; }
+       font-family: system-ui, sans-serif; color: var(--ink); background: var(--paper); }
 nav { flex: 0 0 15rem; font-size: .9rem; } nav ul { list-style: none; padding: 0; }
 nav [aria-current] { font-weight: bold; } main { flex: 1; min-width: 0; }
-code, pre { font-family: ui-monospace, monospace; background: #f0f3f7; border-radius: 3px; } code { padding: 0 .2em; }
+code, pre { font-family: ui-monospace, monospace; background: var(--area); border-radius: 3px; }
+code { padding: 0 .2em; }
 pre { padding: .7em; overflow-x: auto; } pre code { padding: 0; }
 table { border-collapse: collapse; display: block; overflow-x: auto; }
-td, th { border: 1px solid #ccd3dc; padding: .2em .5em; text-align: left; vertical-align: top; } a { color: #0b57a4; }
+td, th { border: 1px solid var(--rule); padding: .2em .5em; text-align: left; vertical-align: top; }
+a { color: var(--link); }
 @media (max-width: 50rem) { body { flex-direction: column; } }
-@media (prefers-color-scheme: dark) {
-  body { color: #dde3ea; background: #14181f; } code, pre { background: #222832; } a { color: #7db4f0; }
-  td, th { border-color: #3a4350; }
-}
 """
 _PAGE_LINK = re.compile(r'href="([\w-]+)\.md"')
 INDEX = "index.html"
@@ -86,7 +85,8 @@ def _document(title: str, body: str, current: str, version: str) -> str:
     )
     return (
         f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>{escape(title)} – tuisim</title>\n'
-        f'<meta name="viewport" content="width=device-width, initial-scale=1">\n<style>\n{_STYLE}</style>\n</head>\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<style>\n{palette.PAGE}{_STYLE}</style>\n</head>\n"
         f'<body>\n<nav>\n<p><a href="{INDEX}">tuisim {version}</a></p>\n{parts}\n</nav>\n'
         f"<main>\n{body}\n</main>\n</body>\n</html>\n"
     )

@@ -7,16 +7,21 @@ from pathlib import Path
 from types import MappingProxyType
 from urllib.parse import quote
 
+from tuisim import palette
 from tuisim.analysis.report import page, paragraph, section, table
 from tuisim.charts.files import clean
 from tuisim.goals.spec import Goal
 from tuisim.marks.sheet import Cell, Sheet, SheetRow, in_words, summary_of
 
-_STYLE = """<style>
+_VERDICTS = f"""\
+.met {{ background: {palette.MET}2e; }}
+.part {{ background: {palette.PARTLY}33; }}
+.missed {{ background: {palette.MISSED}2b; }}
+"""
+"""The colours of cells."""
+
+_STYLE = """\
 body { max-width: 90rem; }
-.met { background: #1f8a4c2e; }
-.part { background: #c98a0033; }
-.missed { background: #c0392b2b; }
 td.number, th.number, td:last-child, th:last-child { padding-left: .7rem; }
 .student { min-width: 6rem; max-width: 14rem; overflow-wrap: anywhere; }
 .head { white-space: normal; overflow-wrap: anywhere; max-width: 9rem; }
@@ -24,7 +29,7 @@ td:last-child { min-width: 16rem; }
 tbody tr:hover { background: var(--area); }
 details pre { margin: .3rem 0; }
 code { font: .85rem ui-monospace, monospace; }
-</style>"""
+"""
 
 Links = Mapping[tuple[str, int], str]
 """Relative paths of reports by student and seed."""
@@ -41,7 +46,7 @@ def page_of(sheet: Sheet, links: Links = MappingProxyType({}), ignored: Sequence
     goals = [[one.name, one.say, in_words(one.points)] for one in sheet.columns]
     notes = paragraph(f"Not marked, because they are no Python programs: {', '.join(ignored)}", soft=True)
     body = [
-        f"{_STYLE}\n<header>\n<h1>{clean(title)}</h1>\n{paragraph(summary_of(sheet))}\n</header>",
+        f"<style>\n{_VERDICTS}{_STYLE}</style>\n<header>\n<h1>{clean(title)}</h1>\n{paragraph(summary_of(sheet))}\n</header>",
         section("Students", _students(sheet, links), notes if ignored else ""),
         section("Goals", table(("goal", "", "points"), goals, numbers=2)),
     ]

@@ -46,14 +46,6 @@ class ChartOptions:
     """The variables to draw against each other, x and y, instead of all over time."""
 
 
-class _One(Traces):
-    """A single trace, for a facet."""
-
-    def __init__(self, trace: LogTrace) -> None:
-        super().__init__()
-        self._by_name[trace.name] = trace
-
-
 class LogChart(LinesPanel):
     """The chart."""
 
@@ -120,7 +112,7 @@ class LogChart(LinesPanel):
         )  # fmt: skip
         self._pictures = []
         lines: list[list[Run]] = []
-        parts: list[Traces] = [_One(trace) for trace in facets] or [model.traces]
+        parts: list[Traces] = [Traces({trace.name: trace}) for trace in facets] or [model.traces]
         for at, part in enumerate(parts):
             rows = height // len(parts) + (at < height % len(parts))
             painter = self._painters.setdefault(facets[at].name if facets else "", ChartPainter())
