@@ -115,7 +115,7 @@ class Case:
     seen: Any = True
 
 
-PINK, RAY = (255, 105, 180), (115, 211, 211)
+PINK, RAY = (255, 105, 180), (0, 175, 175)
 """Of a pen, of the ultrasonic sensor; the mat has neither."""
 
 CASES = [

@@ -23,7 +23,7 @@ from tuisim.core.spec import (
     TouchSpec,
     WorldSpec,
 )
-from tuisim.scene.painter import BEACON_RGB, OBSTACLE_RGB, ScenePainter
+from tuisim.scene.painter import BEACON_RGB, OBSTACLE_RGB, RAY_RGB, ScenePainter
 from tuisim.scene.pen import PenTrace, Piece
 from tuisim.scene.pictures import RIM_RGB, fitting_view, scene_of, world_painter, world_picture, world_view
 from tuisim.scene.robot import COLORED
@@ -43,9 +43,9 @@ def test_it_is_what_a_screen_shows_in_a_frame() -> None:
     view = world_view(SPEC.robot)
     trace = PenTrace()
     trace.add(TRACE)
-    screen = ScenePainter(WHITE, RIM_RGB, trace).paint(view, scene_of(SPEC, HERE, rays=True))
+    screen = ScenePainter(WHITE, RIM_RGB, trace).paint(view, scene_of(SPEC, HERE))
 
-    picture = np.asarray(world_picture(SPEC, WHITE, HERE, (TRACE,), rays=True))
+    picture = np.asarray(world_picture(SPEC, WHITE, HERE, (TRACE,)))
 
     differs = np.argwhere((picture != screen).any(axis=2))
     places = np.array([view.to_mm(col + 0.5, row + 0.5) for row, col in differs.tolist()])
@@ -57,7 +57,7 @@ def test_everything_on_the_field_is_seen() -> None:
     picture = np.asarray(world_picture(SPEC, WHITE, HERE, (TRACE,), rays=True))
 
     seen = set(map(tuple, np.unique(picture.reshape(-1, 3), axis=0).tolist()))
-    assert {OBSTACLE_RGB, BEACON_RGB, COLORED.body, COLORED.pressed, (0, 128, 128), RIM_RGB} <= seen
+    assert {RAY_RGB, OBSTACLE_RGB, BEACON_RGB, COLORED.body, COLORED.pressed, (0, 128, 128), RIM_RGB} <= seen
 
 
 def test_runs_whose_pens_have_not_touched_are_not_joined() -> None:

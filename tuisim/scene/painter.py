@@ -95,7 +95,7 @@ class ScenePainter:
         if scene.rays and scene.robot.ultrasonic is not None:
             ultrasonic = scene.robot.ultrasonic
             x_mm, y_mm = world_point(scene.rays_from or scene.pose, ultrasonic.x_mm, ultrasonic.y_mm)
-            draw_rays(picture, view, x_mm, y_mm, scene.rays, self._grey)
+            draw_rays(picture, view, x_mm, y_mm, scene.rays, self._grey, is_solid=self._has_frame)
         if scene.ghost is not None:
             draw_robot(
                 picture, view, scene.ghost, outline, self._ghost_colors, _GHOST_OPACITY, detail_cols=self._detail_cols
@@ -163,6 +163,8 @@ def draw_rays(
     y_mm: float,
     rays: Sequence[tuple[float, float]],
     grey: bool = False,
+    *,
+    is_solid: bool = False,
 ) -> None:
     """Paint rays from one point of the world, as far as they are on the field.
 
@@ -173,6 +175,7 @@ def draw_rays(
         y_mm: World y of the sensor.
         rays: (world angle in degrees, length in mm) each.
         grey: Only brightness will be seen.
+        is_solid: Whether they hide what is below: the thin lines of a file would hardly be seen on white.
     """
     col, row = view.to_px(x_mm, y_mm)
     low_col, low_row = (round(edge) for edge in view.to_px(0.0, FIELD_HEIGHT_MM))
@@ -193,7 +196,7 @@ def draw_rays(
     covered_at = np.flatnonzero(covered)
     pixels = picture.reshape(-1, 3)
     below = pixels[covered_at]
-    opacity = 1.0 if grey else _RAY_OPACITY
+    opacity = 1.0 if grey or is_solid else _RAY_OPACITY
     mixed = below * (1 - opacity) + visible_on(below, RAY_RGB, grey) * opacity
     pixels[covered_at] = np.rint(mixed).astype(np.uint8)
 
