@@ -42,12 +42,11 @@ from tuisim.errors import SIGNALLED, ConfigError, TuisimError
 from tuisim.terminal import input_order
 from tuisim.terminal.cell_view import RowsView
 from tuisim.terminal.cells import PALETTE_256
-from tuisim.terminal.driver import TerminalDriver, run_in_foreground
-from tuisim.terminal.environment import in_browser, is_multiplexer, offer
+from tuisim.terminal.driver import TerminalDriver, offer, run_in_foreground
 from tuisim.terminal.frame_buffer import FrameBuffer, TextMode
-from tuisim.terminal.graphics.choice import graphics_of
-from tuisim.terminal.picture_mode import PictureMode, choose_colors, color_depth, picture_mode_for
+from tuisim.terminal.picture_mode import PictureMode, choose_colors, color_depth, graphics_of, picture_mode_for
 from tuisim.terminal.picture_options import AUTO, NO_PIXELS, CellSet
+from tuisim.terminal.probe import in_browser, is_multiplexer
 from tuisim.terminal.queries import (
     ATTRIBUTES_QUERY,
     CELL_SIZE_QUERY,

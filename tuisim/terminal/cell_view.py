@@ -20,11 +20,10 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
-from tuisim.terminal.cells import MONO, ColorMode, changed_cells, changed_runs, reduce_cells, reduce_pixels
+from tuisim.terminal.cells import MONO, ColorMode, changed_cells, changed_runs, mono_cells, reduce_cells, reduce_pixels
 from tuisim.terminal.fitted_cells import CellIndex, Cells, all_cells, fit_cells
 from tuisim.terminal.glyphs import GLYPHS, GlyphSet, glyph_set, half_block_of
-from tuisim.terminal.graphics.picture import Graphics, PictureCell, TilePicture
-from tuisim.terminal.mono import mono_cells
+from tuisim.terminal.picture import Graphics, PictureCell, TilePicture
 from tuisim.terminal.picture_mode import BLOCKS, PictureMode, Sharpness, color_depth, picture_mode_of
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import CellPoints

@@ -10,11 +10,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from encodings import utf_8
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 from textual.app import App
 
-from tuisim.terminal.graphics import kitty
+from tuisim.terminal import kitty
 from tuisim.terminal.picture_mode import picture_mode_of
 from tuisim.terminal.picture_options import Protocol
 from tuisim.terminal.probe import SILENT, take_typed
@@ -100,6 +100,13 @@ def run_in_foreground(command: Sequence[str]) -> None:
     finally:
         for number, handler in handlers.items():
             signal.signal(number, handler)
+
+
+def offer(app: App[Any], *files: Path) -> None:
+    """Let the browser, if there is one, download files that have been written: it may be on another machine."""
+    if app.is_web:
+        for file in files:
+            app.deliver_binary(file)
 
 
 class TerminalDriver(HookedLinuxDriver):

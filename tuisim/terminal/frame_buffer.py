@@ -22,7 +22,7 @@ from textual.strip import SGR_STYLES, Strip
 from tuisim.terminal.cell_view import CellStrip, JoinedStrip, PictureStrip
 from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR, sgr_index
 from tuisim.terminal.glyphs import GLYPHS
-from tuisim.terminal.graphics.picture import PictureCell, TilePicture
+from tuisim.terminal.picture import PictureCell, TilePicture
 from tuisim.terminal.textual_internals import ChopsUpdate, LayoutUpdate
 
 _SEEN_ON_BLANKS = frozenset({"4", "7", "9", "21", "51", "52", "53"})

@@ -1,4 +1,4 @@
-"""Which glyphs the terminal shows: what its environment says, and what it answers before the app starts.
+"""The terminal while no app draws on it: what it shows, by its environment and its answers, and its usual state.
 
 No terminal tells whether its font has a glyph. One that does not know a character drops it, as tmux 3.3a does, or draws
 a box. So fine glyphs are taken only from terminals that are known to draw them themselves, without a font.
@@ -10,6 +10,7 @@ import curses
 import os
 import re
 import select
+import subprocess
 import sys
 import termios
 import time
@@ -19,7 +20,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from tuisim.terminal.environment import has_all_colors, is_multiplexer
+from tuisim.terminal import kitty
 from tuisim.terminal.picture_options import AUTO, CellSet
 from tuisim.terminal.queries import (
     ANSWER,
@@ -128,6 +129,49 @@ def terminfo_has_colors(terminal: str) -> bool:
         return curses.tigetnum("colors") > 0
     except (OSError, ValueError, curses.error):
         return True
+
+
+_MULTIPLEXER = "screen"
+"""What TERM begins with in GNU screen, and in tmux unless it is told otherwise."""
+_TMUX_ANSWER_S = 1.0
+_ALL_COLORS = "RGB"
+"""The feature of a terminal with all colours, as tmux calls it."""
+
+
+def is_multiplexer(terminal: str) -> bool:
+    """Return whether a kind of terminal, as in TERM, is GNU screen, or tmux under that name.
+
+    It takes the code for italics for that of reverse video.
+    """
+    return terminal == _MULTIPLEXER or terminal.startswith((f"{_MULTIPLEXER}-", f"{_MULTIPLEXER}."))
+
+
+def has_all_colors(environment: Mapping[str, str]) -> bool:
+    """Return whether the multiplexer says that it shows all colours.
+
+    COLORTERM is no answer: it was inherited from the terminal around it. GNU screen before version 5 takes the numbers
+    of such a colour for blinking, underlined and coloured text, and has no way to be asked. tmux has; inside GNU screen
+    (STY) it may be the one around it.
+    """
+    if "TMUX" not in environment or "STY" in environment:
+        return False
+    command = ["tmux", "display-message", "-p", "#{client_termfeatures}"]
+    try:
+        done = subprocess.run(
+            command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=_TMUX_ANSWER_S, check=False
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+    return _ALL_COLORS in done.stdout.strip().split(",")
+
+
+WEB_DRIVER = "textual.drivers.web_driver:WebDriver"
+"""The driver that a server such as textual-serve names in the environment of an app in a browser."""
+
+
+def in_browser() -> bool:
+    """Return whether a server has started this process to show its app in a browser."""
+    return os.environ.get("TEXTUAL_DRIVER") == WEB_DRIVER
 
 
 def _may_be_utf8(environment: Mapping[str, str]) -> bool:
@@ -269,3 +313,36 @@ def _ask(fd: int, query: str, is_answered: Callable[[bytes], object], output: in
 def _write(text: str, output: int | None = None) -> None:
     with suppress(OSError):
         os.write(sys.stdout.fileno() if output is None else output, text.encode())
+
+
+_OFF = "".join(f"\x1b[?{mode}l" for mode in (1000, 1002, 1003, 1015, 1006, 1016, 1004, 2004, 2026, 2048))
+"""Mouse, focus, bracketed paste, synchronized output and reports of the size."""
+RESTORING = f"\x1b[<u{_OFF}\x1b[?1049l\x1b[?7h\x1b[?25h\x1b[0m\x1b(B\x0f\r"
+"""Ends the keyboard protocol of kitty on the screen of the app, then that screen; lines wrap, the cursor is visible."""
+
+
+def restore_terminal(fd: int, term: str) -> None:
+    """Undo what the app, or another program that was killed, has set.
+
+    Args:
+        fd: The terminal, open for reading and writing.
+        term: The variable TERM.
+
+    Raises:
+        OSError: the terminal is gone.
+    """
+    # Only where they are not shown as text: most terminals ignore what they do not know.
+    os.write(fd, (RESTORING if term in SILENT else RESTORING + kitty.DELETE_ALL).encode())
+    with suppress(termios.error):
+        attributes = termios.tcgetattr(fd)
+        attributes[:4] = _sane(*attributes[:4])
+        termios.tcsetattr(fd, termios.TCSAFLUSH, attributes)
+
+
+def _sane(iflag: int, oflag: int, cflag: int, lflag: int) -> list[int]:
+    """Return the modes of a terminal with what `stty sane` switches on, as far as apps change it."""
+    iflag = (iflag | termios.BRKINT | termios.ICRNL | termios.IXON | termios.IMAXBEL) & ~(termios.INLCR | termios.IGNCR)
+    oflag |= termios.OPOST | termios.ONLCR
+    lflag |= termios.ISIG | termios.ICANON | termios.IEXTEN
+    lflag |= termios.ECHO | termios.ECHOE | termios.ECHOK | termios.ECHOCTL | termios.ECHOKE
+    return [iflag, oflag, cflag, lflag]

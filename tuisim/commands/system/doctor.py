@@ -123,7 +123,7 @@ def _terminal() -> Iterator[int | None]:
 
 def _restore() -> None:
     # On demand: this and the report are all that the command needs of the app.
-    from tuisim.terminal.restore import restore_terminal
+    from tuisim.terminal.probe import restore_terminal
 
     with _terminal() as fd:
         if fd is None:
@@ -143,7 +143,7 @@ def _terminal_findings(environment: Mapping[str, str]) -> list[Finding]:
 def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) -> list[Finding]:
     import termios
 
-    from tuisim.terminal.graphics.choice import graphics_of
+    from tuisim.terminal.picture_mode import graphics_of
     from tuisim.terminal.picture_options import AUTO, NO_PIXELS
     from tuisim.terminal.probe import (
         SILENT,

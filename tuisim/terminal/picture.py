@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from io import BytesIO
 from itertools import count, groupby
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tuisim.terminal.graphics import iterm, kitty, sixel
+from tuisim.terminal import kitty, sixel
 from tuisim.terminal.picture_options import Protocol
 
 if TYPE_CHECKING:
@@ -218,7 +220,7 @@ class TilePicture:
     def _encoded(self, some: Rectangle) -> str:
         points = self._part(some)
         if self.graphics.protocol is Protocol.ITERM:
-            return iterm.encode(points, some.right - some.left, some.bottom - some.top)
+            return _inline_image(points, some.right - some.left, some.bottom - some.top)
         scale = self.graphics.cell_px[0] // self.graphics.cell_points[0]
         return sixel.encode(points.repeat(scale, axis=0).repeat(scale, axis=1) if scale > 1 else points)
 
@@ -281,6 +283,25 @@ def _passed_on(graphics: Graphics, codes: str) -> str:
 
 def _deleted(graphics: Graphics, tiles: Mapping[tuple[int, int], tuple[int, int]]) -> str:
     return "".join(_passed_on(graphics, kitty.delete(image)) for _, image in tiles.values())
+
+
+_COMPRESSION = 1
+"""Of PNG: a tenth of the time of the default, for a few per cent more bytes."""
+
+
+def _inline_image(picture: Pixels, cols: int, rows: int) -> str:
+    """Return the codes of iTerm2, and WezTerm, that draw a picture at the cursor, scaled to some columns and rows.
+
+    Reference: https://iterm2.com/documentation-images.html
+    """
+    # Imported on demand: few terminals need it.
+    from PIL import Image
+
+    file = BytesIO()
+    Image.fromarray(picture).save(file, "PNG", compress_level=_COMPRESSION)
+    data = file.getvalue()
+    keys = f"inline=1;size={len(data)};width={cols};height={rows};preserveAspectRatio=0;doNotMoveCursor=1"
+    return f"\x1b]1337;File={keys}:{b64encode(data).decode()}\x07"
 
 
 Run = tuple[int, int, int]
