@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from encodings import utf_8
 from pathlib import Path
-from typing import Any, TextIO
+from typing import TextIO
 
 from textual.app import App
 
@@ -21,7 +21,9 @@ from tuisim.terminal.probe import SILENT, take_typed
 from tuisim.terminal.queries import QUESTIONS, AnswerParser
 from tuisim.terminal.textual_internals import HookedLinuxDriver, app_of, is_leaving, parse_input_with
 
-_LOST = 128 + signal.SIGHUP
+SIGNALLED = 128
+"""A shell adds the number of a signal to it, for the exit code of a program that the signal has ended."""
+_LOST = SIGNALLED + signal.SIGHUP
 """The exit code of an app whose terminal is gone, as if the shell had told it."""
 
 
@@ -100,13 +102,6 @@ def run_in_foreground(command: Sequence[str]) -> None:
     finally:
         for number, handler in handlers.items():
             signal.signal(number, handler)
-
-
-def offer(app: App[Any], *files: Path) -> None:
-    """Let the browser, if there is one, download files that have been written: it may be on another machine."""
-    if app.is_web:
-        for file in files:
-            app.deliver_binary(file)
 
 
 class TerminalDriver(HookedLinuxDriver):

@@ -17,7 +17,7 @@ import time
 import tty
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from tuisim.terminal import kitty
@@ -29,6 +29,7 @@ from tuisim.terminal.queries import (
     NAME_QUERY,
     QUESTIONS,
     TerminalFacts,
+    cell_size_px,
     facts_in,
 )
 
@@ -211,11 +212,13 @@ _ROUND_TRIPS = 3
 class Answers:
     """What a terminal has answered to every question."""
 
-    facts: TerminalFacts
-    octant_cols: int | None
+    facts: TerminalFacts = field(default_factory=TerminalFacts)
+    octant_cols: int | None = None
     """By how many columns an octant moved the cursor; None if it did not answer."""
-    latency_s: float | None
+    latency_s: float | None = None
     """The shortest time that an answer took; None if there was none."""
+    cell_px: tuple[int, int] | None = None
+    """Width and height of a cell as the kernel knows them."""
 
 
 def ask_everything(fd: int) -> Answers:
@@ -234,12 +237,13 @@ def ask_everything(fd: int) -> Answers:
         _write(_CLEAR, fd)
         latency_s = _latency_s(fd)
         if latency_s is None:
-            return Answers(TerminalFacts(), int(position[1]) - 1 if position else None, None)
+            return Answers(octant_cols=int(position[1]) - 1 if position else None)
         text = _ask(fd, QUESTIONS, _has_attributes, fd)
         facts = facts_in(text.decode("latin-1"))
         if facts.asks_for_kitty:
             text += _ask(fd, KITTY_QUESTIONS, _has_attributes, fd)
-        return Answers(facts_in(text.decode("latin-1")), int(position[1]) - 1 if position else None, latency_s)
+        octant_cols = int(position[1]) - 1 if position else None
+        return Answers(facts_in(text.decode("latin-1")), octant_cols, latency_s, cell_size_px(fd))
     finally:
         # Answers that come late are not typed into the shell.
         termios.tcsetattr(fd, termios.TCSAFLUSH, before)

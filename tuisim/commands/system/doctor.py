@@ -153,10 +153,9 @@ def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) ->
         cells_without_asking,
         first_environment,
     )
-    from tuisim.terminal.queries import TerminalFacts, cell_size_px
 
     term = environment.get("TERM", "")
-    answers = Answers(TerminalFacts(), None, None)
+    answers = Answers()
     if term not in SILENT:
         try:
             answers = ask_everything(fd)
@@ -165,7 +164,7 @@ def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) ->
     has_colors = _colors_without_asking(environment) != "none"
     cells = cells_without_asking({**first_environment(), "TERM": term}, has_colors=has_colors)
     limit = "" if cells_without_asking({**first_environment(), "TERM": "xterm"}) is cells else term
-    graphics = graphics_of(answers.facts, AUTO if has_colors else NO_PIXELS, cell_size_px(fd))
+    graphics = graphics_of(answers.facts, AUTO if has_colors else NO_PIXELS, answers.cell_px)
     size = os.get_terminal_size(fd)
     return [
         diagnosis.terminal_finding(answers.facts.name, term, is_remote=is_remote),
