@@ -233,16 +233,14 @@ def ask_everything(fd: int) -> Answers:
     before = termios.tcgetattr(fd)
     try:
         tty.setcbreak(fd, termios.TCSANOW)
-        position = _POSITION.search(_ask(fd, WIDTH_QUERY, _POSITION.search, fd))
-        _write(_CLEAR, fd)
+        octant_cols = _cols_in(_ask_width(fd, fd))
         latency_s = _latency_s(fd)
         if latency_s is None:
-            return Answers(octant_cols=int(position[1]) - 1 if position else None)
+            return Answers(octant_cols=octant_cols)
         text = _ask(fd, QUESTIONS, _has_attributes, fd)
         facts = facts_in(text.decode("latin-1"))
         if facts.asks_for_kitty:
             text += _ask(fd, KITTY_QUESTIONS, _has_attributes, fd)
-        octant_cols = int(position[1]) - 1 if position else None
         return Answers(facts_in(text.decode("latin-1")), octant_cols, latency_s, cell_size_px(fd))
     finally:
         # Answers that come late are not typed into the shell.
@@ -259,6 +257,19 @@ def _latency_s(fd: int) -> float | None:
     return min(found, default=None)
 
 
+def _ask_width(fd: int, output: int | None = None) -> bytes:
+    """Print an octant, and return what is read with the position of the cursor after it."""
+    answer = _ask(fd, WIDTH_QUERY, _POSITION.search, output)
+    _write(_CLEAR, output)
+    return answer
+
+
+def _cols_in(answer: bytes) -> int | None:
+    """Return by how many columns an octant moved the cursor, if that was answered."""
+    position = _POSITION.search(answer)
+    return int(position[1]) - 1 if position else None
+
+
 def _has_attributes(answer: bytes) -> bool:
     return bool(facts_in(answer.decode("latin-1")).attributes)
 
@@ -273,9 +284,8 @@ def _asked() -> CellSet:
     before, position = termios.tcgetattr(fd), b""
     try:
         tty.setcbreak(fd, termios.TCSANOW)
-        position = _ask(fd, WIDTH_QUERY, _POSITION.search)
-        _write(_CLEAR)
-        cols = int(found[1]) - 1 if (found := _POSITION.search(position)) else None
+        position = _ask_width(fd)
+        cols = _cols_in(position)
         if cols != 1:
             return cells_of("", cols)
         answers = _ask(fd, NAME_QUERY + ATTRIBUTES_QUERY, _has_attributes)
