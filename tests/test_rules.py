@@ -8,9 +8,13 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache, cached_property
+from importlib import import_module
 from pathlib import Path
 
 import pytest
+import textual
+
+from tuisim import terminal
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -62,6 +66,9 @@ OF_NO_MODULE = {
     "test_wheel.py": "an installed copy",
 }
 """Tests that stand among those of modules, with what they test."""
+
+OTHERS_OWN = ("os", "sys", "super()")
+"""What has such names and is not Textual's."""
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -255,6 +262,51 @@ def misnamed(source: Source) -> Iterable[object]:
     return ["named after no module"] if bool(subject(source.path)) == (name in OF_NO_MODULE) else []
 
 
+@cache
+def textual_names() -> frozenset[str]:
+    """The private names that Textual's own files give to attributes, methods and functions."""
+    folder = Path(textual.__file__).parent
+    text = "".join(path.read_text(encoding="utf-8") for path in sorted(folder.rglob("*.py")))
+    return frozenset(re.findall(r"(?:self\.|def )(_[a-z]\w+)", text))
+
+
+def private_names_of_textual(source: Source) -> Iterable[object]:
+    """Imports of private modules and names, and private attributes of objects other than `self`."""
+    own = {"self", "cls", *OTHERS_OWN}
+    for node in source.nodes:
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("textual"):
+            yield from (name for name in (*str(node.module).split("."), *_aliases(node)) if name.startswith("_"))
+        elif isinstance(node, ast.Import):
+            yield from (name for name in _aliases(node) if name.startswith("textual") and "._" in name)
+    for one in source.attributes:
+        # Named tuples have `_replace` as well.
+        if one.attr in textual_names() - {"_replace"} and ast.unparse(one.value) not in own:
+            yield ast.unparse(one)
+
+
+def _aliases(node: ast.Import | ast.ImportFrom) -> list[str]:
+    return [alias.name for alias in node.names]
+
+
+def inner_parts_of_terminal(source: Source) -> Iterable[object]:
+    """Imports of modules of the terminal kit that are none of its surface."""
+    for node in source.nodes:
+        if isinstance(node, ast.ImportFrom) and node.module == "tuisim.terminal":
+            yield from {*_aliases(node)} - {*terminal.__all__}
+        elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("tuisim.terminal."):
+            yield from {str(node.module).split(".")[2]} - {*terminal.__all__}
+
+
+TERMINAL = python_files("tuisim/terminal")
+MAY_REACH_TEXTUAL = [*TERMINAL, *python_files("tuisim/app"), *python_files("tuisim/web")]
+OUTSIDE_TERMINAL = [path for path in PACKAGE if path not in TERMINAL]
+
+
+def test_the_surface_of_the_terminal_kit_is_small_and_documented() -> None:
+    assert len(terminal.__all__) <= 12
+    assert all(import_module(f"tuisim.terminal.{name}").__doc__ for name in terminal.__all__)
+
+
 RULES: dict[str, tuple[Callable[[Source], Iterable[object]], list[Path]]] = {
     "files are small": (too_many_lines, CODE),
     "functions are small": (long_functions, CODE),
@@ -268,6 +320,11 @@ RULES: dict[str, tuple[Callable[[Source], Iterable[object]], list[Path]]] = {
     "long modules have tests of their own": (untested, PACKAGE),
     "tests are named after modules": (misnamed, MIRRORED),
     "colours have names": (hex_colors, [*PACKAGE, *sorted((ROOT / "tuisim").rglob("*.tcss"))]),
+    "private names of Textual are in one module": (
+        private_names_of_textual,
+        [path for path in MAY_REACH_TEXTUAL if path.name != "textual_internals.py"],
+    ),
+    "the terminal kit is reached through its surface": (inner_parts_of_terminal, OUTSIDE_TERMINAL),
 }
 
 

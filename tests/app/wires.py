@@ -9,11 +9,11 @@ from typing import Any, cast
 
 from rich.console import COLOR_SYSTEMS
 from textual import events
+from textual.app import App
 from textual.drivers.headless_driver import HeadlessDriver
 from textual.pilot import Pilot
 
 from tests.running import PATIENCE_S
-from tuisim.app.terminal_app import TerminalApp
 
 QUERY = "\x1b[6n"
 
@@ -44,7 +44,7 @@ def wire_of(pilot: Pilot[Any]) -> Wire:
 
 
 @asynccontextmanager
-async def on_wire(app: TerminalApp, colors: str = "256", *, notifications: bool = False) -> AsyncIterator[Pilot[Any]]:
+async def on_wire(app: App[Any], colors: str = "256", *, notifications: bool = False) -> AsyncIterator[Pilot[Any]]:
     """An app in such a terminal of 120×40, with notices or without."""
     app.driver_class = Wire
     app.console._color_system = COLOR_SYSTEMS[colors]

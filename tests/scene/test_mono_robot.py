@@ -13,9 +13,9 @@ from tuisim.scene.mono_robot import body, pointer
 from tuisim.scene.painter import ScenePainter, SceneState
 from tuisim.scene.pen import PenTrace, visible_on
 from tuisim.scene.view import whole_field
+from tuisim.terminal.cells import mono_cells
 from tuisim.terminal.fitted_cells import all_cells
 from tuisim.terminal.glyphs import GLYPHS, SIGNS, glyph_set
-from tuisim.terminal.mono import mono_cells
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import CellPoints, Pixels
 

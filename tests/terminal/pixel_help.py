@@ -9,7 +9,7 @@ from textual.pilot import Pilot
 
 from tests.app.app_help import ready, until
 from tests.app.wires import until_quiet, wire_of
-from tests.terminal.graphics.decoder import PixelTerminal
+from tests.terminal.decoder import PixelTerminal
 from tuisim.app.plot_view import PlotView
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.picture_options import Protocol

@@ -12,7 +12,7 @@ from textual.driver import Driver
 from tuisim.app.terminal_app import TerminalApp
 from tuisim.terminal.browser_driver import BrowserDriver
 from tuisim.terminal.driver import TerminalDriver
-from tuisim.terminal.environment import WEB_DRIVER
+from tuisim.terminal.probe import WEB_DRIVER
 
 CHOSEN = {
     "a server": (WEB_DRIVER, BrowserDriver),

@@ -12,8 +12,8 @@ from textual import events
 from textual.message import Message
 
 from tuisim.terminal import queries
-from tuisim.terminal.graphics.choice import graphics_of
-from tuisim.terminal.graphics.picture import Graphics
+from tuisim.terminal.picture import Graphics
+from tuisim.terminal.picture_mode import graphics_of
 from tuisim.terminal.picture_options import AUTO, NO_PIXELS, Protocol
 from tuisim.terminal.queries import AnswerParser, TerminalAnswered, TerminalFacts, cell_size_px
 

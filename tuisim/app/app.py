@@ -47,7 +47,6 @@ from tuisim.runs.child.process import warm_up
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.source import Program
-from tuisim.terminal.input_order import takes_letters
 from tuisim.terminal.pacer import Pacer
 from tuisim.terminal.picture_mode import PictureMode
 from tuisim.terminal.picture_options import AUTO
@@ -235,7 +234,7 @@ class LabApp(PanelMessages):
         """Let the keys of a run wait also for the mat, without which none can start."""
         is_of_run = isinstance(event, events.Key) and event.key in RUN_KEYS and len(self.screen_stack) == 1
         waits = is_of_run and self.loader.is_preparing
-        return super()._waits(event) or (waits and not (self.focused and takes_letters(self.focused)))
+        return super()._waits(event) or (waits and not self.is_typed_into)
 
     def suspending(self) -> None:
         """Pause the run and playback before the app is suspended, so that nothing resumes by itself."""

@@ -7,13 +7,14 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
 
-from textual.keys import KEY_NAME_REPLACEMENTS, Keys, _character_to_key
+from textual.keys import KEY_NAME_REPLACEMENTS, Keys
 
 from tuisim.app.action import Action, label_of_key
 from tuisim.app.themes import theme_names
 from tuisim.config.files import Location
 from tuisim.config.user_config import THEME, Section, UserConfig
 from tuisim.errors import nearest
+from tuisim.terminal.textual_internals import key_of_character
 
 Host = TypeVar("Host")
 Now = TypeVar("Now")
@@ -49,7 +50,7 @@ def key_of(text: str, at: Location) -> str:
     modifiers = match[0] if match and len(text) > 1 else ""
     last = text[len(modifiers) :]
     if len(last) == 1 and last.isprintable():
-        name = _character_to_key(last.lower() if modifiers else last)
+        name = key_of_character(last.lower() if modifiers else last)
     else:
         name = KEY_NAME_REPLACEMENTS.get(last.lower(), last.lower())
         if name not in _NAMED and name not in _SAME:

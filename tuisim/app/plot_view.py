@@ -16,7 +16,7 @@ from tuisim.charts.canvas import AXIS
 from tuisim.charts.plot_image import Plot, PlotInks, plot_image
 from tuisim.charts.text_chart import ChartPicture
 from tuisim.terminal.cell_view import JoinedStrip, LinesView, PictureStrip
-from tuisim.terminal.graphics.picture import Graphics, TilePicture
+from tuisim.terminal.picture import Graphics, TilePicture
 from tuisim.terminal.picture_mode import Sharpness, picture_mode_of
 from tuisim.terminal.text_runs import Run
 

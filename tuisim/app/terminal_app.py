@@ -1,11 +1,7 @@
-"""Base of the apps: suspend, resume and shutdown; sending only changes; the minimum terminal size."""
+"""Base of the apps: themes, the command palette, screenshots, and the minimum size of the terminal."""
 
 from __future__ import annotations
 
-import asyncio
-import os
-import re
-import signal
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -13,21 +9,13 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Any, ClassVar
 
-from rich.cells import cell_len
 from rich.control import Control
-from rich.segment import Segment
 from textual import events, on
-from textual.app import ScreenStackError
-from textual.color import Color
 from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
-from textual.css.query import NoMatches
-from textual.driver import Driver
-from textual.filter import LineFilter
 from textual.geometry import Size
 from textual.screen import Screen
 from textual.theme import Theme, ThemeProvider
-from textual.widget import WidgetError
-from textual.worker import Worker, WorkerFailed
+from textual.worker import Worker
 
 from tuisim import palette
 from tuisim.app import background
@@ -38,46 +26,12 @@ from tuisim.app.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, Th
 from tuisim.charts.traces import TRACE_COLORS
 from tuisim.config.files import Scalar
 from tuisim.config.user_config import CELL_SET, SETTINGS, THEME, load_config
-from tuisim.errors import SIGNALLED, ConfigError, TuisimError
-from tuisim.terminal import input_order
-from tuisim.terminal.cell_view import RowsView
+from tuisim.errors import ConfigError, TuisimError
+from tuisim.terminal.app import BufferedApp, offer
 from tuisim.terminal.cells import PALETTE_256
-from tuisim.terminal.driver import TerminalDriver, run_in_foreground
-from tuisim.terminal.environment import in_browser, is_multiplexer, offer
-from tuisim.terminal.frame_buffer import FrameBuffer, TextMode
-from tuisim.terminal.graphics.choice import graphics_of
 from tuisim.terminal.picture_mode import PictureMode, choose_colors, color_depth, picture_mode_for
-from tuisim.terminal.picture_options import AUTO, NO_PIXELS, CellSet
-from tuisim.terminal.queries import (
-    ATTRIBUTES_QUERY,
-    CELL_SIZE_QUERY,
-    KITTY_QUESTIONS,
-    AnswerParser,
-    TerminalAnswered,
-    TerminalFacts,
-    cell_size_px,
-)
-from tuisim.terminal.textual_internals import SUPPORTED, Codes, CompositorUpdate, HookedApp, is_leaving, is_search, mend
-
-_CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
-
-
-class Sanitize(LineFilter):
-    """Removes control characters from everything that is drawn."""
-
-    def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """Return the segments, with the same width as before."""
-        if all(segment.text.isprintable() or segment.control for segment in segments):
-            return segments
-        return [
-            segment if segment.control else Segment(_CONTROLS.sub(_blank, segment.text), segment.style)
-            for segment in segments
-        ]
-
-
-def _blank(match: re.Match[str]) -> str:
-    return " " * cell_len(match[0])
-
+from tuisim.terminal.picture_options import NO_PIXELS
+from tuisim.terminal.textual_internals import SUPPORTED, Codes, is_leaving, is_search
 
 MINIMUM = Size(40, 12)
 """Minimum size of the terminal: panels and dialogs are unreadable below it."""
@@ -171,8 +125,8 @@ class ActionProvider(Provider):
                 yield Hit(score, matcher.highlight(title), do, help=text)
 
 
-class TerminalApp(HookedApp):
-    """An app that restores the terminal, even when it is stopped or terminated from outside."""
+class TerminalApp(BufferedApp):
+    """Base of the apps: with themes, a command palette, dialogs that close once, and a minimum size."""
 
     TITLE = "tuisim"
     NOTIFICATION_TIMEOUT = 4
@@ -180,21 +134,9 @@ class TerminalApp(HookedApp):
     COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = {ActionProvider}
 
     def __init__(self, picture_mode: PictureMode | None = None) -> None:
-        super().__init__(driver_class=_driver_class())
-        self.line_filters = [*self.line_filters, Sanitize()]
-        # They take the code for italics for that of reverse video.
-        self._has_italics = not is_multiplexer(os.environ.get("TERM", ""))
-        self.frame_buffer = FrameBuffer()
-        self.picture_mode = picture_mode or PictureMode()
-        """How pictures are drawn."""
-        self.pixels = AUTO
-        """One of `PIXELS`."""
-        self._left_pixels: str | None = None
-        """`pixels` before the user switched to characters with a key; None if the user has not."""
-        self.terminal_facts = TerminalFacts()
+        super().__init__(picture_mode)
         self.too_small: Size | None = None
         """Size of a terminal that is too small, else None."""
-        self._input = input_order.InputOrder(self, self._give, self._waits)
         for theme in (HIGH_CONTRAST, LIGHT):
             self.register_theme(theme)
         for name in UNUSED_THEMES:
@@ -223,9 +165,7 @@ class TerminalApp(HookedApp):
         self._take_theme()
         if theme.name != load_config().value(THEME):
             self.keep_setting(THEME, None if theme.name == OWN_THEME else theme.name)
-        for screen in self.screen_stack:
-            for view in screen.query(RowsView):
-                view.redraw()
+        self.redraw_pictures()
         self.call_later(self.action_redraw)
 
     async def on_event(self, event: events.Event) -> None:
@@ -237,16 +177,7 @@ class TerminalApp(HookedApp):
             if was != self.too_small:
                 # The layout may stay the same, and would not be drawn then.
                 self.call_later(self.action_redraw)
-        elif isinstance(event, (events.InputEvent, events.Paste)):
-            if not self._ignores(event):
-                await (self._input.take if SUPPORTED and not event.is_forwarded else self._give)(event)
-            return
         await super().on_event(event)
-
-    async def _give(self, event: events.Event) -> None:
-        """Handle what the user does; it may have had to wait for what came before."""
-        if not self._ignores(event):
-            await super().on_event(event)
 
     def _waits(self, event: events.Event) -> bool:
         """Return whether the topmost screen is still being opened, so that it would lose a key."""
@@ -256,7 +187,7 @@ class TerminalApp(HookedApp):
     def _ignores(self, event: events.Event) -> bool:
         """Return whether to ignore an event of the user: nothing can handle it, or its target is invisible or was just
         removed."""
-        if is_leaving(self):
+        if super()._ignores(event):
             return True
         if not isinstance(event, events.MouseEvent):
             return False
@@ -280,21 +211,14 @@ class TerminalApp(HookedApp):
         return isinstance(top, ClosesOnce) and not top.is_ready
 
     def show_update(self, screen: Screen[Any], update: object) -> None:
-        """Send what has changed; nothing is displayed where nothing has."""
-        codes: str | None = None
+        """Send what has changed, or the message that the terminal is too small."""
         if isinstance(screen, ClosesOnce) and screen.is_closed:
             # A screen that was closed while being mounted still tries to draw itself.
             update = None
         elif self.too_small and update is not None and SUPPORTED:
             update = Codes(_message_codes(self.too_small))
             self.frame_buffer.forget()
-        elif isinstance(update, CompositorUpdate) and self.is_writing:
-            codes = self.frame_buffer.codes(update, self.text_mode)
-            if codes is not None:
-                update = Codes(codes) if codes else None
         super().show_update(screen, update)
-        if codes:
-            self.painted(len(codes))
 
     def keep_setting(self, path: str, value: Scalar | None) -> None:
         """Write a setting that applies already to `config.toml`; None for the usual one."""
@@ -304,22 +228,6 @@ class TerminalApp(HookedApp):
             save_setting(SETTINGS[path], value)
         except ConfigError as error:
             self.notify(f"The choice applies to this session only: {error}", severity="warning", markup=False)
-
-    def choose_cells(self, chosen: str) -> None:
-        """Draw every picture with another set of glyphs; `AUTO` or the name of a set."""
-        self.picture_mode.choose(chosen)
-        self._choose_graphics()
-        self.redraw_pictures()
-
-    def choose_pixels(self, pixels: str) -> None:
-        """Draw every picture with real pixels or with glyphs; one of `PIXELS`."""
-        self.pixels, self._left_pixels = pixels, None
-        self._choose_graphics()
-
-    @property
-    def has_pixels(self) -> bool:
-        """Whether pictures are drawn with pixels, or were until the user switched to characters."""
-        return self.picture_mode.graphics is not None or self._left_pixels is not None
 
     def action_switch_pixels(self) -> None:
         """Draw pictures with characters in place of pixels, or again with pixels; for this session."""
@@ -334,80 +242,6 @@ class TerminalApp(HookedApp):
         else:
             self.notify("This terminal draws no pixels, as far as it tells", markup=False)
 
-    def painted(self, size: int) -> None:
-        """Called with the number of characters after an update was sent to the terminal."""
-
-    @property
-    def text_mode(self) -> TextMode:
-        """What the terminal supports."""
-        is_ascii = self.picture_mode.cells is CellSet.ASCII
-        return TextMode(color_depth(self), is_ascii, has_italics=self._has_italics)
-
-    @on(events.DescendantFocus)
-    def still_cursor(self, event: events.DescendantFocus) -> None:
-        """Stop the cursor from blinking: an idle app sends nothing."""
-        if hasattr(event.widget, "cursor_blink"):
-            event.widget.cursor_blink = False
-
-    def on_resize(self, event: events.Resize) -> None:
-        """Send everything again: a resized terminal has cut or moved its content."""
-        self.frame_buffer.forget()
-        self._choose_graphics()
-        if self.terminal_facts.attributes and self.own_driver is not None:
-            # Zoom changes the size of the terminal and of its cells.
-            AnswerParser.is_asked = True
-            self.own_driver.write(CELL_SIZE_QUERY + ATTRIBUTES_QUERY)
-
-    def on_ready(self) -> None:
-        if self.is_headless:
-            return
-        loop = asyncio.get_running_loop()
-        for number in (signal.SIGTERM, signal.SIGHUP):
-            # The exit code that a shell shows for a program ended by the signal.
-            loop.add_signal_handler(number, partial(self.exit, return_code=SIGNALLED + number))
-        if isinstance(self.own_driver, TerminalDriver):
-            loop.add_signal_handler(signal.SIGTSTP, self.action_suspend_process)
-
-    def on_terminal_answered(self, event: TerminalAnswered) -> None:
-        """Draw with pixels if the terminal can; ask a terminal that may know kitty's protocol for it."""
-        if event.facts.asks_for_kitty and self.own_driver is not None:
-            AnswerParser.is_asked = True
-            self.own_driver.write(KITTY_QUESTIONS)
-        drew = self.picture_mode.graphics
-        self.terminal_facts = event.facts
-        self._choose_graphics()
-        if event.facts.kitty_error and drew is not None and self.picture_mode.graphics is None:
-            self.notify(
-                f"The terminal cannot show a picture ({event.facts.kitty_error}): drawn with characters instead",
-                severity="warning", markup=False,
-            )  # fmt: skip
-
-    def _choose_graphics(self) -> None:
-        size_px = cell_size_px(self.own_driver.fileno) if isinstance(self.own_driver, TerminalDriver) else None
-        # Who has chosen glyphs wants to see them; pixels have colours.
-        is_without = self.picture_mode.chosen != AUTO or self.no_color
-        wanted = NO_PIXELS if self.pixels == AUTO and is_without else self.pixels
-        found = graphics_of(self.terminal_facts, wanted, size_px) if SUPPORTED else None
-        if found != self.picture_mode.graphics:
-            self.picture_mode.graphics = found
-            self.redraw_pictures()
-            self.call_after_refresh(self.situation_changed)
-
-    def situation_changed(self) -> None:
-        """Called when other keys are available."""
-
-    def redraw_pictures(self) -> None:
-        """Draw all pictures again: with pixels or glyphs, as `picture_mode` says now."""
-        for screen in self.screen_stack:
-            for view in screen.query(RowsView):
-                view.redraw()
-
-    @on(Driver.SignalResume)
-    def action_redraw(self) -> None:
-        """Redraw the whole screen: something else has written over it, such as the shell while the app was stopped."""
-        self.frame_buffer.forget()
-        self.refresh(layout=True)
-
     def action_save_screen(self) -> None:
         """Save the whole screen as SVG and PNG, in the working directory."""
 
@@ -419,62 +253,23 @@ class TerminalApp(HookedApp):
         work = partial(save_screenshot, screen_cells(self), Path.cwd())
         background.run(self, work, saved, lambda error: self.notify(str(error), severity="error", markup=False))
 
-    def action_suspend_process(self) -> None:
-        if isinstance(self.own_driver, TerminalDriver):
-            self.suspending()
-            if not self.own_driver.stop_as_job():
-                self.notify("tuisim cannot be suspended: no shell could resume it", markup=False)
-        elif in_browser():
-            self.notify("tuisim cannot be suspended in a browser", markup=False)
-        else:
-            super().action_suspend_process()
-
     def run_in_terminal(self, command: Sequence[str]) -> None:
         """Give the terminal to another program until it ends.
 
         Raises:
             TuisimError: the app has no terminal to give, or the program cannot start.
         """
-        if not isinstance(self.own_driver, TerminalDriver):
+        try:
+            is_lent = self.lend_terminal(command)
+        except OSError as error:
+            raise TuisimError(f"{command[0]} cannot start: {error.strerror or error}") from None
+        if not is_lent:
             raise TuisimError(f"{command[0]} needs a terminal, and here is none to give it, as in a browser")
-        self.suspending()
-        with self.own_driver.lent():
-            try:
-                run_in_foreground(command)
-            except OSError as error:
-                raise TuisimError(f"{command[0]} cannot start: {error.strerror or error}") from None
-
-    def suspending(self) -> None:
-        """Called before the app stops, or gives its terminal away."""
 
     def action_command_palette(self) -> None:
         """Open the command palette, unless it or a dialog is open: its commands would open dialogs above that one."""
         if self.use_command_palette and not isinstance(self.screen, (Dialog, Palette)) and not is_leaving(self):
             self.push_screen(Palette())
-
-    def is_harmless(self, error: Exception) -> bool:
-        """Return whether an error only comes from the shutdown.
-
-        Nothing can be mounted then, what was being mounted is removed before it is complete, and at its end there is no
-        screen.
-        """
-        cause = error.error if isinstance(error, WorkerFailed) else error
-        return is_leaving(self) and isinstance(cause, (WidgetError, NoMatches, ScreenStackError))
-
-
-mend(input_order.end_messages)
-
-
-def _driver_class() -> type[Driver] | None:
-    """Return the driver for what shows the app: a browser or a terminal; None for Textual's own."""
-    if not SUPPORTED:
-        return None
-    if not in_browser():
-        return TerminalDriver
-    # Most apps run in a terminal.
-    from tuisim.terminal.browser_driver import BrowserDriver
-
-    return BrowserDriver
 
 
 def picture_mode_at_start(cells: str | None, colors: str) -> PictureMode:

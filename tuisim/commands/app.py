@@ -186,7 +186,7 @@ def has_terminal() -> bool:
 
 
 def _in_browser() -> bool:
-    from tuisim.terminal.environment import in_browser
+    from tuisim.terminal.probe import in_browser
 
     return in_browser()
 

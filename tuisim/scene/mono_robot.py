@@ -10,7 +10,7 @@ from tuisim.core.geometry import Pose
 from tuisim.core.outline import RobotOutline
 from tuisim.scene.robot import CLEARED, RobotColors, draw_robot
 from tuisim.scene.view import Viewport
-from tuisim.terminal.mono import sign_cell
+from tuisim.terminal.cells import sign_cell
 from tuisim.terminal.pixels import Pixels
 
 _BODY = "&"

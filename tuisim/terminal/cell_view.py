@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -20,19 +19,24 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
-from tuisim.terminal.cells import MONO, ColorMode, changed_cells, changed_runs, reduce_cells, reduce_pixels
+from tuisim.terminal.cells import (
+    MONO,
+    CellRun,
+    ColorMode,
+    changed_cells,
+    changed_runs,
+    mono_cells,
+    reduce_cells,
+    reduce_pixels,
+)
 from tuisim.terminal.fitted_cells import CellIndex, Cells, all_cells, fit_cells
 from tuisim.terminal.glyphs import GLYPHS, GlyphSet, glyph_set, half_block_of
-from tuisim.terminal.graphics.picture import Graphics, PictureCell, TilePicture
-from tuisim.terminal.mono import mono_cells
+from tuisim.terminal.picture import Graphics, PictureCell, TilePicture
 from tuisim.terminal.picture_mode import BLOCKS, PictureMode, Sharpness, color_depth, picture_mode_of
 from tuisim.terminal.picture_options import CellSet
-from tuisim.terminal.pixels import CellPoints
+from tuisim.terminal.pixels import CellPoints, Pixels, channels_of
 from tuisim.terminal.text_runs import Run, cut_line
 from tuisim.terminal.textual_internals import MadeOnDemand
-
-if TYPE_CHECKING:
-    from tuisim.terminal.pixels import Pixels
 
 _TEXT_GAP = 8
 """This many unchanged characters cost less than a new cursor position and style."""
@@ -156,8 +160,8 @@ class PixelView(RowsView):
         else:
             self._refresh_runs(runs)
 
-    def _refresh_runs(self, runs: Iterable[tuple[int, int, int]]) -> None:
-        """Draw cells anew, as (row, first column, number of cells)."""
+    def _refresh_runs(self, runs: Iterable[CellRun]) -> None:
+        """Draw some cells anew."""
         regions = []
         for row, col, length in runs:
             self._strips[row] = None
@@ -395,12 +399,8 @@ def _changes(before: Sequence[Run], now: Sequence[Run]) -> list[tuple[int, int]]
 
 @lru_cache(maxsize=8192)
 def _segment(cell: int) -> Segment:
-    fore, back = Color.from_rgb(*_channels(cell >> 24 & 0xFFFFFF)), Color.from_rgb(*_channels(cell & 0xFFFFFF))
+    fore, back = Color.from_rgb(*channels_of(cell >> 24)), Color.from_rgb(*channels_of(cell))
     return Segment(GLYPHS[cell >> 48] if fore != back else " ", Style(color=fore, bgcolor=back))
-
-
-def _channels(rgb: int) -> tuple[int, int, int]:
-    return rgb >> 16, rgb >> 8 & 255, rgb & 255
 
 
 class LazyStrip(MadeOnDemand):

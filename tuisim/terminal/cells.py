@@ -1,19 +1,21 @@
-"""Cells: the difference between two frames, and terminals' colours."""
+"""Cells: the difference between two frames, and a picture in the colours of a terminal, or in dots or signs without."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.terminal.fitted_cells import CellIndex, Cells, packed_rgb
-from tuisim.terminal.glyphs import GlyphSet
+from tuisim.terminal.fitted_cells import CellIndex, Cells
+from tuisim.terminal.glyphs import BRAILLE_FROM, Covered, GlyphSet, nearest_signs, sign_number
+from tuisim.terminal.picture_options import CellSet
+from tuisim.terminal.pixels import Pixels, channels_of, packed_rgb
 
-if TYPE_CHECKING:
-    from tuisim.terminal.pixels import Pixels
+CellRun: TypeAlias = tuple[int, int, int]
+"""Row, first column and number of some cells; several are in order from the top left."""
 
 MERGE_GAP = 3
 """Unchanged cells between two runs that are cheaper to send again than to jump over."""
@@ -37,18 +39,20 @@ def _words(picture: Pixels, word: type[np.unsignedinteger]) -> npt.NDArray[np.un
     return np.ascontiguousarray(picture).ravel().view(word)
 
 
-def changed_runs(old: Cells, new: Cells, gap: int = MERGE_GAP) -> list[tuple[int, int, int]]:
+def changed_runs(old: Cells, new: Cells, gap: int = MERGE_GAP) -> list[CellRun]:
     """Return the runs of cells that differ between two frames of the same shape.
 
     Args:
         old: The frame on the screen.
         new: The next frame.
         gap: Runs with fewer unchanged cells than this between them are joined.
-
-    Returns:
-        (row, first column, number of cells), from the top left.
     """
-    rows, cols = np.nonzero(old != new)
+    return runs_of(old != new, gap)
+
+
+def runs_of(changed: npt.NDArray[np.bool_], gap: int = 1) -> list[CellRun]:
+    """Return the runs of some cells, shape (rows, columns); those with fewer than `gap` cells between them are one."""
+    rows, cols = np.nonzero(changed)
     if not len(rows):
         return []
     # A run ends where the row changes or the next changed cell is too far away.
@@ -159,9 +163,23 @@ def _dithered_8(pixels: Pixels, thresholds: npt.NDArray[np.float64], paleness: n
     return np.where((paleness > 0.75)[:, None], dithered, _nearest(pixels, PALETTE_8)).astype(np.uint8)
 
 
+@lru_cache(maxsize=8192)
+def color_codes(rgb: int, depth: int) -> tuple[str, str]:
+    """Return the codes that set a colour, 0xRRGGBB, as foreground and as background."""
+    if depth >= TRUECOLOR:
+        channels = "{};{};{}".format(*channels_of(rgb))
+        return f"38;2;{channels}", f"48;2;{channels}"
+    number = sgr_index(rgb, depth)
+    if depth >= PALETTE_256:
+        return f"38;5;{number}", f"48;5;{number}"
+    # The bright ones are 90 to 97 and 100 to 107.
+    shade = number if number < PALETTE_8 else number + 52
+    return str(30 + shade), str(40 + shade)
+
+
 def sgr_index(rgb: int, depth: int) -> int:
     """Return the palette number nearest to 0xRRGGBB: 16 to 255, or 0 to 15 for a depth of 16."""
-    color = np.array([[rgb >> 16, rgb >> 8 & 255, rgb & 255]], np.int32)
+    color = np.array([channels_of(rgb)], np.int32)
     return int((_nearest_256(color) if depth >= PALETTE_256 else _nearest_16(color, depth))[0])
 
 
@@ -188,3 +206,43 @@ def _nearest_16(pixels: npt.NDArray[np.int32], depth: int = PALETTE_16) -> npt.N
     errors = ((pixels[:, None, :] - _STANDARD[:depth]) ** 2) @ np.array([3, 5, 2])
     nearest: npt.NDArray[np.intp] = errors.argmin(axis=1)
     return nearest
+
+
+_INK_GREYS, _DARKNESS = (0, 128, 211, 220, 255), (1.0, 0.5, 0.25, 0.125, 0.0)
+"""Two, four and eight times the ink for the darker greys of the mats, which are hardly darker than each other."""
+_THRESHOLDS = (np.array([0, 4, 6, 2, 1, 5, 7, 3], np.float32) + 0.5) / 8
+"""The order in which the points of a cell get dots: each dot far from the last one."""
+_RAMP = " .:-+xoO8@"
+_EVEN = 0.13
+"""Points whose darkness differs by less than this are shown by a sign for their mean."""
+_INK_ON_PAPER = 0xFFFFFF << 24
+"""Light dots on black where a picture needs colours after all, as in a screenshot."""
+
+
+def darkness(points: npt.NDArray[np.uint8]) -> Covered:
+    """Return how dark colours are, shape (…, 3), from 0 for white to 1 for black."""
+    found: Covered = np.interp(points @ _LUMA, _INK_GREYS, _DARKNESS).astype(np.float32)
+    return found
+
+
+def mono_cells(picture: Pixels, glyphs: GlyphSet, at: CellIndex, cell_set: CellSet) -> Cells:
+    """Return some cells of a picture as dots or signs, shape (n,)."""
+    rows, cols = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
+    points = picture.reshape(rows, glyphs.rows, cols, glyphs.cols, 3).transpose(0, 2, 1, 3, 4)[at]
+    ink = darkness(points.reshape(len(points), glyphs.rows * glyphs.cols, 3))
+    if cell_set is CellSet.BRAILLE:
+        dots = ink > _THRESHOLDS
+        patterns = (dots << np.arange(dots.shape[1])).sum(axis=1)
+        numbers = np.where(patterns == 0, sign_number(" "), BRAILLE_FROM + patterns)
+    else:
+        ramp = np.array([sign_number(sign) for sign in _RAMP])
+        even = np.ptp(ink, axis=1) < _EVEN
+        steps = np.rint(ink.mean(axis=1) * (len(_RAMP) - 1)).astype(np.intp)
+        numbers = np.where(even, ramp[steps], nearest_signs(ink))
+    cells: Cells = numbers.astype(np.int64) << 48 | _INK_ON_PAPER
+    return cells
+
+
+def sign_cell(sign: str) -> int:
+    """Return the cell that shows a sign."""
+    return sign_number(sign) << 48 | _INK_ON_PAPER

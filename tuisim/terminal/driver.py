@@ -14,14 +14,16 @@ from typing import TextIO
 
 from textual.app import App
 
-from tuisim.terminal.graphics import kitty
+from tuisim.terminal import kitty
 from tuisim.terminal.picture_mode import picture_mode_of
 from tuisim.terminal.picture_options import Protocol
 from tuisim.terminal.probe import SILENT, take_typed
 from tuisim.terminal.queries import QUESTIONS, AnswerParser
 from tuisim.terminal.textual_internals import HookedLinuxDriver, app_of, is_leaving, parse_input_with
 
-_LOST = 128 + signal.SIGHUP
+SIGNALLED = 128
+"""A shell adds the number of a signal to it, for the exit code of a program that the signal has ended."""
+_LOST = SIGNALLED + signal.SIGHUP
 """The exit code of an app whose terminal is gone, as if the shell had told it."""
 
 

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from tuisim.terminal.glyphs import GlyphSet
-
-if TYPE_CHECKING:
-    from tuisim.terminal.pixels import Pixels
+from tuisim.terminal.pixels import Pixels, packed_rgb
 
 Cells = npt.NDArray[np.int64]
 """Shape (rows, columns): the glyph's number in `GLYPHS` in bits 48 to 62, the colour of the points that it covers in
@@ -109,12 +106,6 @@ def _best_glyphs(
     was_here = glyphs.numbers[kept] == before
     as_good = explained[kept, at] >= explained[best, at] - _KEPT_LAB * size
     return np.where(was_here & as_good, kept, best)
-
-
-def packed_rgb(colors: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
-    """Return 0xRRGGBB of colours of shape (3, …)."""
-    packed: npt.NDArray[np.int64] = colors[0] << 16 | colors[1] << 8 | colors[2]
-    return packed
 
 
 @lru_cache(maxsize=1)

@@ -20,9 +20,9 @@ from rich.style import Style
 from textual.strip import SGR_STYLES, Strip
 
 from tuisim.terminal.cell_view import CellStrip, JoinedStrip, PictureStrip
-from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR, sgr_index
+from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR, color_codes, sgr_index
 from tuisim.terminal.glyphs import GLYPHS
-from tuisim.terminal.graphics.picture import PictureCell, TilePicture
+from tuisim.terminal.picture import PictureCell, TilePicture
 from tuisim.terminal.textual_internals import ChopsUpdate, LayoutUpdate
 
 _SEEN_ON_BLANKS = frozenset({"4", "7", "9", "21", "51", "52", "53"})
@@ -173,27 +173,13 @@ def _image_cell(cell: int, depth: int) -> Cell:
     if depth == MONO:
         glyph = GLYPHS[cell >> 48]
         return glyph, CellLook((), "" if glyph == " " else "39")
-    fore, back = _rgb_codes(cell >> 24 & 0xFFFFFF, depth)[0], _rgb_codes(cell & 0xFFFFFF, depth)[1]
+    fore, back = color_codes(cell >> 24 & 0xFFFFFF, depth)[0], color_codes(cell & 0xFFFFFF, depth)[1]
     return (" ", CellLook((), "", back)) if _is_same(fore, back) else (GLYPHS[cell >> 48], CellLook((), fore, back))
 
 
 def _is_same(fore: str, back: str) -> bool:
     """Return whether the codes of a foreground and a background are those of one color."""
     return fore[1:] == back[1:] if ";" in fore else fore.isdigit() and str(int(fore) + 10) == back
-
-
-@lru_cache(maxsize=8192)
-def _rgb_codes(rgb: int, depth: int) -> tuple[str, str]:
-    """Return the codes that set a colour as foreground and as background."""
-    if depth >= TRUECOLOR:
-        channels = f"{rgb >> 16};{rgb >> 8 & 255};{rgb & 255}"
-        return f"38;2;{channels}", f"48;2;{channels}"
-    number = sgr_index(rgb, depth)
-    if depth >= PALETTE_256:
-        return f"38;5;{number}", f"48;5;{number}"
-    # The bright ones are 90 to 97 and 100 to 107.
-    shade = number if number < PALETTE_8 else number + 52
-    return str(30 + shade), str(40 + shade)
 
 
 @lru_cache(maxsize=4096)
@@ -258,11 +244,11 @@ def _color_codes(color: Color | None, depth: int) -> tuple[str, str]:
     if depth == PALETTE_8 and color.triplet is not None and sum(color.triplet) > _SEEN_ON_BLACK:
         # The nearest of so few is black too often, and black on black is nothing.
         number = sgr_index(int.from_bytes(color.triplet, "big"), depth) or 7
-        return str(30 + number), _rgb_codes(int.from_bytes(color.triplet, "big"), depth)[1]
+        return str(30 + number), color_codes(int.from_bytes(color.triplet, "big"), depth)[1]
     if color.triplet is not None and depth in (PALETTE_8, PALETTE_256):
         # The same reduction as in images; otherwise an image under a dialog would be resent in nearly identical
         # colours.
-        return _rgb_codes(int.from_bytes(color.triplet, "big"), depth)
+        return color_codes(int.from_bytes(color.triplet, "big"), depth)
     least = color.downgrade(_SYSTEMS[depth])
     return ";".join(least.get_ansi_codes()), ";".join(least.get_ansi_codes(foreground=False))
 

@@ -1,31 +1,33 @@
-"""How pictures are drawn on the terminal: with which glyphs, and how fine at the moment."""
+"""How pictures are drawn on the terminal: with which glyphs, colours or pixels, and how fine at the moment."""
 
 from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
+from typing import Protocol as TypingProtocol
 
 from textual import constants
 from textual.app import App
 from textual.timer import Timer
 from textual.widget import Widget
 
+from tuisim.terminal import kitty
 from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR
-from tuisim.terminal.environment import in_browser
-from tuisim.terminal.graphics.picture import Graphics
-from tuisim.terminal.picture_options import AUTO, CellSet
+from tuisim.terminal.picture import Graphics
+from tuisim.terminal.picture_options import AUTO, NO_PIXELS, CellSet, Protocol
 from tuisim.terminal.pixels import Rgb
-from tuisim.terminal.probe import best_cells, colors_without_asking
+from tuisim.terminal.probe import best_cells, colors_without_asking, in_browser
+from tuisim.terminal.queries import TerminalFacts
 from tuisim.terminal.textual_internals import SUPPORTED
 
 BLOCKS = frozenset({CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT})
 """The sets whose glyphs fill their cells."""
 
 
-class Recoloring(Protocol):
+class Recoloring(TypingProtocol):
     """Colours in place of an app's own ones, as of a theme."""
 
     def rgb(self, own: Rgb) -> Rgb:
@@ -119,6 +121,52 @@ def picture_mode_of(app: App[Any]) -> PictureMode:
     """Return how an app draws pictures."""
     found = getattr(app, "picture_mode", None)
     return found if isinstance(found, PictureMode) else PictureMode()
+
+
+INLINE_IMAGES: Mapping[str, str] = {
+    "iTerm2": "https://iterm2.com/documentation-images.html",
+    "WezTerm": "https://wezterm.org/imgcat.html",
+}
+"""Terminals that show inline images of iTerm2."""
+
+TMUX = "tmux"
+"""What tmux answers to XTVERSION."""
+
+DEFAULT_CELL_PX = (8, 16)
+"""Size of a cell if neither the terminal nor the kernel tells."""
+
+
+def graphics_of(facts: TerminalFacts, wanted: str, cell_px: tuple[int, int] | None) -> Graphics | None:
+    """Return how a terminal is drawn with pixels; None if it cannot, does not tell, or should not.
+
+    Args:
+        facts: What it has answered.
+        wanted: One of `PIXELS`.
+        cell_px: Width and height of a cell as the kernel knows them.
+    """
+    if wanted == NO_PIXELS:
+        return None
+    protocol = _protocol_of(facts) if wanted == AUTO else Protocol(wanted)
+    if protocol is Protocol.KITTY and facts.has_kitty_graphics is False:
+        # Its answer counts for more than a wish: the world would be black.
+        return None
+    # A terminal that scales its window, as on many laptops, draws in its own pixels, not the kernel's.
+    known_px = facts.cell_px or cell_px
+    if protocol is None or (protocol is Protocol.SIXEL and wanted == AUTO and known_px is None):
+        return None
+    return Graphics(protocol, known_px or DEFAULT_CELL_PX, in_tmux=facts.program == TMUX)
+
+
+def _protocol_of(facts: TerminalFacts) -> Protocol | None:
+    name = facts.program
+    if name == TMUX:
+        # Built with sixel, it says so whatever its own terminal can; elsewhere it shows frames with a text.
+        return None
+    if name in kitty.TERMINALS and facts.has_kitty_graphics:
+        return Protocol.KITTY
+    if name in INLINE_IMAGES:
+        return Protocol.ITERM
+    return Protocol.SIXEL if facts.has_sixel else None
 
 
 REFINE_S = 0.1

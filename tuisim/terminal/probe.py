@@ -1,4 +1,4 @@
-"""Which glyphs the terminal shows: what its environment says, and what it answers before the app starts.
+"""The terminal while no app draws on it: what it shows, by its environment and its answers, and its usual state.
 
 No terminal tells whether its font has a glyph. One that does not know a character drops it, as tmux 3.3a does, or draws
 a box. So fine glyphs are taken only from terminals that are known to draw them themselves, without a font.
@@ -10,16 +10,17 @@ import curses
 import os
 import re
 import select
+import subprocess
 import sys
 import termios
 import time
 import tty
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from tuisim.terminal.environment import has_all_colors, is_multiplexer
+from tuisim.terminal import kitty
 from tuisim.terminal.picture_options import AUTO, CellSet
 from tuisim.terminal.queries import (
     ANSWER,
@@ -28,6 +29,7 @@ from tuisim.terminal.queries import (
     NAME_QUERY,
     QUESTIONS,
     TerminalFacts,
+    cell_size_px,
     facts_in,
 )
 
@@ -130,6 +132,49 @@ def terminfo_has_colors(terminal: str) -> bool:
         return True
 
 
+_MULTIPLEXER = "screen"
+"""What TERM begins with in GNU screen, and in tmux unless it is told otherwise."""
+_TMUX_ANSWER_S = 1.0
+_ALL_COLORS = "RGB"
+"""The feature of a terminal with all colours, as tmux calls it."""
+
+
+def is_multiplexer(terminal: str) -> bool:
+    """Return whether a kind of terminal, as in TERM, is GNU screen, or tmux under that name.
+
+    It takes the code for italics for that of reverse video.
+    """
+    return terminal == _MULTIPLEXER or terminal.startswith((f"{_MULTIPLEXER}-", f"{_MULTIPLEXER}."))
+
+
+def has_all_colors(environment: Mapping[str, str]) -> bool:
+    """Return whether the multiplexer says that it shows all colours.
+
+    COLORTERM is no answer: it was inherited from the terminal around it. GNU screen before version 5 takes the numbers
+    of such a colour for blinking, underlined and coloured text, and has no way to be asked. tmux has; inside GNU screen
+    (STY) it may be the one around it.
+    """
+    if "TMUX" not in environment or "STY" in environment:
+        return False
+    command = ["tmux", "display-message", "-p", "#{client_termfeatures}"]
+    try:
+        done = subprocess.run(
+            command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=_TMUX_ANSWER_S, check=False
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+    return _ALL_COLORS in done.stdout.strip().split(",")
+
+
+WEB_DRIVER = "textual.drivers.web_driver:WebDriver"
+"""The driver that a server such as textual-serve names in the environment of an app in a browser."""
+
+
+def in_browser() -> bool:
+    """Return whether a server has started this process to show its app in a browser."""
+    return os.environ.get("TEXTUAL_DRIVER") == WEB_DRIVER
+
+
 def _may_be_utf8(environment: Mapping[str, str]) -> bool:
     """Return whether the locale is UTF-8, or not set at all, as in many containers."""
     locale = next((value for name in ("LC_ALL", "LC_CTYPE", "LANG") if (value := environment.get(name))), "")
@@ -167,11 +212,13 @@ _ROUND_TRIPS = 3
 class Answers:
     """What a terminal has answered to every question."""
 
-    facts: TerminalFacts
-    octant_cols: int | None
+    facts: TerminalFacts = field(default_factory=TerminalFacts)
+    octant_cols: int | None = None
     """By how many columns an octant moved the cursor; None if it did not answer."""
-    latency_s: float | None
+    latency_s: float | None = None
     """The shortest time that an answer took; None if there was none."""
+    cell_px: tuple[int, int] | None = None
+    """Width and height of a cell as the kernel knows them."""
 
 
 def ask_everything(fd: int) -> Answers:
@@ -186,16 +233,15 @@ def ask_everything(fd: int) -> Answers:
     before = termios.tcgetattr(fd)
     try:
         tty.setcbreak(fd, termios.TCSANOW)
-        position = _POSITION.search(_ask(fd, WIDTH_QUERY, _POSITION.search, fd))
-        _write(_CLEAR, fd)
+        octant_cols = _cols_in(_ask_width(fd, fd))
         latency_s = _latency_s(fd)
         if latency_s is None:
-            return Answers(TerminalFacts(), int(position[1]) - 1 if position else None, None)
+            return Answers(octant_cols=octant_cols)
         text = _ask(fd, QUESTIONS, _has_attributes, fd)
         facts = facts_in(text.decode("latin-1"))
         if facts.asks_for_kitty:
             text += _ask(fd, KITTY_QUESTIONS, _has_attributes, fd)
-        return Answers(facts_in(text.decode("latin-1")), int(position[1]) - 1 if position else None, latency_s)
+        return Answers(facts_in(text.decode("latin-1")), octant_cols, latency_s, cell_size_px(fd))
     finally:
         # Answers that come late are not typed into the shell.
         termios.tcsetattr(fd, termios.TCSAFLUSH, before)
@@ -209,6 +255,19 @@ def _latency_s(fd: int) -> float | None:
             break
         found.append(time.monotonic() - begun)
     return min(found, default=None)
+
+
+def _ask_width(fd: int, output: int | None = None) -> bytes:
+    """Print an octant, and return what is read with the position of the cursor after it."""
+    answer = _ask(fd, WIDTH_QUERY, _POSITION.search, output)
+    _write(_CLEAR, output)
+    return answer
+
+
+def _cols_in(answer: bytes) -> int | None:
+    """Return by how many columns an octant moved the cursor, if that was answered."""
+    position = _POSITION.search(answer)
+    return int(position[1]) - 1 if position else None
 
 
 def _has_attributes(answer: bytes) -> bool:
@@ -225,9 +284,8 @@ def _asked() -> CellSet:
     before, position = termios.tcgetattr(fd), b""
     try:
         tty.setcbreak(fd, termios.TCSANOW)
-        position = _ask(fd, WIDTH_QUERY, _POSITION.search)
-        _write(_CLEAR)
-        cols = int(found[1]) - 1 if (found := _POSITION.search(position)) else None
+        position = _ask_width(fd)
+        cols = _cols_in(position)
         if cols != 1:
             return cells_of("", cols)
         answers = _ask(fd, NAME_QUERY + ATTRIBUTES_QUERY, _has_attributes)
@@ -269,3 +327,36 @@ def _ask(fd: int, query: str, is_answered: Callable[[bytes], object], output: in
 def _write(text: str, output: int | None = None) -> None:
     with suppress(OSError):
         os.write(sys.stdout.fileno() if output is None else output, text.encode())
+
+
+_OFF = "".join(f"\x1b[?{mode}l" for mode in (1000, 1002, 1003, 1015, 1006, 1016, 1004, 2004, 2026, 2048))
+"""Mouse, focus, bracketed paste, synchronized output and reports of the size."""
+RESTORING = f"\x1b[<u{_OFF}\x1b[?1049l\x1b[?7h\x1b[?25h\x1b[0m\x1b(B\x0f\r"
+"""Ends the keyboard protocol of kitty on the screen of the app, then that screen; lines wrap, the cursor is visible."""
+
+
+def restore_terminal(fd: int, term: str) -> None:
+    """Undo what the app, or another program that was killed, has set.
+
+    Args:
+        fd: The terminal, open for reading and writing.
+        term: The variable TERM.
+
+    Raises:
+        OSError: the terminal is gone.
+    """
+    # Only where they are not shown as text: most terminals ignore what they do not know.
+    os.write(fd, (RESTORING if term in SILENT else RESTORING + kitty.DELETE_ALL).encode())
+    with suppress(termios.error):
+        attributes = termios.tcgetattr(fd)
+        attributes[:4] = _sane(*attributes[:4])
+        termios.tcsetattr(fd, termios.TCSAFLUSH, attributes)
+
+
+def _sane(iflag: int, oflag: int, cflag: int, lflag: int) -> list[int]:
+    """Return the modes of a terminal with what `stty sane` switches on, as far as apps change it."""
+    iflag = (iflag | termios.BRKINT | termios.ICRNL | termios.IXON | termios.IMAXBEL) & ~(termios.INLCR | termios.IGNCR)
+    oflag |= termios.OPOST | termios.ONLCR
+    lflag |= termios.ISIG | termios.ICANON | termios.IEXTEN
+    lflag |= termios.ECHO | termios.ECHOE | termios.ECHOK | termios.ECHOCTL | termios.ECHOKE
+    return [iflag, oflag, cflag, lflag]

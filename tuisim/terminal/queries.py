@@ -17,7 +17,7 @@ from typing import ClassVar
 
 from textual.message import Message
 
-from tuisim.terminal.graphics import kitty
+from tuisim.terminal import kitty
 from tuisim.terminal.textual_internals import XTermParser
 
 NAME_QUERY = "\x1b[>0q"

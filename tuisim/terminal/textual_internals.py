@@ -11,11 +11,13 @@ import re
 from abc import abstractmethod
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, Generic, Literal, TextIO, TypeVar, cast
 
 import textual
 from rich.console import Console, ConsoleRenderable, RichCast
 from rich.segment import Segment
+from textual import keys as textual_keys
 from textual import screen as textual_screen
 from textual.app import App
 from textual.binding import BindingsMap
@@ -88,13 +90,18 @@ _USED: Mapping[type, tuple[str, ...]] = {
     XTermParser: ("feed", "tick"),
 }  # fmt: skip
 """The names by class: methods, and attributes that its `__init__` sets."""
+_GLOBALS: Sequence[tuple[ModuleType, str]] = (
+    (linux_driver, "XTermParser"), (linux_driver, "getincrementaldecoder"), (textual_keys, "_character_to_key"),
+)  # fmt: skip
+"""Names in modules."""
 
 
 def missing_names() -> list[str]:
     """Return which names the Textual that is installed does not have, such as `App._display`."""
     found = [f"{owner.__name__}.{name}" for owner, names in _USED.items() for name in names if not _has(owner, name)]
-    globals_of = {"XTermParser", "getincrementaldecoder"}
-    return [*found, *(f"linux_driver.{name}" for name in sorted(globals_of) if not hasattr(linux_driver, name))]
+    # Modules are named without the packages that they are in.
+    lacking = [f"{module.__name__.rpartition('.')[2]}.{name}" for module, name in _GLOBALS if not hasattr(module, name)]
+    return [*found, *lacking]
 
 
 def _has(owner: type, name: str) -> bool:
@@ -330,6 +337,12 @@ def text_selection(widget: Widget) -> Selection | None:
     """Return what is selected of a widget; nothing in a screen without styles: it is not drawn yet, or is gone."""
     screen = widget.screen
     return screen.selections.get(widget) if "screen--selection" in screen._component_styles else None
+
+
+def key_of_character(character: str) -> str:
+    """Return the name of the key that types a character, such as `question_mark`; itself if that is not known."""
+    name_of = getattr(textual_keys, "_character_to_key", str)
+    return str(name_of(character))
 
 
 def columns_to_tab_stop(area: TextArea) -> int:

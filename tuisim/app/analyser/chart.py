@@ -18,7 +18,7 @@ from tuisim.charts.canvas import BRAILLE, xy_lines
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.charts.traces import Traces
 from tuisim.terminal.cell_view import LinesPanel
-from tuisim.terminal.graphics.picture import MOST_POINTS
+from tuisim.terminal.picture import MOST_POINTS
 from tuisim.terminal.picture_mode import shows_ascii
 from tuisim.terminal.text_runs import Run
 

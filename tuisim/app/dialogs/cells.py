@@ -14,7 +14,6 @@ from textual.widgets.option_list import Option
 from tuisim.app.dialogs.chooser import ListDialog
 from tuisim.app.dialogs.dialog import name_and_title
 from tuisim.terminal.cell_view import PixelView
-from tuisim.terminal.glyphs import glyph_set
 from tuisim.terminal.picture_options import AUTO, CellSet
 from tuisim.terminal.pixels import Pixels
 
@@ -86,9 +85,9 @@ class _Card(PixelView):
 
     def on_resize(self) -> None:
         """Draw it for the current size."""
-        glyphs = glyph_set(self.cell_set)
+        cell = self.cell_for(None)
         if self.size.width and self.size.height:
-            self.set_fine_picture(test_card(self.size.width, self.size.height, (glyphs.cols, glyphs.rows)))
+            self.set_fine_picture(test_card(self.size.width, self.size.height, (cell.cols, cell.rows)))
 
 
 class CellsCard(ListDialog):

@@ -19,7 +19,7 @@ from tuisim.config.folders import user_path
 from tuisim.errors import ConfigError, TuisimError, shortened
 from tuisim.logs.export import LISTED, check_target, export_samples, export_telemetry, files_in_words
 from tuisim.runs.store import RunStore
-from tuisim.terminal.environment import offer
+from tuisim.terminal.app import offer
 
 
 def typed_path(text: str) -> Path:

@@ -123,7 +123,7 @@ def _terminal() -> Iterator[int | None]:
 
 def _restore() -> None:
     # On demand: this and the report are all that the command needs of the app.
-    from tuisim.terminal.restore import restore_terminal
+    from tuisim.terminal.probe import restore_terminal
 
     with _terminal() as fd:
         if fd is None:
@@ -143,7 +143,7 @@ def _terminal_findings(environment: Mapping[str, str]) -> list[Finding]:
 def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) -> list[Finding]:
     import termios
 
-    from tuisim.terminal.graphics.choice import graphics_of
+    from tuisim.terminal.picture_mode import graphics_of
     from tuisim.terminal.picture_options import AUTO, NO_PIXELS
     from tuisim.terminal.probe import (
         SILENT,
@@ -153,10 +153,9 @@ def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) ->
         cells_without_asking,
         first_environment,
     )
-    from tuisim.terminal.queries import TerminalFacts, cell_size_px
 
     term = environment.get("TERM", "")
-    answers = Answers(TerminalFacts(), None, None)
+    answers = Answers()
     if term not in SILENT:
         try:
             answers = ask_everything(fd)
@@ -165,7 +164,7 @@ def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) ->
     has_colors = _colors_without_asking(environment) != "none"
     cells = cells_without_asking({**first_environment(), "TERM": term}, has_colors=has_colors)
     limit = "" if cells_without_asking({**first_environment(), "TERM": "xterm"}) is cells else term
-    graphics = graphics_of(answers.facts, AUTO if has_colors else NO_PIXELS, cell_size_px(fd))
+    graphics = graphics_of(answers.facts, AUTO if has_colors else NO_PIXELS, answers.cell_px)
     size = os.get_terminal_size(fd)
     return [
         diagnosis.terminal_finding(answers.facts.name, term, is_remote=is_remote),

@@ -15,7 +15,7 @@ from tuisim.app import background
 from tuisim.app.analyser.panes import PANES, pane_frame
 from tuisim.app.dialogs.save import SaveDialog
 from tuisim.errors import counted
-from tuisim.terminal.environment import offer
+from tuisim.terminal.app import offer
 
 if TYPE_CHECKING:
     import pandas as pd

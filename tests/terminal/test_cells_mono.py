@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tuisim.terminal.cells import mono_cells
 from tuisim.terminal.fitted_cells import all_cells
 from tuisim.terminal.glyphs import GLYPHS, glyph_set
-from tuisim.terminal.mono import mono_cells
 from tuisim.terminal.picture_options import CellSet
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
-from tuisim.terminal.graphics import kitty
+from tuisim.terminal import kitty
 
 Pixels = npt.NDArray[np.uint8]
 

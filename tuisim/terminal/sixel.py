@@ -5,14 +5,10 @@ Reference: DEC, VT330/VT340 Programmer Reference Manual, volume 2 (Graphics Prog
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import numpy.typing as npt
 
-if TYPE_CHECKING:
-    from tuisim.terminal.pixels import Pixels
-
+from tuisim.terminal.pixels import Pixels, channels_of
 
 BAND_PX = 6
 """A character stands for this many pixels, one below the other."""
@@ -47,7 +43,7 @@ def _palette(picture: Pixels) -> tuple[list[tuple[int, ...]], npt.NDArray[np.int
     found, numbers = np.unique(packed, return_inverse=True)
     if len(found) > MOST_COLORS:
         return _reduced(picture)
-    return [(color >> 16, color >> 8 & 255, color & 255) for color in found.tolist()], numbers.reshape(packed.shape)
+    return [channels_of(color) for color in found.tolist()], numbers.reshape(packed.shape)
 
 
 def _reduced(picture: Pixels) -> tuple[list[tuple[int, ...]], npt.NDArray[np.intp]]:

@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from tests.terminal.graphics.decoder import PixelTerminal
-from tuisim.terminal.graphics import kitty, sixel
-from tuisim.terminal.graphics.picture import Graphics, Rectangle, TilePicture, rectangles
+from tests.terminal.decoder import PixelTerminal
+from tuisim.terminal import kitty, sixel
+from tuisim.terminal.picture import Graphics, Rectangle, TilePicture, rectangles
 from tuisim.terminal.picture_options import Protocol
 
 ROWS, COLS = 11, 21

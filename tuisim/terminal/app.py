@@ -1,0 +1,264 @@
+"""Base of an app that shares a terminal well: it sends only changes, and is suspended, resumed and ended cleanly."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import re
+import signal
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from rich.cells import cell_len
+from rich.segment import Segment
+from textual import events, on
+from textual.app import App, ScreenStackError
+from textual.color import Color
+from textual.css.query import NoMatches
+from textual.driver import Driver
+from textual.filter import LineFilter
+from textual.screen import Screen
+from textual.widget import WidgetError
+from textual.worker import WorkerFailed
+
+from tuisim.terminal import input_order
+from tuisim.terminal.cell_view import RowsView
+from tuisim.terminal.driver import SIGNALLED, TerminalDriver, run_in_foreground
+from tuisim.terminal.frame_buffer import FrameBuffer, TextMode
+from tuisim.terminal.picture_mode import PictureMode, color_depth, graphics_of
+from tuisim.terminal.picture_options import AUTO, NO_PIXELS, CellSet
+from tuisim.terminal.probe import in_browser, is_multiplexer
+from tuisim.terminal.queries import (
+    ATTRIBUTES_QUERY,
+    CELL_SIZE_QUERY,
+    KITTY_QUESTIONS,
+    AnswerParser,
+    TerminalAnswered,
+    TerminalFacts,
+    cell_size_px,
+)
+from tuisim.terminal.textual_internals import SUPPORTED, Codes, CompositorUpdate, HookedApp, is_leaving, mend
+
+_CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
+
+
+class Sanitize(LineFilter):
+    """Removes control characters from everything that is drawn."""
+
+    def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
+        """Return the segments, with the same width as before."""
+        if all(segment.text.isprintable() or segment.control for segment in segments):
+            return segments
+        return [
+            segment if segment.control else Segment(_CONTROLS.sub(_blank, segment.text), segment.style)
+            for segment in segments
+        ]
+
+
+def _blank(match: re.Match[str]) -> str:
+    return " " * cell_len(match[0])
+
+
+def offer(app: App[Any], *files: Path) -> None:
+    """Let the browser, if there is one, download files that have been written: it may be on another machine."""
+    if app.is_web:
+        for file in files:
+            app.deliver_binary(file)
+
+
+class BufferedApp(HookedApp):
+    """An app that restores the terminal, even when it is stopped or terminated from outside."""
+
+    def __init__(self, picture_mode: PictureMode | None = None) -> None:
+        super().__init__(driver_class=_driver_class())
+        self.line_filters = [*self.line_filters, Sanitize()]
+        # They take the code for italics for that of reverse video.
+        self._has_italics = not is_multiplexer(os.environ.get("TERM", ""))
+        self.frame_buffer = FrameBuffer()
+        self.picture_mode = picture_mode or PictureMode()
+        """How pictures are drawn."""
+        self.pixels = AUTO
+        """One of `PIXELS`."""
+        self._left_pixels: str | None = None
+        """`pixels` before the user switched to characters with a key; None if the user has not."""
+        self.terminal_facts = TerminalFacts()
+        self._input = input_order.InputOrder(self, self._give, self._waits)
+
+    async def on_event(self, event: events.Event) -> None:
+        """Give out what the user does in the order of its arrival."""
+        if isinstance(event, (events.InputEvent, events.Paste)):
+            if not self._ignores(event):
+                await (self._input.take if SUPPORTED and not event.is_forwarded else self._give)(event)
+            return
+        await super().on_event(event)
+
+    async def _give(self, event: events.Event) -> None:
+        """Handle what the user does; it may have had to wait for what came before."""
+        if not self._ignores(event):
+            await super().on_event(event)
+
+    def _waits(self, event: events.Event) -> bool:
+        """Return whether what an event of the user is meant for is not there yet."""
+        return False
+
+    def _ignores(self, event: events.Event) -> bool:
+        """Return whether to ignore an event of the user: nothing can handle it."""
+        return is_leaving(self)
+
+    @property
+    def is_typed_into(self) -> bool:
+        """Whether every letter is typed into the widget that has the focus."""
+        return self.focused is not None and input_order.takes_letters(self.focused)
+
+    def show_update(self, screen: Screen[Any], update: object) -> None:
+        """Send what has changed; nothing is displayed where nothing has."""
+        codes: str | None = None
+        if isinstance(update, CompositorUpdate) and not isinstance(update, Codes) and self.is_writing:
+            codes = self.frame_buffer.codes(update, self.text_mode)
+            if codes is not None:
+                update = Codes(codes) if codes else None
+        super().show_update(screen, update)
+        if codes:
+            self.painted(len(codes))
+
+    def choose_cells(self, chosen: str) -> None:
+        """Draw every picture with another set of glyphs; `AUTO` or the name of a set."""
+        self.picture_mode.choose(chosen)
+        self._choose_graphics()
+        self.redraw_pictures()
+
+    def choose_pixels(self, pixels: str) -> None:
+        """Draw every picture with real pixels or with glyphs; one of `PIXELS`."""
+        self.pixels, self._left_pixels = pixels, None
+        self._choose_graphics()
+
+    @property
+    def has_pixels(self) -> bool:
+        """Whether pictures are drawn with pixels, or were until the user switched to characters."""
+        return self.picture_mode.graphics is not None or self._left_pixels is not None
+
+    def painted(self, size: int) -> None:
+        """Called with the number of characters after an update was sent to the terminal."""
+
+    @property
+    def text_mode(self) -> TextMode:
+        """What the terminal supports."""
+        is_ascii = self.picture_mode.cells is CellSet.ASCII
+        return TextMode(color_depth(self), is_ascii, has_italics=self._has_italics)
+
+    @on(events.DescendantFocus)
+    def still_cursor(self, event: events.DescendantFocus) -> None:
+        """Stop the cursor from blinking: an idle app sends nothing."""
+        if hasattr(event.widget, "cursor_blink"):
+            event.widget.cursor_blink = False
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Send everything again: a resized terminal has cut or moved its content."""
+        self.frame_buffer.forget()
+        self._choose_graphics()
+        if self.terminal_facts.attributes and self.own_driver is not None:
+            # Zoom changes the size of the terminal and of its cells.
+            AnswerParser.is_asked = True
+            self.own_driver.write(CELL_SIZE_QUERY + ATTRIBUTES_QUERY)
+
+    def on_ready(self) -> None:
+        if self.is_headless:
+            return
+        loop = asyncio.get_running_loop()
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            # The exit code that a shell shows for a program ended by the signal.
+            loop.add_signal_handler(number, partial(self.exit, return_code=SIGNALLED + number))
+        if isinstance(self.own_driver, TerminalDriver):
+            loop.add_signal_handler(signal.SIGTSTP, self.action_suspend_process)
+
+    def on_terminal_answered(self, event: TerminalAnswered) -> None:
+        """Draw with pixels if the terminal can; ask a terminal that may know kitty's protocol for it."""
+        if event.facts.asks_for_kitty and self.own_driver is not None:
+            AnswerParser.is_asked = True
+            self.own_driver.write(KITTY_QUESTIONS)
+        drew = self.picture_mode.graphics
+        self.terminal_facts = event.facts
+        self._choose_graphics()
+        if event.facts.kitty_error and drew is not None and self.picture_mode.graphics is None:
+            self.notify(
+                f"The terminal cannot show a picture ({event.facts.kitty_error}): drawn with characters instead",
+                severity="warning", markup=False,
+            )  # fmt: skip
+
+    def _choose_graphics(self) -> None:
+        size_px = cell_size_px(self.own_driver.fileno) if isinstance(self.own_driver, TerminalDriver) else None
+        # Who has chosen glyphs wants to see them; pixels have colours.
+        is_without = self.picture_mode.chosen != AUTO or self.no_color
+        wanted = NO_PIXELS if self.pixels == AUTO and is_without else self.pixels
+        found = graphics_of(self.terminal_facts, wanted, size_px) if SUPPORTED else None
+        if found != self.picture_mode.graphics:
+            self.picture_mode.graphics = found
+            self.redraw_pictures()
+            self.call_after_refresh(self.situation_changed)
+
+    def situation_changed(self) -> None:
+        """Called when other keys are available."""
+
+    def redraw_pictures(self) -> None:
+        """Draw all pictures again: with pixels or glyphs, as `picture_mode` says now."""
+        for screen in self.screen_stack:
+            for view in screen.query(RowsView):
+                view.redraw()
+
+    @on(Driver.SignalResume)
+    def action_redraw(self) -> None:
+        """Redraw the whole screen: something else has written over it, such as the shell while the app was stopped."""
+        self.frame_buffer.forget()
+        self.refresh(layout=True)
+
+    def action_suspend_process(self) -> None:
+        if isinstance(self.own_driver, TerminalDriver):
+            self.suspending()
+            if not self.own_driver.stop_as_job():
+                self.notify(f"{self.TITLE} cannot be suspended: no shell could resume it", markup=False)
+        elif in_browser():
+            self.notify(f"{self.TITLE} cannot be suspended in a browser", markup=False)
+        else:
+            super().action_suspend_process()
+
+    def lend_terminal(self, command: Sequence[str]) -> bool:
+        """Give the terminal to another program until it ends. Return whether there is one to give, unlike in a browser.
+
+        Raises:
+            OSError: the program cannot start.
+        """
+        if not isinstance(self.own_driver, TerminalDriver):
+            return False
+        self.suspending()
+        with self.own_driver.lent():
+            run_in_foreground(command)
+        return True
+
+    def suspending(self) -> None:
+        """Called before the app stops, or gives its terminal away."""
+
+    def is_harmless(self, error: Exception) -> bool:
+        """Return whether an error only comes from the shutdown.
+
+        Nothing can be mounted then, what was being mounted is removed before it is complete, and at its end there is no
+        screen.
+        """
+        cause = error.error if isinstance(error, WorkerFailed) else error
+        return is_leaving(self) and isinstance(cause, (WidgetError, NoMatches, ScreenStackError))
+
+
+mend(input_order.end_messages)
+
+
+def _driver_class() -> type[Driver] | None:
+    """Return the driver for what shows the app: a browser or a terminal; None for Textual's own."""
+    if not SUPPORTED:
+        return None
+    if not in_browser():
+        return TerminalDriver
+    # Most apps run in a terminal.
+    from tuisim.terminal.browser_driver import BrowserDriver
+
+    return BrowserDriver

@@ -1,1 +1,0 @@
-"""Pictures in real pixels, for terminals that can show them."""
