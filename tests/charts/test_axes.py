@@ -63,7 +63,16 @@ def test_columns_and_times_agree(columns: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "step", "text"), [(2.5, 2.5, "2.5"), (10.0, 5.0, "10"), (0.25, 0.05, "0.25"), (-0.0, 1.0, "0")]
+    ("value", "step", "text"),
+    [
+        (2.5, 2.5, "2.5"),
+        (10.0, 5.0, "10"),
+        (0.25, 0.05, "0.25"),
+        (0.75, 0.25, "0.75"),
+        (0.5, 0.25, "0.50"),
+        (-0.0, 1.0, "0"),
+        (5e8 + 0.1, (5e8 + 0.1) - 5e8, "500000000.1"),
+    ],
 )
 def test_labels(value: float, step: float, text: str) -> None:
     assert axes.label(value, step) == text

@@ -38,9 +38,14 @@ def ticks(limits: Limits, count: int) -> list[float]:
     return [at * step for at in range(first, last + 1)]
 
 
+_MOST_DIGITS = 300
+
+
 def label(value: float, step: float) -> str:
     """Return a tick's label with no more digits than the distance between ticks needs."""
-    digits = max(0, math.ceil(-math.log10(step) - 1e-9)) if step < 1 else int(step % 1 != 0)
+    # The distance may come from two positions far from 0.
+    exact = (count for count in range(_MOST_DIGITS) if math.isclose(round(step, count), step, rel_tol=1e-3))
+    digits = next(exact, _MOST_DIGITS)
     text = f"{value:.{digits}f}"
     return "0" if float(text) == 0 else text
 
