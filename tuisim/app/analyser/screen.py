@@ -206,6 +206,10 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
     # Display
 
+    def action_act(self, name: str) -> None:
+        super().action_act(name)
+        self.update()
+
     def situation(self) -> int | None:
         """Return the number of rows, None while there is no log."""
         return None if self._model is None else self._model.log.rows
@@ -242,7 +246,6 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.pane.turn_to(name)
         if not self.pane.display:
             self.lay_out(chart=True, pane=True)
-        self.update()
 
     def _progress(self) -> str:
         opened = self._model.opened if self._model else None
@@ -321,8 +324,13 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             forms: The accepted forms.
             completes: Whether to offer the words of expressions as completions.
         """
+
+        def apply(text: str) -> None:
+            do(text)
+            self.update()
+
         words = tuple(expression_words(self.model.log)) if completes else ()
-        self.app.push_screen(LinePrompt(title, do, value, forms, words))
+        self.app.push_screen(LinePrompt(title, apply, value, forms, words))
 
     def ask_columns(self) -> None:
         """Ask for the meaning of the file's columns."""
