@@ -99,10 +99,10 @@ def _band(band: Band) -> Cells:
 
 
 def _event(event: Event) -> Cells:
+    crossing = event.crossing
     return (
-        event.variable, "above" if event.rising else "below", f"{event.time_s:.3f}",
-        f"{event.since_s:.3f}" if isfinite(event.since_s) else "–", _figure(event.value), f"{event.row + 1:,}",
-        event.threshold.level,
+        event.variable, "above" if crossing.rising else "below", f"{crossing.time_s:.3f}",
+        _figure(event.since_s, ".3f"), _figure(crossing.value), f"{event.row + 1:,}", event.threshold.level,
     )  # fmt: skip
 
 
