@@ -113,10 +113,7 @@ def select(screen: LogScreen) -> None:
 def show_all(screen: LogScreen) -> None:
     """Show every row and every column, in the order of the log."""
     screen.give_up()
-    rows = screen.model.rows
-    rows.sort("", False)
-    rows.filter(())
-    rows.show_all()
+    screen.model.rows.show_all()
 
 
 def search(screen: LogScreen) -> None:
