@@ -18,7 +18,7 @@ from tuisim.analysis.traces import TIME, LogTrace, LogTraces, aligned
 from tuisim.charts.axes import Limits
 from tuisim.errors import LogError, among
 from tuisim.logs.bands import Band, BandReport, band_report, in_words
-from tuisim.logs.columns import is_numeric
+from tuisim.logs.columns import numeric_columns
 from tuisim.logs.derived import RECKONED_COLUMNS, definition_of, derived, named_columns, reckoned_series
 from tuisim.logs.plateaus import Plateau, plateaus
 from tuisim.logs.signals import Summary, known_at, summary_of
@@ -123,8 +123,7 @@ class Model:
             if other is series:
                 return other.values
             return known_at(other.time_s, other.values, series.time_s)
-        if name not in self.log.table.column_names or not is_numeric(self.log.table.column(name).type):
-            numbers = [at.name for at in self.log.table.schema if is_numeric(at.type)]
+        if name not in (numbers := numeric_columns(self.log.table.schema)):
             known = dict.fromkeys((*self.log.names, *numbers))
             raise LogError(f"no variable {name!r}", among(name, known), file=self.log.title)
         return self.log.numbers(name)[series.rows]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 from functools import partial
 from time import monotonic
 from typing import TypeVar
@@ -22,13 +21,13 @@ from tuisim.analysis.table import AT_ONCE, TableTask
 from tuisim.app import background
 from tuisim.app.action import ActionHost, KeyFooter
 from tuisim.app.analyser.chart import LogChart
-from tuisim.app.analyser.columns import Columns, ColumnsDialog, candidates
+from tuisim.app.analyser.columns import ColumnsDialog, candidates
 from tuisim.app.analyser.panes import PaneView
 from tuisim.app.analyser.world import WorldPane
 from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.app.dialogs.question import Form, LinePrompt
 from tuisim.errors import LogError, TuisimError
-from tuisim.logs.columns import choose_columns, is_numeric
+from tuisim.logs.columns import choose_columns, numeric_columns
 from tuisim.logs.derived import SIGNALS, TIME, computed_columns
 from tuisim.logs.expressions import CONSTANTS, FUNCTIONS
 from tuisim.logs.log import Log
@@ -45,8 +44,7 @@ Made = TypeVar("Made")
 
 def expression_words(log: Log) -> Iterator[str]:
     """Yield the words allowed in an expression: variables, columns, functions."""
-    columns = (at.name for at in log.table.schema if is_numeric(at.type))
-    known = dict.fromkeys((*(name.partition(" #")[0] for name in log.names), *columns, TIME))
+    known = dict.fromkeys((*(name.partition(" #")[0] for name in log.names), *numeric_columns(log.table.schema), TIME))
     yield from (name if name.isidentifier() else f"`{name}`" for name in known)
     yield from computed_columns(log)
     yield from (f"{name}(" for name in (*SIGNALS, *FUNCTIONS))
@@ -340,18 +338,17 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         elif not candidates(model.log.table):
             self.say("There is no numeric column")
         else:
-            self.app.push_screen(ColumnsDialog(model.log.bare()), self._set_columns)
+            self.app.push_screen(ColumnsDialog(model.opened.request, model.log.bare()), self._set_columns)
 
-    def _set_columns(self, chosen: Columns | None) -> None:
-        if chosen is None:
+    def _set_columns(self, request: LogRequest | None) -> None:
+        if request is None:
             return
-        opened, log = self.model.opened, self.model.log
-        request = replace(opened.request, time=chosen.time, values=chosen.values, unit=chosen.unit)
-        if not opened.done:
+        log = self.model.log
+        if not self.model.opened.done:
             self.open(request)
             return
         # All of it has been read: the same rows have another meaning now.
-        layout = choose_columns(log.bare().table, chosen.time, chosen.values, chosen.unit)
+        layout = choose_columns(log.bare().table, request.time, request.values, request.unit)
         self.request = request
         self.set_model(Model(OpenedLog(request, log.with_layout(layout))))
 

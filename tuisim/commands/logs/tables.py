@@ -15,9 +15,9 @@ from tuisim.config.command_line import Arguments
 from tuisim.core.conditions import Operator
 from tuisim.errors import ConfigError
 from tuisim.logs import signals
-from tuisim.logs.arrow import numbers_of, unique_names
+from tuisim.logs.arrow import unique_names
 from tuisim.logs.bands import band_report, in_words
-from tuisim.logs.columns import is_numeric
+from tuisim.logs.columns import numeric_columns
 from tuisim.logs.csv_cells import write_csv
 from tuisim.logs.derived import reckoned_series
 from tuisim.logs.export import check_target, export_frame, export_log
@@ -173,8 +173,7 @@ def wide_frame(log: Log) -> pd.DataFrame:
     import pandas as pd
 
     if not log.layout.variable:
-        numeric = [n for n in log.table.column_names if is_numeric(log.table.schema.field(n).type)]
-        return pd.DataFrame({name: numbers_of(log.table.column(name)) for name in numeric})
+        return pd.DataFrame({name: log.numbers(name) for name in numeric_columns(log.table.schema)})
     series = [one for one in map(log.series, log.names) if len(one.rows)]
     moments = np.unique(np.concatenate([one.time_s for one in series]))
     return _sampled_at(moments, series)
