@@ -79,13 +79,14 @@ def frame_of(rows: Iterable[Row], expressions: Mapping[str, str] | None = None) 
     names: dict[str, None] = {}
     for row in ordered:
         names |= dict.fromkeys(row)
-    is_usual = {name: not name.endswith(tuple(f"_{one}" for one in STATISTICS)) for name in names}
-    columns = {name: _column([row.get(name) for row in ordered]) for name in names if is_usual[name]}
-    rest = {name: _column([row.get(name) for row in ordered]) for name in names if not is_usual[name]}
-    computed: dict[str, Any] = {}
+    columns = {name: _column([row.get(name) for row in ordered]) for name in names}
     for name, text in (expressions or {}).items():
-        computed[name] = evaluated(text, {**columns, **computed, **rest}, len(ordered))
-    return pd.DataFrame({**columns, **computed, **rest})
+        columns[name] = evaluated(text, _statistics_last(columns), len(ordered))
+    return pd.DataFrame(_statistics_last(columns))
+
+
+def _statistics_last(columns: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: columns[name] for name in sorted(columns, key=is_statistic)}
 
 
 def _column(values: Sequence[Any]) -> Any:
