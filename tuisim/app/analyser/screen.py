@@ -22,7 +22,7 @@ from tuisim.app import background
 from tuisim.app.action import ActionHost, KeyFooter
 from tuisim.app.analyser.chart import LogChart
 from tuisim.app.analyser.columns import ColumnsDialog, candidates
-from tuisim.app.analyser.panes import PaneView
+from tuisim.app.analyser.panes import PANES, PaneView
 from tuisim.app.analyser.world import WorldPane
 from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.app.dialogs.question import Form, LinePrompt
@@ -265,19 +265,18 @@ class LogScreen(ActionHost, ClosesOnce[None]):
     def choose(self, number: int) -> None:
         """Select a row of a pane other than the table; the cursor goes to its time."""
         model, name = self.model, self.pane.name_shown
-        bands, notes = model.bands() if name == "bands" else [], model.notes if name == "notes" else []
-        events = model.events.found(model.log) if name == "events" else []
-        count = len(bands or notes or events) or len(model.opened.runs if name == "runs" else model.traces.ticked())
+        count = len(PANES[name].rows(model))
         self.pane.chosen = number = min(max(number, 0), max(count - 1, 0))
-        if bands:
-            model.selected = bands[number].variable
+        if name == "bands" and count:
+            band = model.bands()[number]
+            model.selected = band.variable
             rows = model.trace.series.rows
-            first, last = np.searchsorted(rows, (bands[number].first_row, bands[number].last_row))
+            first, last = np.searchsorted(rows, (band.first_row, band.last_row))
             model.go_to_row(int(rows[(first + last) // 2]))
-        elif events:
+        elif name == "events" and count:
             self.go_to_event(number)
-        elif notes:
-            _, note = notes[number]
+        elif name == "notes" and count:
+            _, note = model.notes[number]
             if note.variable in model.traces:
                 model.selected = note.variable
             model.go_to_moment(note.start_s)
