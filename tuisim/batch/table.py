@@ -11,6 +11,7 @@ from tuisim.batch.parameters import SEED
 from tuisim.batch.task import Result, Value, VariableStatistics
 from tuisim.errors import ConfigError, LogError, nearest
 from tuisim.goals.judgement import GoalState, points
+from tuisim.logs.export import table_metadata
 from tuisim.logs.expressions import evaluate, names_in
 from tuisim.logs.signals import Summary, summary_of
 from tuisim.logs.units import unit_of
@@ -213,7 +214,7 @@ def result_columns(frame: pd.DataFrame, expressions: Iterable[str]) -> list[str]
 def metadata_of(frame: pd.DataFrame, batch: Mapping[str, Any]) -> dict[str, Any]:
     """Return what is stored with a table: its columns, their units, and what identifies the batch."""
     units = {name: unit.words for name in frame.columns if (unit := unit_of(_without_statistic(name))).words}
-    return {"format": 1, "table": "batch", "columns": list(frame.columns), "units": units, "batch": dict(batch)}
+    return {**table_metadata("batch", frame), "units": units, "batch": dict(batch)}
 
 
 def _without_statistic(name: str) -> str:

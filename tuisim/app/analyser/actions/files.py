@@ -84,12 +84,12 @@ def _saved(screen: LogScreen, notice: str, target: Path, _: object) -> None:
 
 
 def _write_rows(model: Model, frame: pd.DataFrame | None, target: Path) -> None:
-    from tuisim.logs.export import LOG_FORMAT, export_frame, export_log
+    from tuisim.logs.export import export_frame, export_log, table_metadata
 
     if frame is None:
         export_log(model.log, model.rows.shown(), target)
     else:
-        export_frame(frame, target, {"format": LOG_FORMAT, "table": "pane", "columns": list(frame.columns)})
+        export_frame(frame, target, table_metadata("pane", frame))
 
 
 def chart(screen: LogScreen) -> None:
