@@ -25,7 +25,7 @@ FOUND = {
 def test_where_variables_cross_a_value(text: str, events: list[tuple[str, bool, float, int]]) -> None:
     log = long_log()
     found = events_of(log, thresholds_of(text, log))
-    assert [(event.variable, event.rising, event.time_s, event.row) for event in found] == events
+    assert [(event.variable, event.crossing.rising, event.crossing.time_s, event.row) for event in found] == events
 
 
 @pytest.mark.parametrize(("text", "said"), [("Colour", "no threshold"), ("Color < 5", "no variable 'Color'")])

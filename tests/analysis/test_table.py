@@ -56,7 +56,7 @@ def values(model: Model) -> list[float]:
 )
 def test_rows_that_fulfil_all_conditions(text: str, found: list[float]) -> None:
     model = model_of(long_log())
-    model.rows.filter(tuple(conditions_of(text, model.rows.columns)))
+    model.rows.view = model.rows.filtered(tuple(conditions_of(text, model.rows.columns)))
     assert values(model) == found
 
 
@@ -64,20 +64,20 @@ def test_rows_that_fulfil_all_conditions(text: str, found: list[float]) -> None:
 def test_a_condition_that_is_none_is_said(text: str) -> None:
     model = model_of(long_log())
     with pytest.raises(LogError):
-        model.rows.filter(tuple(conditions_of(text, model.rows.columns)))
+        model.rows.view = model.rows.filtered(tuple(conditions_of(text, model.rows.columns)))
     assert len(model.rows) == 20
 
 
 def test_sorting_goes_with_a_filter() -> None:
     model = model_of(long_log())
-    model.rows.filter(tuple(conditions_of("variable == Colour", model.rows.columns)))
-    model.rows.sort("value", False)
+    model.rows.view = model.rows.filtered(tuple(conditions_of("variable == Colour", model.rows.columns)))
+    model.rows.view = model.rows.sorted("value", False)
     assert values(model) == [float(10 * at) for at in range(10)]
-    model.rows.sort("value", True)
+    model.rows.view = model.rows.sorted("value", True)
     assert values(model)[0] == 90.0
     assert model.rows.place(18) == 9
-    model.rows.sort("variable", False)
-    model.rows.filter(())
+    model.rows.view = model.rows.sorted("variable", False)
+    model.rows.view = model.rows.filtered(())
     assert values(model)[:2] == [90.0, 80.0]
 
 

@@ -94,7 +94,7 @@ def test_the_name_of_a_trace_is_an_event_a_filter_and_a_variable_of_the_analyser
     model.add_named_columns(f"{name} changes")
     assert len(events_of(model.log, thresholds_of(f"{name} changes", model.log))) > 5
     conditions = conditions_of(f"{name} == {value_of(run, name)!r}", model.log.table.column_names)
-    model.rows.filter(tuple(conditions))
+    model.rows.view = model.rows.filtered(tuple(conditions))
     assert 0 < len(model.rows) < model.log.rows
     derive(model, f"half = {name} / 2")
     assert model.log.series("half").values[-1] == value_of(run, name) / 2

@@ -61,7 +61,7 @@ def by_goto(condition: str) -> list[float]:
 
 def by_filter(condition: str) -> list[float]:
     rows = Rows(Log("test", pa.table({"Colour": VALUES, "word": ["a b", "> 5", ""]}), Layout()))
-    rows.filter(tuple(conditions_of(condition, rows.columns)))
+    rows.view = rows.filtered(tuple(conditions_of(condition, rows.columns)))
     return [VALUES[rows.row(place)] for place in range(len(rows))]
 
 

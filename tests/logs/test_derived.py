@@ -105,7 +105,7 @@ def test_it_is_replaced_taken_away_and_kept_when_the_log_grows() -> None:
     other = model_of(long_log())
     other.restore(model)
     assert [trace.name for trace in other.traces] == ["Colour", "Left"]
-    model.rows.sort("v", True)
+    model.rows.view = model.rows.sorted("v", True)
     derive(model, "v =")
     assert [trace.name for trace in model.traces] == ["wave"] and model.rows.columns == ["time", "wave"]
     assert model.selected == "wave" and len(model.rows) == 100

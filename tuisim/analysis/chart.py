@@ -98,10 +98,10 @@ def event_marks(model: Model, limits: Limits, columns: int) -> str:
     """Return a line of text with a mark in each column of the chart that has events."""
     line = [" "] * columns
     for event in model.events.found(model.log):
-        trace = model.traces.named(event.variable)
-        place = event.time_s + float(trace.places[event.sample] - trace.series.time_s[event.sample])
+        trace, crossing = model.traces.named(event.variable), event.crossing
+        place = crossing.time_s + float(trace.places[crossing.at] - trace.series.time_s[crossing.at])
         if limits[0] <= place <= limits[1]:
             column = min(max(column_of(place, limits, columns), 0), columns - 1)
-            mark = "▲" if event.rising else "▼"
+            mark = "▲" if crossing.rising else "▼"
             line[column] = mark if line[column] in (" ", mark) else "◆"
     return "".join(line)

@@ -122,17 +122,11 @@ class Event:
 
     variable: str
     threshold: Threshold
-    rising: bool
+    crossing: Crossing
     row: int
     """Row of the table with the first sample beyond the threshold."""
-    sample: int
-    """Index of this sample in its variable."""
-    time_s: float
-    """Time of the crossing, between two samples."""
     since_s: float
     """Time since the variable's previous event; NaN for the first."""
-    value: float
-    """Value in the row."""
 
 
 def threshold_of(text: str) -> Threshold | None:
@@ -173,12 +167,7 @@ def events_of(log: Log, thresholds: Sequence[Threshold]) -> list[Event]:
             before_s = float("nan")
             for crossing in threshold.crossings(one):
                 row = int(one.rows[crossing.at])
-                since_s = crossing.time_s - before_s
-                found.append(
-                    Event(
-                        one.name, threshold, crossing.rising, row, crossing.at, crossing.time_s, since_s, crossing.value
-                    )
-                )
+                found.append(Event(one.name, threshold, crossing, row, crossing.time_s - before_s))
                 before_s = crossing.time_s
     return sorted(found, key=lambda event: event.row)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -18,9 +18,9 @@ from tuisim.analysis.traces import TIME, LogTrace, LogTraces, aligned
 from tuisim.charts.axes import Limits
 from tuisim.errors import LogError, among
 from tuisim.logs.bands import Band, BandReport, band_report, in_words
-from tuisim.logs.columns import is_numeric
+from tuisim.logs.columns import numeric_columns
 from tuisim.logs.derived import RECKONED_COLUMNS, definition_of, derived, named_columns, reckoned_series
-from tuisim.logs.plateaus import Plateau, plateaus
+from tuisim.logs.plateaus import Search, plateaus
 from tuisim.logs.signals import Summary, known_at, summary_of
 from tuisim.runs.arrays import FloatArray
 
@@ -123,8 +123,7 @@ class Model:
             if other is series:
                 return other.values
             return known_at(other.time_s, other.values, series.time_s)
-        if name not in self.log.table.column_names or not is_numeric(self.log.table.column(name).type):
-            numbers = [at.name for at in self.log.table.schema if is_numeric(at.type)]
+        if name not in (numbers := numeric_columns(self.log.table.schema)):
             known = dict.fromkeys((*self.log.names, *numbers))
             raise LogError(f"no variable {name!r}", among(name, known), file=self.log.title)
         return self.log.numbers(name)[series.rows]
@@ -269,7 +268,7 @@ class Model:
         """Return the visible variables whose bands have not been searched yet."""
         return [trace.name for trace in self.traces.ticked() if trace.name not in self._reports]
 
-    def find_bands(self, names: Sequence[str], search: Callable[[FloatArray], list[Plateau]] = plateaus) -> None:
+    def find_bands(self, names: Sequence[str], search: Search = plateaus) -> None:
         """Search variables for bands. Slow for a long log: call it in a thread, with a search in another process."""
         for name in names:
             report = band_report(self.log, name, search)

@@ -26,12 +26,11 @@ from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.errors import ExportError, LogError, listed
 from tuisim.logs.export import check_place
 from tuisim.logs.log import Log
-from tuisim.logs.plateaus import Plateau, plateaus
+from tuisim.logs.plateaus import Search, plateaus
 from tuisim.logs.signals import QUANTILES
 from tuisim.movies.clip import Recorded
 from tuisim.movies.files import small_movie
 from tuisim.protocol import SetNoise
-from tuisim.runs.arrays import FloatArray
 from tuisim.runs.run_folder import StoredRun
 from tuisim.scene.pictures import world_at_end, world_view
 from tuisim.source import source_lines
@@ -39,7 +38,6 @@ from tuisim.source import source_lines
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-Search = Callable[[FloatArray], list[Plateau]]
 SUFFIXES = (".html", ".htm")
 MOST_BANDS = 300
 """Maximum number of rows of the table of bands."""

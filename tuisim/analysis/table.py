@@ -115,18 +115,6 @@ class Rows:
 
     # Which rows, in which order
 
-    def filter(self, conditions: tuple[ValueCondition, ...]) -> None:
-        """Show only the rows that meet all conditions.
-
-        Raises:
-            LogError: a value does not fit its column.
-        """
-        self.view = self.filtered(conditions)
-
-    def sort(self, column: str, descending: bool) -> None:
-        """Sort the rows by a column; empty for the order of the log."""
-        self.view = self.sorted(column, descending)
-
     def filtered(self, conditions: tuple[ValueCondition, ...]) -> TableView:
         """Return the rows that meet all conditions, in the current order. Slow for a long log.
 
@@ -165,7 +153,8 @@ class Rows:
             self.column = min(self.column, len(self.columns) - 1)
 
     def show_all(self) -> None:
-        """Show every column in the order of the log."""
+        """Show every row and every column, in the order of the log."""
+        self.view = TableView()
         self.columns = list(self._log.table.column_names)
         self.frozen = self.column = 0
 
@@ -193,13 +182,13 @@ class Rows:
         gone = {view.sorted_by, *(one.name for one in view.conditions)}.difference(names, [""])
         if gone:
             self.view = replace(view, sorted_by="" if view.sorted_by in gone else view.sorted_by)
-            self.filter(tuple(one for one in view.conditions if one.name not in gone))
+            self.view = self.filtered(tuple(one for one in view.conditions if one.name not in gone))
 
     def restore(self, other: Rows) -> None:
         """Show the same columns and conditions as another table of the same log."""
         self.columns, self.frozen, self.column = other.columns, other.frozen, other.column
         self.view = replace(self.view, sorted_by=other.view.sorted_by, descending=other.view.descending)
-        self.filter(other.view.conditions)
+        self.view = self.filtered(other.view.conditions)
 
     # Search
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,16 +43,13 @@ class LogTrace(Trace):
         self.other_scale = self.other_scale or name.partition(" #")[0].endswith(_ANGLES)
         self._places: FloatArray | None = None
         self._log = log
-        self._series: Series | None = None
         self._pyramid: Pyramid | None = None
         self._shown: tuple[FloatArray, FloatArray] = (np.empty(0), np.empty(0))
 
-    @property
+    @cached_property
     def series(self) -> Series:
         """All its samples."""
-        if self._series is None:
-            self._series = self._log.series(self.name)
-        return self._series
+        return self._log.series(self.name)
 
     @property
     def pyramid(self) -> Pyramid:

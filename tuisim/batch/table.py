@@ -11,6 +11,7 @@ from tuisim.batch.parameters import SEED
 from tuisim.batch.task import Result, Value, VariableStatistics
 from tuisim.errors import ConfigError, LogError, nearest
 from tuisim.goals.judgement import GoalState, points
+from tuisim.logs.export import table_metadata
 from tuisim.logs.expressions import evaluate, names_in
 from tuisim.logs.signals import Summary, summary_of
 from tuisim.logs.units import unit_of
@@ -79,13 +80,14 @@ def frame_of(rows: Iterable[Row], expressions: Mapping[str, str] | None = None) 
     names: dict[str, None] = {}
     for row in ordered:
         names |= dict.fromkeys(row)
-    is_usual = {name: not name.endswith(tuple(f"_{one}" for one in STATISTICS)) for name in names}
-    columns = {name: _column([row.get(name) for row in ordered]) for name in names if is_usual[name]}
-    rest = {name: _column([row.get(name) for row in ordered]) for name in names if not is_usual[name]}
-    computed: dict[str, Any] = {}
+    columns = {name: _column([row.get(name) for row in ordered]) for name in names}
     for name, text in (expressions or {}).items():
-        computed[name] = evaluated(text, {**columns, **computed, **rest}, len(ordered))
-    return pd.DataFrame({**columns, **computed, **rest})
+        columns[name] = evaluated(text, _statistics_last(columns), len(ordered))
+    return pd.DataFrame(_statistics_last(columns))
+
+
+def _statistics_last(columns: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: columns[name] for name in sorted(columns, key=is_statistic)}
 
 
 def _column(values: Sequence[Any]) -> Any:
@@ -212,7 +214,7 @@ def result_columns(frame: pd.DataFrame, expressions: Iterable[str]) -> list[str]
 def metadata_of(frame: pd.DataFrame, batch: Mapping[str, Any]) -> dict[str, Any]:
     """Return what is stored with a table: its columns, their units, and what identifies the batch."""
     units = {name: unit.words for name in frame.columns if (unit := unit_of(_without_statistic(name))).words}
-    return {"format": 1, "table": "batch", "columns": list(frame.columns), "units": units, "batch": dict(batch)}
+    return {**table_metadata("batch", frame), "units": units, "batch": dict(batch)}
 
 
 def _without_statistic(name: str) -> str:

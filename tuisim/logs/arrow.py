@@ -148,7 +148,6 @@ def unique_names(names: Sequence[str], notes: Notes | None = None) -> list[str]:
     return unique
 
 
-PARQUET_MAGIC, ARROW_MAGIC, ARROW_STREAM_MAGIC = b"PAR1", b"ARROW1", b"\xff\xff\xff\xff"
 _CUT_OFF = "the file is truncated: only the readable part was read"
 
 
@@ -265,6 +264,14 @@ def _stream_parts(path: Path, source: Any, start: int, notes: Notes) -> Iterator
             notes.say(_CUT_OFF)
             return
         yield source.tell() / size, _named(part, notes)
+
+
+FORMATS: Mapping[bytes, Callable[[Path, Notes], Iterator[tuple[float, pa.Table]]]] = {
+    b"PAR1": parquet_parts,
+    b"ARROW1": arrow_parts,
+    b"\xff\xff\xff\xff": arrow_stream_parts,
+}
+"""The readers by the first bytes of a file."""
 
 
 def _check_columns(schema: pa.Schema) -> None:

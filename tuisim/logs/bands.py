@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from math import sqrt
@@ -14,7 +14,7 @@ import numpy as np
 from tuisim.core.css_colors import css_names
 from tuisim.errors import counted
 from tuisim.logs.columns import numeric_columns
-from tuisim.logs.plateaus import Plateau, plateaus
+from tuisim.logs.plateaus import Plateau, Search, plateaus
 from tuisim.runs.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ class BandReport:
     total: int
 
 
-def band_report(log: Log, name: str, search: Callable[[FloatArray], list[Plateau]] = plateaus) -> BandReport:
+def band_report(log: Log, name: str, search: Search = plateaus) -> BandReport:
     """Return the bands of a variable, whose plateaus `search` returns.
 
     Raises:

@@ -142,18 +142,11 @@ def seconds_of_texts(column: pa.ChunkedArray) -> FloatArray:
     """Return texts in seconds: time spans as they are, dates since the first; NaN for other texts."""
     texts = in_usual_form(column.cast(pa.string()))
     spans: Any = pc.extract_regex(texts, _SPAN)
-    parts = {}
-    for name, seconds in (("days", 86400.0), ("h", 3600.0), ("m", 60.0), ("s", 1.0)):
-        field = pc.struct_field(spans, name)
-        # Empty if there are no days, null if nothing matches.
-        field = pc.if_else(pc.equal(field, ""), "0", field)
-        parts[name] = np.asarray(pc.cast(field, pa.float64()).to_numpy(), np.float64) * seconds
-    total: FloatArray = parts["days"] + parts["h"] + parts["m"] + parts["s"]
-    minus = np.asarray(pc.fill_null(pc.equal(pc.struct_field(spans, "sign"), "-"), False).to_numpy(), bool)
-    total[minus] *= -1.0
-    if np.isfinite(total).any():
-        return total
-    return _seconds_of_dates(texts)
+    if spans.null_count == len(spans):
+        return _seconds_of_dates(texts)
+    days, hours, minutes, seconds = (_filled(pc.struct_field(spans, name)) for name in ("days", "h", "m", "s"))
+    total = _signed(86400.0 * days + 3600.0 * hours + 60.0 * minutes + seconds, spans)
+    return np.where(spans.is_valid().to_numpy(), total, np.nan)
 
 
 def _seconds_of_dates(texts: Any) -> FloatArray:
@@ -165,12 +158,17 @@ def _seconds_of_dates(texts: Any) -> FloatArray:
         return np.full(len(texts), np.nan)
     # The text after the seconds, such as .250+02:00.
     rest: Any = pc.extract_regex(texts, _REST)
-    part, sign, hours, minutes = (pc.struct_field(rest, name) for name in ("part", "sign", "h", "m"))
-    ahead_s = 3600.0 * _filled(hours) + 60.0 * _filled(minutes)
-    ahead_s[np.asarray(pc.fill_null(pc.equal(sign, "-"), False).to_numpy(), bool)] *= -1.0
+    part, hours, minutes = (_filled(pc.struct_field(rest, name)) for name in ("part", "h", "m"))
+    ahead_s = _signed(3600.0 * hours + 60.0 * minutes, rest)
     whole: Any = dates.cast(pa.int64())
     whole_s = _floats(pc.subtract(whole, pc.first(whole)))
-    return _since_first(whole_s + (_filled(part) - ahead_s))
+    return _since_first(whole_s + (part - ahead_s))
+
+
+def _signed(seconds: FloatArray, parts: Any) -> FloatArray:
+    """Return seconds, negative ones where the sign of the parts is a minus."""
+    minus = pc.fill_null(pc.equal(pc.struct_field(parts, "sign"), "-"), False)
+    return np.where(minus.to_numpy(), -seconds, seconds)
 
 
 def _filled(texts: Any) -> FloatArray:

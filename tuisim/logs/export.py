@@ -146,11 +146,11 @@ def export_log(log: Log, table: LogTable, path: str | Path) -> None:
         ExportError: it cannot be written; an existing file is unchanged.
     """
     frame = typed_frame(table)
-    names = list(frame.columns)
-    metadata: dict[str, Any] = {"format": LOG_FORMAT, "table": "log", **log.metadata, "columns": names}
+    of_frame = table_metadata("log", frame)
+    metadata: dict[str, Any] = {**of_frame, **log.metadata, "columns": of_frame["columns"]}
     units = metadata.get("units")
     if isinstance(units, dict):
-        metadata["units"] = {name: unit for name, unit in units.items() if name in names}
+        metadata["units"] = {name: unit for name, unit in units.items() if name in metadata["columns"]}
     export_frame(frame, path, metadata)
 
 
@@ -189,9 +189,7 @@ def log_metadata(table: str, frame: pd.DataFrame, runs: Sequence[StoredRun]) -> 
         runs: Its runs, in the order of the `run` column.
     """
     return {
-        "format": LOG_FORMAT,
-        "table": table,
-        "columns": list(frame.columns),
+        **table_metadata(table, frame),
         "units": {name: unit for name in frame.columns if (unit := _unit(name))},
         "runs": [
             {
@@ -207,6 +205,11 @@ def log_metadata(table: str, frame: pd.DataFrame, runs: Sequence[StoredRun]) -> 
             for ordinal, run in enumerate(runs, 1)
         ],
     }
+
+
+def table_metadata(table: str, frame: pd.DataFrame) -> dict[str, Any]:
+    """Return what the metadata of every table have: their format, what the table is, and its columns."""
+    return {"format": LOG_FORMAT, "table": table, "columns": list(frame.columns)}
 
 
 def _unit(column: str) -> str:

@@ -88,6 +88,10 @@ class Plateau:
         return self.stop - self.start
 
 
+Search = Callable[[FloatArray], list[Plateau]]
+"""What finds the plateaus of a log: `plateaus`, or `plateaus_in_subprocess`."""
+
+
 def noise_of(values: FloatArray) -> float:
     """Return the standard deviation of the noise of finite values, shape (n,), from the differences of neighbours.
 

@@ -231,19 +231,15 @@ def _source_parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.
         regular = stat.S_ISREG(mode)
         with path.open("rb", buffering=0 if not regular else -1) as handle:
             head = handle.read(MAGIC_BYTES) if regular else b""
-            if head.startswith(arrow.PARQUET_MAGIC):
-                yield from arrow.parquet_parts(path, notes)
-            elif head.startswith(arrow.ARROW_MAGIC):
-                yield from arrow.arrow_parts(path, notes)
-            elif head.startswith(arrow.ARROW_STREAM_MAGIC):
-                yield from arrow.arrow_stream_parts(path, notes)
+            binary = next((parts for magic, parts in arrow.FORMATS.items() if head.startswith(magic)), None)
+            if binary is not None:
+                yield from binary(path, notes)
+                return
+            if regular:
+                handle.seek(0)
+            if (inner := unpacked(str(path), head, handle, notes)) is not None:
+                yield from text_parts(inner, 0, path.with_suffix("").suffix.lower(), notes)
             else:
-                if regular:
-                    handle.seek(0)
-                inner = unpacked(str(path), head, handle, notes)
-                if inner is not None:
-                    yield from text_parts(inner, 0, path.with_suffix("").suffix.lower(), notes)
-                    return
                 yield from text_parts(handle, path.stat().st_size if regular else 0, path.suffix.lower(), notes)
     except FileNotFoundError as error:
         raise LogError("no such file", file=str(path)) from error
@@ -305,7 +301,7 @@ def _refuse_binary(data: bytes) -> None:
     """Raise a LogError if the first bytes of a text are those of another format."""
     if arrow.is_old_stream(data):
         raise LogError(arrow.OLD_STREAM, arrow.OLD_STREAM_HINT)
-    if data.startswith((arrow.PARQUET_MAGIC, arrow.ARROW_MAGIC, arrow.ARROW_STREAM_MAGIC, *MAGICS)):
+    if data.startswith((*arrow.FORMATS, *MAGICS)):
         raise LogError("only text can be read from a pipe or inside a compressed file", "name the file itself")
 
 

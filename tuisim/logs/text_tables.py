@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise, takewhile
-from typing import Any
+from typing import Any, TypeGuard
 
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -400,16 +400,12 @@ class CsvReader:
             return cells.dictionary_encode()
         truths = kind == pa.bool_()
         numbers, wrong = parsed_booleans(cells) if truths else parsed_numbers(cells, self._heading.decimal_comma)
-        if (count := _count(wrong)) > 0:
+        if (count := wrong.true_count) > 0:
             at = [index for index, bad in enumerate(wrong.to_pylist()) if bad][:5]
             where = [rows[index] for index in at] if rows else _rows_at(block, at)
             one, many = ("true or false",) * 2 if truths else ("a number", "numbers")
             self._notes.add(f"cell of {name!r} is not {one}", f"cells of {name!r} are not {many}", where, count)
         return numbers
-
-
-def _count(mask: Any) -> int:
-    return int(mask.true_count)
 
 
 def _rows_at(block: Block, positions: Sequence[int]) -> list[int]:
@@ -510,12 +506,10 @@ class JsonReader:
             return pa.array([None if cell is None else _text(cell) for cell in cells], pa.string())
         wrong = [row for (row, _), cell in zip(found, cells, strict=True) if cell is not None and not _is_number(cell)]
         self._notes.add(f"cell of {name!r} is not a number", f"cells of {name!r} are not numbers", wrong)
-        return pa.array(
-            [_float(cell) if cell is not None and _is_number(cell) else None for cell in cells], pa.float64()
-        )
+        return pa.array([_float(cell) if _is_number(cell) else None for cell in cells], pa.float64())
 
 
-def _is_number(cell: object) -> bool:
+def _is_number(cell: object) -> TypeGuard[float]:
     # True and false count as 1 and 0.
     return isinstance(cell, int | float)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from rich.table import Table
@@ -19,28 +19,12 @@ from tuisim.logs.columns import ROW, choose_columns, is_numeric, is_time
 from tuisim.logs.units import SECONDS
 
 if TYPE_CHECKING:
+    from tuisim.analysis.source import LogRequest
     from tuisim.logs.log import Log, LogTable
 
 _SHOWN_VALUES, _NAME_CELLS, _VALUE_CELLS = 4, 20, 12
 _COLUMNS_AT_MOST = 500
 """More columns are too many to choose from one by one."""
-
-
-@dataclass(frozen=True, slots=True)
-class Columns:
-    """The user's choice of columns."""
-
-    time: str
-    """The time column; `ROW` to count the rows."""
-    unit: str
-    """Unit of the time, if it is a number."""
-    values: tuple[str, ...]
-
-
-def columns_of(log: Log) -> Columns:
-    """Return the current meaning of a log's columns."""
-    unit = next((unit for unit, seconds in SECONDS.items() if seconds == log.layout.unit_s), "s")
-    return Columns(log.layout.time, unit, log.layout.values)
 
 
 def candidates(table: LogTable) -> list[str]:
@@ -49,10 +33,11 @@ def candidates(table: LogTable) -> list[str]:
     return [name for name, kind in kinds if is_numeric(kind) or is_time(kind)][:_COLUMNS_AT_MOST]
 
 
-class ColumnsDialog(Dialog[Columns]):
-    """Returns the user's choice; None if nothing is to change.
+class ColumnsDialog(Dialog["LogRequest"]):
+    """Returns the request with the user's choice of columns; None if nothing is to change.
 
     Args:
+        request: What was opened.
         log: The table, and the current meaning of its columns.
     """
 
@@ -64,11 +49,12 @@ class ColumnsDialog(Dialog[Columns]):
         Binding("u", "unit", "Unit", show=False),
     ]
 
-    def __init__(self, log: Log) -> None:
+    def __init__(self, request: LogRequest, log: Log) -> None:
         super().__init__()
         self._log = log
         self._names = candidates(log.table)
-        self._chosen = columns_of(log)
+        unit = next((unit for unit, seconds in SECONDS.items() if seconds == log.layout.unit_s), "s")
+        self._chosen = replace(request, time=log.layout.time, values=log.layout.values, unit=unit)
 
     def content(self) -> ComposeResult:
         yield OptionList(markup=False)
@@ -111,7 +97,7 @@ class ColumnsDialog(Dialog[Columns]):
     def _at(self) -> int:
         return self.query_one(OptionList).highlighted or 0
 
-    def _choose(self, chosen: Columns) -> None:
+    def _choose(self, chosen: LogRequest) -> None:
         self._chosen = chosen
         self.say("")
         self._list(self._at)

@@ -23,7 +23,7 @@ from tuisim.app import background
 from tuisim.app.snapshot import end_label
 from tuisim.errors import TuisimError, counted
 from tuisim.logs.bands import Band
-from tuisim.logs.plateaus import plateaus_in_subprocess
+from tuisim.logs.plateaus import Search, plateaus, plateaus_in_subprocess
 from tuisim.logs.signals import QUANTILES
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.text_runs import Line, cut, first_shown
@@ -42,7 +42,7 @@ _SAMPLED = 40
 """Number of rows that determine the width of a table's column, besides the visible ones."""
 _MEASURED = 1000
 """In other panes with more rows than this, the visible ones determine it."""
-_SEARCHED_AT_ONCE = 20_000
+SEARCHED_AT_ONCE = 20_000
 """Up to this many rows, the search for bands takes a few hundredths of a second."""
 
 EMPTY = (
@@ -99,10 +99,10 @@ def _band(band: Band) -> Cells:
 
 
 def _event(event: Event) -> Cells:
+    crossing = event.crossing
     return (
-        event.variable, "above" if event.rising else "below", f"{event.time_s:.3f}",
-        f"{event.since_s:.3f}" if isfinite(event.since_s) else "–", _figure(event.value), f"{event.row + 1:,}",
-        event.threshold.level,
+        event.variable, "above" if crossing.rising else "below", f"{crossing.time_s:.3f}",
+        _figure(event.since_s, ".3f"), _figure(crossing.value), f"{event.row + 1:,}", event.threshold.level,
     )  # fmt: skip
 
 
@@ -403,13 +403,12 @@ class PaneView(LinesPanel):
         names = {"bands": model.unsearched, "statistics": model.unsummed}.get(pane, list)()
         if not names or self._busy.get(pane) is model:
             return
-        if pane == "bands" and model.log.rows <= _SEARCHED_AT_ONCE:
-            model.find_bands(names)
-        elif pane == "statistics" and model.log.rows <= AT_ONCE:
-            model.sum_up(names)
+        at_once, do = (SEARCHED_AT_ONCE, find_bands) if pane == "bands" else (AT_ONCE, Model.sum_up)
+        work = partial(do, model, names)
+        if model.log.rows <= at_once:
+            work()
         else:
             self._busy[pane] = model
-            work = partial(_find_bands, model, names) if pane == "bands" else partial(model.sum_up, names)
             background.run(self, work, lambda _: self._computed(pane), self._complain, group=pane, exclusive=True)
 
     def _computed(self, pane: str) -> None:
@@ -421,9 +420,17 @@ class PaneView(LinesPanel):
             self.show(self._model)
 
 
-def _find_bands(model: Model, names: list[str]) -> None:
+def find_bands(model: Model, names: Sequence[str]) -> None:
+    """Search variables for bands; for a log of more rows than `SEARCHED_AT_ONCE`, call it in a worker."""
+    model.find_bands(names, band_search(model.log.rows))
+
+
+def band_search(rows: int) -> Search:
+    """Return the search for bands in so many rows: of many, in another process, until this worker is cancelled."""
+    if rows <= SEARCHED_AT_ONCE:
+        return plateaus
     worker = get_current_worker()
-    model.find_bands(names, partial(plateaus_in_subprocess, stopped=lambda: worker.is_cancelled))
+    return partial(plateaus_in_subprocess, stopped=lambda: worker.is_cancelled)
 
 
 def _summary(model: Model) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 from functools import partial
 from time import monotonic
 from typing import TypeVar
@@ -22,13 +21,13 @@ from tuisim.analysis.table import AT_ONCE, TableTask
 from tuisim.app import background
 from tuisim.app.action import ActionHost, KeyFooter
 from tuisim.app.analyser.chart import LogChart
-from tuisim.app.analyser.columns import Columns, ColumnsDialog, candidates
-from tuisim.app.analyser.panes import PaneView
+from tuisim.app.analyser.columns import ColumnsDialog, candidates
+from tuisim.app.analyser.panes import PANES, PaneView
 from tuisim.app.analyser.world import WorldPane
 from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.app.dialogs.question import Form, LinePrompt
 from tuisim.errors import LogError, TuisimError
-from tuisim.logs.columns import choose_columns, is_numeric
+from tuisim.logs.columns import choose_columns, numeric_columns
 from tuisim.logs.derived import SIGNALS, TIME, computed_columns
 from tuisim.logs.expressions import CONSTANTS, FUNCTIONS
 from tuisim.logs.log import Log
@@ -45,8 +44,7 @@ Made = TypeVar("Made")
 
 def expression_words(log: Log) -> Iterator[str]:
     """Yield the words allowed in an expression: variables, columns, functions."""
-    columns = (at.name for at in log.table.schema if is_numeric(at.type))
-    known = dict.fromkeys((*(name.partition(" #")[0] for name in log.names), *columns, TIME))
+    known = dict.fromkeys((*(name.partition(" #")[0] for name in log.names), *numeric_columns(log.table.schema), TIME))
     yield from (name if name.isidentifier() else f"`{name}`" for name in known)
     yield from computed_columns(log)
     yield from (f"{name}(" for name in (*SIGNALS, *FUNCTIONS))
@@ -206,6 +204,10 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
     # Display
 
+    def action_act(self, name: str) -> None:
+        super().action_act(name)
+        self.update()
+
     def situation(self) -> int | None:
         """Return the number of rows, None while there is no log."""
         return None if self._model is None else self._model.log.rows
@@ -242,7 +244,6 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.pane.turn_to(name)
         if not self.pane.display:
             self.lay_out(chart=True, pane=True)
-        self.update()
 
     def _progress(self) -> str:
         opened = self._model.opened if self._model else None
@@ -264,19 +265,18 @@ class LogScreen(ActionHost, ClosesOnce[None]):
     def choose(self, number: int) -> None:
         """Select a row of a pane other than the table; the cursor goes to its time."""
         model, name = self.model, self.pane.name_shown
-        bands, notes = model.bands() if name == "bands" else [], model.notes if name == "notes" else []
-        events = model.events.found(model.log) if name == "events" else []
-        count = len(bands or notes or events) or len(model.opened.runs if name == "runs" else model.traces.ticked())
+        count = len(PANES[name].rows(model))
         self.pane.chosen = number = min(max(number, 0), max(count - 1, 0))
-        if bands:
-            model.selected = bands[number].variable
+        if name == "bands" and count:
+            band = model.bands()[number]
+            model.selected = band.variable
             rows = model.trace.series.rows
-            first, last = np.searchsorted(rows, (bands[number].first_row, bands[number].last_row))
+            first, last = np.searchsorted(rows, (band.first_row, band.last_row))
             model.go_to_row(int(rows[(first + last) // 2]))
-        elif events:
+        elif name == "events" and count:
             self.go_to_event(number)
-        elif notes:
-            _, note = notes[number]
+        elif name == "notes" and count:
+            _, note = model.notes[number]
             if note.variable in model.traces:
                 model.selected = note.variable
             model.go_to_moment(note.start_s)
@@ -321,8 +321,13 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             forms: The accepted forms.
             completes: Whether to offer the words of expressions as completions.
         """
+
+        def apply(text: str) -> None:
+            do(text)
+            self.update()
+
         words = tuple(expression_words(self.model.log)) if completes else ()
-        self.app.push_screen(LinePrompt(title, do, value, forms, words))
+        self.app.push_screen(LinePrompt(title, apply, value, forms, words))
 
     def ask_columns(self) -> None:
         """Ask for the meaning of the file's columns."""
@@ -332,18 +337,17 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         elif not candidates(model.log.table):
             self.say("There is no numeric column")
         else:
-            self.app.push_screen(ColumnsDialog(model.log.bare()), self._set_columns)
+            self.app.push_screen(ColumnsDialog(model.opened.request, model.log.bare()), self._set_columns)
 
-    def _set_columns(self, chosen: Columns | None) -> None:
-        if chosen is None:
+    def _set_columns(self, request: LogRequest | None) -> None:
+        if request is None:
             return
-        opened, log = self.model.opened, self.model.log
-        request = replace(opened.request, time=chosen.time, values=chosen.values, unit=chosen.unit)
-        if not opened.done:
+        log = self.model.log
+        if not self.model.opened.done:
             self.open(request)
             return
         # All of it has been read: the same rows have another meaning now.
-        layout = choose_columns(log.bare().table, chosen.time, chosen.values, chosen.unit)
+        layout = choose_columns(log.bare().table, request.time, request.values, request.unit)
         self.request = request
         self.set_model(Model(OpenedLog(request, log.with_layout(layout))))
 

@@ -15,12 +15,12 @@ from tuisim.config.command_line import Arguments
 from tuisim.core.conditions import Operator
 from tuisim.errors import ConfigError
 from tuisim.logs import signals
-from tuisim.logs.arrow import numbers_of, unique_names
+from tuisim.logs.arrow import unique_names
 from tuisim.logs.bands import band_report, in_words
-from tuisim.logs.columns import is_numeric
+from tuisim.logs.columns import numeric_columns
 from tuisim.logs.csv_cells import write_csv
 from tuisim.logs.derived import reckoned_series
-from tuisim.logs.export import check_target, export_frame, export_log
+from tuisim.logs.export import check_target, export_frame, export_log, table_metadata
 from tuisim.logs.expressions import evaluate
 from tuisim.logs.log import Log, LogTable, Series
 from tuisim.logs.signals import Between
@@ -29,7 +29,6 @@ from tuisim.runs.arrays import FloatArray
 if TYPE_CHECKING:
     import pandas as pd
 
-ANALYSIS_FORMAT = 1
 _QUANTILE_NAMES = tuple(f"q{100 * part:g}" for part in signals.QUANTILES)
 
 
@@ -173,8 +172,7 @@ def wide_frame(log: Log) -> pd.DataFrame:
     import pandas as pd
 
     if not log.layout.variable:
-        numeric = [n for n in log.table.column_names if is_numeric(log.table.schema.field(n).type)]
-        return pd.DataFrame({name: numbers_of(log.table.column(name)) for name in numeric})
+        return pd.DataFrame({name: log.numbers(name) for name in numeric_columns(log.table.schema)})
     series = [one for one in map(log.series, log.names) if len(one.rows)]
     moments = np.unique(np.concatenate([one.time_s for one in series]))
     return _sampled_at(moments, series)
@@ -280,8 +278,7 @@ def _print_json(frame: pd.DataFrame) -> None:
 def write_frame(frame: pd.DataFrame, arguments: Arguments) -> None:
     """Write a frame to the file `out`; the suffix selects the format."""
     check_target(arguments.out)
-    metadata = {"format": ANALYSIS_FORMAT, "table": arguments.action, "columns": list(frame.columns)}
-    export_frame(frame, arguments.out, metadata)
+    export_frame(frame, arguments.out, table_metadata(arguments.action, frame))
     echo_written(arguments.out)
 
 

@@ -26,38 +26,22 @@ _AGAINST = (
 def mark(screen: LogScreen) -> None:
     """Set the second cursor here, or remove it."""
     screen.model.mark_s = screen.model.cursor_s if screen.model.mark_s is None else None
-    screen.update()
-
-
-def zoom(screen: LogScreen, factor: float) -> None:
-    """Show a shorter or longer time range."""
-    screen.model.zoom(factor)
-    screen.update()
 
 
 def pan(screen: LogScreen, share: float) -> None:
     """Show an earlier or later time range."""
     screen.model.pan(share)
-    screen.update()
 
 
 def fit(screen: LogScreen) -> None:
     """Show the whole time range."""
     screen.model.limits = None
-    screen.update()
-
-
-def select(screen: LogScreen, step: int) -> None:
-    """Select another variable."""
-    screen.model.select(step)
-    screen.update()
 
 
 def tick(screen: LogScreen) -> None:
     """Show or hide the selected variable."""
     if screen.model.selected:
         screen.model.trace.on = not screen.model.trace.on
-        screen.update()
 
 
 def facets(screen: LogScreen) -> None:
@@ -83,7 +67,6 @@ def align(screen: LogScreen) -> None:
     def go(text: str) -> None:
         screen.model.align(text or TIME)
         screen.redraw_chart()
-        screen.update()
 
     screen.ask("Align runs by", go, screen.model.alignment, _ALIGNMENTS)
 

@@ -7,12 +7,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from textual.worker import get_current_worker
-
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import OpenedLog
 from tuisim.app import background
-from tuisim.app.analyser.panes import PANES, pane_frame
+from tuisim.app.analyser.panes import PANES, band_search, pane_frame
 from tuisim.app.dialogs.save import SaveDialog
 from tuisim.errors import counted
 from tuisim.terminal.app import offer
@@ -24,8 +22,6 @@ if TYPE_CHECKING:
 
 MOST_COPIED = 10_000
 """Most rows to copy: terminals drop longer texts."""
-_MANY_ROWS = 20_000
-"""With more rows than this, searching for bands would block the keys."""
 _CHARTS = ((".svg", "vector graphics, sharp at any size"), (".png", "pixels"), (".txt", "text, as shown on the screen"))
 _REPORT = ((".html", "program, world, chart, bands, statistics and notes on one page"),)
 
@@ -88,12 +84,12 @@ def _saved(screen: LogScreen, notice: str, target: Path, _: object) -> None:
 
 
 def _write_rows(model: Model, frame: pd.DataFrame | None, target: Path) -> None:
-    from tuisim.logs.export import LOG_FORMAT, export_frame, export_log
+    from tuisim.logs.export import export_frame, export_log, table_metadata
 
     if frame is None:
         export_log(model.log, model.rows.shown(), target)
     else:
-        export_frame(frame, target, {"format": LOG_FORMAT, "table": "pane", "columns": list(frame.columns)})
+        export_frame(frame, target, table_metadata("pane", frame))
 
 
 def chart(screen: LogScreen) -> None:
@@ -132,8 +128,5 @@ def report(screen: LogScreen) -> None:
 
 def _write_report(opened: OpenedLog, target: Path, names: Sequence[str]) -> None:
     from tuisim.analysis.report import write_report
-    from tuisim.logs.plateaus import plateaus, plateaus_in_subprocess
 
-    worker = get_current_worker()
-    search = partial(plateaus_in_subprocess, stopped=lambda: worker.is_cancelled)
-    write_report(opened, target, names, search if opened.log.rows > _MANY_ROWS else plateaus)
+    write_report(opened, target, names, band_search(opened.log.rows))

@@ -6,7 +6,7 @@ footer, help and command palette follow from the line.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 
 from tuisim.app.action import Action, key_groups
@@ -47,16 +47,15 @@ def _choose_theme(screen: LogScreen) -> None:
     screen.app.push_screen(theme_list())
 
 
-def _switch_pixels(screen: LogScreen) -> None:
-    screen.call_next(screen.run_action, "app.switch_pixels")
+def _show(pane: str) -> Callable[[LogScreen], None]:
+    return lambda screen: screen.show_pane(pane)
 
 
-def _redraw(screen: LogScreen) -> None:
-    screen.call_next(screen.run_action, "app.redraw")
+def _app(action: str) -> Callable[[LogScreen], None]:
+    def go(screen: LogScreen) -> None:
+        screen.call_next(screen.run_action, f"app.{action}")
 
-
-def _screenshot(screen: LogScreen) -> None:
-    screen.call_next(screen.run_action, "app.save_screen")
+    return go
 
 
 def _suspend(screen: LogScreen) -> None:
@@ -71,11 +70,11 @@ def _leave(screen: LogScreen) -> None:
 ACTIONS: Mapping[str, LogAction] = {
     action.id: action
     for action in (
-        Action("table", "t", "Table", PANE, partial(panes.show, pane="table"), _log, "table"),
-        Action("bands", "b", "Bands: levels and names", PANE, partial(panes.show, pane="bands"), _log, "bands"),
-        Action("statistics", "s", "Statistics", PANE, partial(panes.show, pane="statistics"), _log, "stats"),
-        Action("notes", "n", "Notes", PANE, partial(panes.show, pane="notes"), _log, "notes"),
-        Action("runs", "r", "Runs of this log", PANE, partial(panes.show, pane="runs"), _log, "runs"),
+        Action("table", "t", "Table", PANE, _show("table"), _log, "table"),
+        Action("bands", "b", "Bands: levels and names", PANE, _show("bands"), _log, "bands"),
+        Action("statistics", "s", "Statistics", PANE, _show("statistics"), _log, "stats"),
+        Action("notes", "n", "Notes", PANE, _show("notes"), _log, "notes"),
+        Action("runs", "r", "Runs of this log", PANE, _show("runs"), _log, "runs"),
         Action("events", "c", "Events: crossings of a threshold; again: set it", PANE, panes.events, _log, "events"),
         Action("note", "m", "Note on the sample, band or range from A", LOG, log.note, _rows, "note"),
         Action("up", "up", "Previous row", CURSOR, partial(panes.rows, step=-1), _rows),
@@ -92,13 +91,13 @@ ACTIONS: Mapping[str, LogAction] = {
         Action("event", "j", "Next event", CURSOR, partial(panes.event, step=1), _rows),
         Action("event-before", "J", "Previous event", CURSOR, partial(panes.event, step=-1), _rows),
         Action("mark", "a", "Set A here and measure from it; remove it", CHART, chart.mark, _rows, "A"),
-        Action("zoom-in", "z", "Zoom in at the cursor", CHART, partial(chart.zoom, factor=0.5), _rows, "zoom"),
-        Action("zoom-out", "Z", "Zoom out", CHART, partial(chart.zoom, factor=2.0), _rows),
+        Action("zoom-in", "z", "Zoom in at the cursor", CHART, lambda screen: screen.model.zoom(0.5), _rows, "zoom"),
+        Action("zoom-out", "Z", "Zoom out", CHART, lambda screen: screen.model.zoom(2.0), _rows),
         Action("pan-left", "left_square_bracket", "Scroll left", CHART, partial(chart.pan, share=-0.25), _rows),
         Action("pan-right", "right_square_bracket", "Scroll right", CHART, partial(chart.pan, share=0.25), _rows),
         Action("fit", "f", "Show the whole time range", CHART, chart.fit, _rows),
-        Action("variable", "v", "Next variable", CHART, partial(chart.select, step=1), _rows, "variable"),
-        Action("variable-before", "V", "Previous variable", CHART, partial(chart.select, step=-1), _rows),
+        Action("variable", "v", "Next variable", CHART, lambda screen: screen.model.select(1), _rows, "variable"),
+        Action("variable-before", "V", "Previous variable", CHART, lambda screen: screen.model.select(-1), _rows),
         Action("tick", "space", "Show or hide the variable", CHART, chart.tick, _rows, "tick"),
         Action("facets", "x", "One chart for each variable, or one for all", CHART, chart.facets, _rows, "facets"),
         Action("marks", "X", "Points or lines", CHART, partial(chart.switch, option="marks"), _rows),
@@ -115,8 +114,8 @@ ACTIONS: Mapping[str, LogAction] = {
         Action("search", "slash", "Search", TABLE, panes.search, _rows, "search"),
         Action("find-next", "N", "Next match", TABLE, partial(panes.find, step=1), _rows),
         Action("find-before", "P", "Previous match", TABLE, partial(panes.find, step=-1), _rows),
-        Action("hide", "h", "Hide the column", TABLE, panes.hide, _rows),
-        Action("freeze", "p", "Pin the column at the left", TABLE, panes.freeze, _rows),
+        Action("hide", "h", "Hide the column", TABLE, lambda screen: screen.model.rows.hide(), _rows),
+        Action("freeze", "p", "Pin the column at the left", TABLE, lambda screen: screen.model.rows.freeze(), _rows),
         Action("copy", "y", "Copy the value", FILES, files.copy_value, _rows, "copy"),
         Action("copy-row", "Y", "Copy the row", FILES, files.copy_row, _rows),
         Action("copy-pane", "ctrl+y", "Copy the table as shown, or the pane", FILES, files.copy_pane, _rows),
@@ -131,9 +130,11 @@ ACTIONS: Mapping[str, LogAction] = {
         Action("world", "w", "Show or hide the world", PANE, panes.world, _log),
         Action("help", "question_mark", "Guide: all keys, and every page", APP, _help, footer="help"),
         Action("theme", "f10", "Theme: light, high contrast and others", APP, _choose_theme),
-        Action("pixels", "number_sign", "Characters or pixels", APP, _switch_pixels),
-        Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, _redraw),
-        Action("screenshot", "I,f12", "Save a screenshot: SVG and PNG (also F12)", APP, _screenshot, shown_key="I"),
+        Action("pixels", "number_sign", "Characters or pixels", APP, _app("switch_pixels")),
+        Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, _app("redraw")),
+        Action(
+            "screenshot", "I,f12", "Save a screenshot: SVG and PNG (also F12)", APP, _app("save_screen"), shown_key="I"
+        ),
         Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, _suspend),
         Action("leave", "q,escape", "Leave the analyser", APP, _leave, footer="leave", shown_key="q"),
     )

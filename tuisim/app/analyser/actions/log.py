@@ -70,7 +70,6 @@ def derived(screen: LogScreen) -> None:
             # The log may have grown while it was computed.
             derive(model, text)
         screen.redraw_chart()
-        screen.update()
 
     can_reckon = set(NEEDED) <= set(screen.model.log.table.column_names)
     forms = (*_DERIVED, *((_RECKONING,) if can_reckon else ()), ("functions", ", ".join(FUNCTIONS)))
@@ -103,7 +102,6 @@ def note(screen: LogScreen) -> None:
             raise LogError("the note is empty", "Escape cancels")
         screen.model.add_note(text, start_s, stop_s, name, run)
         screen.say("Note saved: n lists the notes")
-        screen.update()
 
     screen.ask(title, keep, value)
 
@@ -124,7 +122,6 @@ def delete_note(screen: LogScreen) -> None:
         return
     model.drop_note(*model.notes[min(screen.pane.chosen, len(model.notes) - 1)])
     screen.choose(min(screen.pane.chosen, max(len(model.notes) - 1, 0)))
-    screen.update()
 
 
 # Differences

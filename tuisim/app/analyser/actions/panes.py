@@ -27,11 +27,6 @@ _THRESHOLDS = (
 )
 
 
-def show(screen: LogScreen, pane: str) -> None:
-    """Show a pane."""
-    screen.show_pane(pane)
-
-
 def events(screen: LogScreen) -> None:
     """Show the events; ask for thresholds if there are none, or if the events are shown already."""
     model = screen.model
@@ -51,7 +46,6 @@ def _search(screen: LogScreen, text: str) -> None:
         # The log may have grown during the search: search again.
         screen.model.events.set(*result)
         screen.choose(0)
-        screen.update()
 
     screen.work("searching for events …", log.rows, lambda _: (log, thresholds, events_of(log, thresholds)), found)
 
@@ -81,7 +75,6 @@ _FILTERS = (
 def choose(screen: LogScreen, step: int) -> None:
     """Select another column."""
     screen.model.rows.choose(step)
-    screen.update()
 
 
 def sort(screen: LogScreen) -> None:
@@ -102,7 +95,6 @@ def _arrange(screen: LogScreen, model: Model, arrangement: TableView) -> None:
     rows.view = arrangement
     if rows.view.conditions and len(rows):
         model.go_to_row(rows.row(rows.place(model.row)))
-    screen.update()
 
 
 def select(screen: LogScreen) -> None:
@@ -121,11 +113,7 @@ def select(screen: LogScreen) -> None:
 def show_all(screen: LogScreen) -> None:
     """Show every row and every column, in the order of the log."""
     screen.give_up()
-    rows = screen.model.rows
-    rows.sort("", False)
-    rows.filter(())
-    rows.show_all()
-    screen.update()
+    screen.model.rows.show_all()
 
 
 def search(screen: LogScreen) -> None:
@@ -163,21 +151,8 @@ def find(screen: LogScreen, step: int) -> None:
             screen.pane.turn_to("table")
             model.go_to_row(rows.row(place))
             model.follow_cursor()
-            screen.update()
 
     screen.work("searching …", len(rows), match, found)
-
-
-def hide(screen: LogScreen) -> None:
-    """Hide the selected column."""
-    screen.model.rows.hide()
-    screen.update()
-
-
-def freeze(screen: LogScreen) -> None:
-    """Freeze the selected column at the left, or release it."""
-    screen.model.rows.freeze()
-    screen.update()
 
 
 _SECONDS = re.compile(r"(-?\d+(?:\.\d+)?)\s*s")
@@ -194,7 +169,6 @@ def rows(screen: LogScreen, step: int) -> None:
             model.follow_cursor()
     else:
         screen.choose(pane.chosen + step)
-    screen.update()
 
 
 def pages(screen: LogScreen, step: int) -> None:
@@ -215,7 +189,6 @@ def columns(screen: LogScreen, step: int) -> None:
     if model.row == before:
         model.step(1 if step > 0 else -1)
     model.follow_cursor()
-    screen.update()
 
 
 def go_to(screen: LogScreen) -> None:
@@ -236,7 +209,6 @@ def go_to(screen: LogScreen) -> None:
                 f"{text!r} is not a row or a time", f"a row from 1 to {model.log.rows}, or a time such as 2.5s"
             )
         model.follow_cursor()
-        screen.update()
 
     screen.ask("Go to", go, forms=_PLACES)
 
@@ -254,4 +226,3 @@ def event(screen: LogScreen, step: int) -> None:
         screen.say("This is the last event" if step > 0 else "This is the first event")
         return
     screen.go_to_event(ahead[0] if step > 0 else ahead[-1])
-    screen.update()
