@@ -1,1 +1,1 @@
-"""Functions behind the keys of the analyser: each group of the table of keys, `table.py`, in one file."""
+"""Functions behind the keys of the analyser: each group of the table of keys, `keys.py`, in one file."""
