@@ -18,7 +18,7 @@ from tuisim.analysis.model import Model
 from tuisim.analysis.pins import Pin, svg_of_pins
 from tuisim.analysis.source import LogRequest, OpenedLog, opening
 from tuisim.charts.files import FACET_PX, clean, svg_of, write_whole
-from tuisim.charts.layout import ChartData, Span, laid_out
+from tuisim.charts.layout import Span, laid_out
 from tuisim.config.files import name_of
 from tuisim.core.geometry import pose_in_words
 from tuisim.core.profile import NS_PER_S
@@ -213,7 +213,7 @@ def _chart(model: Model) -> list[str]:
         for report in model.reports()
         for band in report.bands[:MOST_BANDS]
     )
-    chart = ChartData(chart.title, chart.lines, chart.x_limits, chart.x_label, chart.facets, spans=spans)
+    chart = replace(chart, spans=spans)
     hidden = [trace.name for trace in model.traces if not trace.on]
     return [
         f"<figure>{svg_of(laid_out(chart, _WIDTH_PX, height, titled=False), inside=True)}</figure>",
