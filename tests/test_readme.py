@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from tests.conftest import ROOT, Command
+from tuisim.app.action import label_of_key
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
 from tuisim.app.panels import PANELS
@@ -35,7 +36,7 @@ TABLES = {
     "export format": EXPORTERS,
     "movie format": MOVIE_FORMATS,
     "option": [option.flags[0] for option in OPTIONS],
-    "panel's key": [panel.key for panel in PANELS.values()],
+    "panel's key": [label_of_key(panel.key) for panel in PANELS.values()],
     "app's key": [action.key_label for action in ACTIONS.values() if not action.id.startswith("nudge-")],
     "analyser's key": [action.key_label for action in ANALYSER_ACTIONS.values()],
 }

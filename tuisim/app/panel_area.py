@@ -11,6 +11,7 @@ from textual.containers import Container
 from textual.message import Message
 from textual.widget import Widget
 
+from tuisim.app.action import label_of_key
 from tuisim.app.layout.arrangement import (
     KeptLayout,
     Preset,
@@ -228,7 +229,7 @@ class PanelArea(Container):
         gone = [PANELS[panel] for panel in before if panel not in wanted and not self.shown(panel)]
         came = " and ".join(PANELS[panel].title for panel in asked if self.shown(panel))
         if gone and came:
-            names = ", ".join(f"{info.title} ({info.key})" for info in gone)
+            names = ", ".join(f"{info.title} ({label_of_key(info.key)})" for info in gone)
             self.app.notify(f"{came} replaces {names}")
 
     def maximize(self, panel: str) -> None:

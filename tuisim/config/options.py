@@ -247,7 +247,7 @@ OF_THE_APP = frozenset({"speed", *(option.path for option in OPTIONS if option.g
 }
 """The paths of settings that do not affect the run."""
 
-PANELS = tuple(option.panel for option in OPTIONS if option.panel)
+OPTION_PANELS = tuple(option.panel for option in OPTIONS if option.panel)
 """Every panel that an option shows or hides."""
 
 _PANEL_LISTS = ("panels_on", "panels_off")

@@ -17,7 +17,7 @@ from tuisim.config.files import Location, Scalar
 from tuisim.config.folders import programs_folder, user_path
 from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import load_obstacles, obstacle_lines, obstacles_from_list
-from tuisim.config.options import PANELS, RUN_VALUES, settings_of
+from tuisim.config.options import OPTION_PANELS, RUN_VALUES, settings_of
 from tuisim.config.profiles import load_profile, profile_from_table, profile_lines
 from tuisim.config.robots import RobotChoice, load_robot, robot_from_table, robot_lines
 from tuisim.core import tree
@@ -145,8 +145,8 @@ def world_from_table(data: object, path: Path, mats: str | None = None, above: t
     found |= _infrared(world, at)
     for key, field in _PANEL_FIELDS.items():
         if key in world:
-            listed = files.entries(world[key], at.at(key), len(PANELS), "panels")
-            found[field] = tuple(files.one_of(panel, place, PANELS) for panel, place in listed)
+            listed = files.entries(world[key], at.at(key), len(OPTION_PANELS), "panels")
+            found[field] = tuple(files.one_of(panel, place, OPTION_PANELS) for panel, place in listed)
     if "arguments" in world:
         words = enumerate(world["arguments"], start=1)
         found["arguments"] = tuple(_argument(word, at.at(f"arguments[{number}]")) for number, word in words)

@@ -13,11 +13,11 @@ from typing import Annotated, Any, ClassVar, TypeAlias
 
 from msgspec import Meta
 
-from tuisim.config.options import PANELS
+from tuisim.config.options import OPTION_PANELS
 from tuisim.errors import ConfigError, nearest, require_regex
 from tuisim.goals.spec import Goal, Range
 
-SHOWABLE = (*PANELS, "debug", "brick", "obstacles", "goals")
+SHOWABLE = (*OPTION_PANELS, "debug", "brick", "obstacles", "goals")
 """Ids of the panels that a step can ask for."""
 SEEABLE = (*SHOWABLE, "analyser")
 """Ids of what a student can look at for the answer to a question."""

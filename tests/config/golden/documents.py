@@ -24,6 +24,7 @@ FITS = ("stretch", "fit", "centre", "corner")
 COLORS = ("red", "BLUE", "navy", "#0a1b2c", "#FFF000", "rebeccapurple", "lightgrey", "darkslategray")
 PANELS = ("output", "arrays", "chart", "instrumentation", "noise", "settings", "positioning", "code", "world",
           "controls")  # fmt: skip
+"""As all these lists: not to be extended, for the cases of a golden file of former code are drawn from them."""
 BUTTONS = ("top_left", "bottom_left", "top_right", "bottom_right")
 INPUTS = ("in1", "in2", "in3", "in4")
 OUTPUTS = ("outA", "outB", "outC", "outD")

@@ -66,7 +66,8 @@ def test_settings_give_what_they_gave(share: int, tmp_path: Path) -> None:
             wrong.append(told(case, changes))
     if wrong:
         shown = "\n".join(wrong[:MOST_SHOWN])
-        pytest.fail(f"{len(wrong)} cases give something else than before:\n{shown}", pytrace=False)
+        meant = "If that is meant, say why in a [[difference]] of tests/config/golden/differences.toml."
+        pytest.fail(f"{len(wrong)} cases give something else than before:\n{shown}\n{meant}", pytrace=False)
 
 
 def test_the_cases_are_those_of_the_golden_file() -> None:

@@ -7,7 +7,7 @@ from contextlib import suppress
 from importlib import import_module
 from typing import Any
 
-from tuisim.app.action import Action
+from tuisim.app.action import Action, label_of_key
 from tuisim.app.editor.area import EDITOR_KEYS
 from tuisim.app.keymap import with_keys
 from tuisim.app.panels import PANELS
@@ -61,6 +61,8 @@ def editor_keys() -> Table:
 
 def panels() -> Table:
     """Return the panels, their keys and from which size of terminal they are shown at the start."""
-    rows = [(code(one.key), one.title, f"from a {one.sizes[0]} terminal" if one.sizes else "when you open it")
-            for one in PANELS.values()]  # fmt: skip
+    rows = [
+        (code(label_of_key(one.key)), one.title, f"from a {one.sizes[0]} terminal" if one.sizes else "when you open it")
+        for one in PANELS.values()
+    ]
     return Table(("key", "panel", "shown"), rows)

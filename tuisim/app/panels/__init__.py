@@ -62,6 +62,7 @@ class PanelInfo:
     id: str
     title: str
     key: str
+    """In Textual's notation, such as `f9`; `action.label_of_key` is for people."""
     path: str
     """Module in this package, and class; imported when the panel is first shown."""
     place: PanelPlace
