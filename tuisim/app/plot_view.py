@@ -46,7 +46,8 @@ class PlotStrip(JoinedStrip):
         super().__init__(parts)
         self._spare = spare
 
-    def _make(self) -> list[Segment]:
+    def make(self) -> list[Segment]:
+        """Return its segments: with characters only."""
         return list(self._spare())
 
     def _part(self, start: int, end: int) -> PlotStrip:
