@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from tuisim.charts.files import check_format
 from tuisim.errors import ConfigError, ExportError
 from tuisim.movies import files
 from tuisim.movies.clip import ClipPanel, Recorded
-from tuisim.movies.files import MOVIE_FORMATS, Clip, check_target, save_movie, save_picture, small_movie
+from tuisim.movies.files import MOVIE_FORMATS, Clip, save_movie, save_picture, small_movie
 
 
 @pytest.fixture
@@ -36,7 +37,7 @@ def test_a_picture_is_of_pixels_or_of_shapes(suffix: str, magic: bytes, recorded
 
 def test_a_suffix_that_no_format_has_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ExportError, match=r"unknown format '\.mp4'") as caught:
-        check_target(tmp_path / "a.mp4", "movie", MOVIE_FORMATS)
+        check_format(tmp_path / "a.mp4", "movie", MOVIE_FORMATS)
     assert ".gif, .webp" in str(caught.value)
 
 

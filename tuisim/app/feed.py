@@ -11,12 +11,11 @@ import numpy.typing as npt
 
 from tuisim.core.field import Field
 from tuisim.core.sensors import columns_of
-from tuisim.core.spec import RobotSpec
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.runs.frames import column_values
 from tuisim.runs.records import OutputRow
 from tuisim.runs.samples import samples_of
-from tuisim.scene.pen import pen_points_mm
+from tuisim.scene.pen import drawn_points_mm
 
 if TYPE_CHECKING:
     from tuisim.app.panel_area import PanelArea
@@ -94,7 +93,7 @@ class Feed:
             return [], []
         kept_at = _thinned(0, len(records), TRACE_POINTS_A_FEED)
         records, jumps = records[kept_at], jumps[kept_at]
-        xs, ys, lifted = _pen_points(records, self.recording.spec.robot)
+        xs, ys, lifted = drawn_points_mm(self.recording.spec.robot, records)
         # One gap is enough for a stretch with the pen up.
         kept = ~(lifted & np.concatenate(([self._lifted], lifted[:-1])))
         self._lifted = bool(lifted[-1])
@@ -110,7 +109,7 @@ def trace_until(run: Recording, tick: int) -> Points:
         return [], []
     kept_at = np.append(np.arange(0, tick, stride), tick)
     jumps = _jumps(records, None)[kept_at]
-    xs, ys, lifted = _pen_points(records[kept_at], run.spec.robot)
+    xs, ys, lifted = drawn_points_mm(run.spec.robot, records[kept_at])
     kept = ~(lifted & np.concatenate(([False], lifted[:-1])))
     return _with_gaps(xs[kept], ys[kept], jumps[kept])
 
@@ -121,16 +120,6 @@ def _jumps(records: np.ndarray[Any, Any], before_mm: tuple[float, float] | None)
     way = np.hypot(np.diff(records["x_mm"], prepend=before_x), np.diff(records["y_mm"], prepend=before_y))
     # NaN, before the first record, counts as a jump, so that the traces of two runs are not joined.
     return np.cumsum(~(way < _JUMP_MM))
-
-
-def _pen_points(
-    records: np.ndarray[Any, Any], robot: RobotSpec
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.bool_]]:
-    """Return where the pen was at each record (NaN where it was up) and whether it was up."""
-    xs, ys = pen_points_mm(robot, records)
-    lifted = (records["flags"] & FLAG_PEN_DOWN) == 0
-    xs[lifted] = ys[lifted] = np.nan
-    return xs, ys, lifted
 
 
 def _with_gaps(xs: npt.NDArray[np.float64], ys: npt.NDArray[np.float64], jumps: npt.NDArray[np.int64]) -> Points:

@@ -18,7 +18,7 @@ from tuisim.charts.text_chart import ChartPicture
 from tuisim.terminal.cell_view import JoinedStrip, LinesView, PictureStrip
 from tuisim.terminal.picture import Graphics, TilePicture
 from tuisim.terminal.picture_mode import Sharpness, picture_mode_of
-from tuisim.terminal.text_runs import Run
+from tuisim.terminal.text_runs import Run, rgb_of
 
 if TYPE_CHECKING:
     from tuisim.core.css_colors import Rgb
@@ -115,7 +115,7 @@ class PlotView(LinesView):
     def _image(self, plots: Sequence[tuple[int, int, Plot]], cell: tuple[int, int]) -> Pixels:
         (width, height), size = cell, self.size
         image: Pixels = np.zeros((size.height * height, size.width * width, 3), np.uint8)
-        inks = PlotInks(self.ground_rgb, self._ink(AXIS.color.triplet if AXIS.color else None), self._ink(_CURSOR))
+        inks = PlotInks(self.ground_rgb, self._ink(rgb_of(AXIS.color)), self._ink(_CURSOR))
         for top, left, plot in plots:
             rows, cols = plot.size
             curves = tuple(replace(curve, rgb=self._ink(curve.rgb)) for curve in plot.curves)

@@ -20,6 +20,7 @@ from textual.theme import BUILTIN_THEMES, Theme
 
 from tuisim import palette
 from tuisim.terminal.pixels import Rgb
+from tuisim.terminal.text_runs import rgb_of
 
 OWN_THEME = "textual-dark"
 """Under it the app's colours are as they are."""
@@ -95,7 +96,7 @@ class ThemeColors(LineFilter):
         return round(255 * red), round(255 * green), round(255 * blue)
 
     def _themed(self, style: Style) -> Style:
-        fore, back = _rgb_of(style.color), _rgb_of(style.bgcolor)
+        fore, back = rgb_of(style.color), rgb_of(style.bgcolor)
         # No own background is white: a white one shows what a sensor sees.
         new_fore, new_back = fore and self.rgb(fore), back and (back if back == _WHITE else self.rgb(back))
         if new_fore and fore in self._replaced:
@@ -123,13 +124,6 @@ class ThemeColors(LineFilter):
 _WHITE = (255, 255, 255)
 _LINE = Color.parse(palette.LINE).rgb
 """Frames need not be as strong as text."""
-
-
-def _rgb_of(color: RichColor | None) -> Rgb | None:
-    if color is None or color.triplet is None:
-        return None
-    red, green, blue = color.triplet
-    return red, green, blue
 
 
 def _light_of(color: Color) -> float:

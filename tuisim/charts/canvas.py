@@ -18,7 +18,7 @@ from tuisim.charts.axes import Limits
 from tuisim.charts.traces import min_max
 from tuisim.core.css_colors import Rgb
 from tuisim.runs.arrays import FloatArray
-from tuisim.terminal.text_runs import Run
+from tuisim.terminal.text_runs import Run, rgb_of
 
 TextRun = tuple[str, Rgb | None]
 """A piece of a row in one colour, None where nothing is drawn."""
@@ -108,18 +108,11 @@ def _runs(codes: str, columns: int) -> tuple[TextRun, ...]:
     runs: list[TextRun] = []
     at = 0
     for start, end, style in line.spans:
-        runs += [(line.plain[at:start], None), (line.plain[start:end], _rgb_of(style))]
+        rgb = rgb_of(style.color) if isinstance(style, Style) else None
+        runs += [(line.plain[at:start], None), (line.plain[start:end], rgb)]
         at = end
     runs.append((line.plain[at:], None))
     return tuple(run for run in runs if run[0])
-
-
-def _rgb_of(style: str | Style) -> Rgb | None:
-    color = style.color if isinstance(style, Style) else None
-    if color is None or color.triplet is None:
-        return None
-    red, green, blue = color.triplet
-    return red, green, blue
 
 
 AXIS, PLAIN = Style(color=palette.LABEL), Style(color=palette.INK)

@@ -50,11 +50,12 @@ def movie(
     size: str,
 ) -> int:
     """Save a run as a movie: the world, the chart, the sensor arrays, with time and values."""
-    from tuisim.movies.files import MOVIE_FORMATS, Clip, check_target, save_movie
+    from tuisim.charts.files import check_format
+    from tuisim.movies.files import MOVIE_FORMATS, Clip, save_movie
 
     run = RunStore().load_run(word)
     path = Path(out or _default_name(run, "movie.gif"))
-    check_target(path, "movie", MOVIE_FORMATS)
+    check_format(path, "movie", MOVIE_FORMATS)
     if speed is not None:
         _check_number(speed, 0.01, 1000, "--speed")
     _check_number(fps, 1, 50, "--fps")
@@ -80,11 +81,12 @@ def movie(
 )
 def picture(word: str, out: str | None, time_s: float | None, panels: str | None, size: str) -> int:
     """Save one instant of a run as a picture: the world, the chart, the sensor arrays."""
-    from tuisim.movies.files import PICTURE_FORMATS, check_target, save_picture
+    from tuisim.charts.files import check_format
+    from tuisim.movies.files import PICTURE_FORMATS, save_picture
 
     run = RunStore().load_run(word)
     path = Path(out or _default_name(run, "picture.png"))
-    check_target(path, "picture", PICTURE_FORMATS)
+    check_format(path, "picture", PICTURE_FORMATS)
     shown, sides = _panels_of(panels), _size_of(size)
     with Progress(f"drawing {path.name}"):
         recorded = _recorded(run)

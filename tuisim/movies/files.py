@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,9 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tuisim.charts.files import svg_of, write_whole
-from tuisim.errors import ConfigError, ExportError
-from tuisim.logs.export import check_place
+from tuisim.charts.files import check_format, png_of, svg_of, write_whole
+from tuisim.errors import ConfigError
 from tuisim.movies import image_files
 from tuisim.movies.clip import ClipPanel, Recorded, Shot, shot_count, shots_of
 from tuisim.movies.painter import FramePainter, Size
@@ -101,9 +99,7 @@ MOVIE_FORMATS: Mapping[str, MovieFormat] = {".gif": MovieFormat(_gif, 1), ".webp
 
 
 def _png(painter: FramePainter, recorded: Recorded, time_s: float) -> bytes:
-    content = io.BytesIO()
-    painter.image(recorded.moment(time_s)).save(content, "png")
-    return content.getvalue()
+    return png_of(painter.image(recorded.moment(time_s)))
 
 
 def _svg(painter: FramePainter, recorded: Recorded, time_s: float) -> bytes:
@@ -114,22 +110,6 @@ PICTURE_FORMATS: Mapping[str, Callable[[FramePainter, Recorded, float], bytes]] 
 """Every format of a picture by the suffix of its files. To add one: write its function and a line here."""
 
 
-def check_target(path: Path, what: str, formats: Mapping[str, object]) -> None:
-    """Check that a movie or a picture can be written to a path.
-
-    Args:
-        what: `movie` or `picture`.
-        formats: Its formats by suffix.
-
-    Raises:
-        ExportError: unknown suffix, or it cannot be written.
-    """
-    if path.suffix.lower() not in formats:
-        allowed = ", ".join(formats)
-        raise ExportError(f"cannot write {path}: unknown format {path.suffix!r}", f"a {what} ends in {allowed}")
-    check_place(path)
-
-
 def save_movie(clip: Clip, path: Path, watch: Watch = lambda done, total: None) -> int:
     """Write a movie, replacing an existing file; return its size in bytes.
 
@@ -138,7 +118,7 @@ def save_movie(clip: Clip, path: Path, watch: Watch = lambda done, total: None) 
         ExportError: it cannot be written; an existing file is unchanged.
         LogError: the mat no longer exists.
     """
-    check_target(path, "movie", MOVIE_FORMATS)
+    check_format(path, "movie", MOVIE_FORMATS)
     kind = MOVIE_FORMATS[path.suffix.lower()]
     _check_size(clip, kind)
     content = kind.write(clip, watch)
@@ -196,6 +176,6 @@ def save_picture(
         ExportError: it cannot be written; an existing file is unchanged.
         LogError: the mat no longer exists.
     """
-    check_target(path, "picture", PICTURE_FORMATS)
+    check_format(path, "picture", PICTURE_FORMATS)
     painter = FramePainter(recorded, panels, recorded.span_s(None, None), size)
     write_whole(path, PICTURE_FORMATS[path.suffix.lower()](painter, recorded, time_s))

@@ -40,9 +40,7 @@ class MovingWorld:
         """Return the picture. The instants of successive calls must not decrease."""
         from PIL import Image
 
-        # From the last record that was drawn, so that the line goes on.
-        new = self._recorded.telemetry[max(self._traced - 1, 0) : moment.tick + 1]
-        self._painter.trace.add(pen_trace(self._spec, new))
+        self._painter.trace.add(pen_trace(self._spec, self._recorded.telemetry[self._traced : moment.tick + 1]))
         self._traced = moment.tick + 1
         return Image.fromarray(self._painter.paint(self._view, scene_of(self._spec, sound_pose(moment.record))))
 

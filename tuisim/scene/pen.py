@@ -176,6 +176,16 @@ def pen_points_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatA
     return world_points_mm(telemetry, robot.pen.x_mm, robot.pen.y_mm)
 
 
+def drawn_points_mm(
+    robot: RobotSpec, telemetry: npt.NDArray[Any]
+) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:
+    """Return x and y of the pen at each record of telemetry, NaN where it was up, and whether it was; shape (n,)."""
+    xs_mm, ys_mm = pen_points_mm(robot, telemetry)
+    lifted = (telemetry["flags"] & FLAG_PEN_DOWN) == 0
+    xs_mm[lifted] = ys_mm[lifted] = np.nan
+    return xs_mm, ys_mm, lifted
+
+
 _FAR_MM = 1e5
 """What is drawn farther from the field is left out: the time for a line grows with its length."""
 _FINE_MM = 1.0
@@ -184,11 +194,10 @@ _FINE_MM = 1.0
 
 def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> Piece:
     """Return the pen trace of a run, from the records of `runs.views.TelemetryView.array`."""
-    xs_mm, ys_mm = pen_points_mm(spec.robot, telemetry)
-    # Damaged records may have no valid pose. Also false for NaN.
-    near = (np.abs(xs_mm) < _FAR_MM) & (np.abs(ys_mm) < _FAR_MM)
-    down = near & ((telemetry["flags"] & FLAG_PEN_DOWN) != 0)
-    xs_mm, ys_mm = np.where(down, xs_mm, np.nan), np.where(down, ys_mm, np.nan)
+    xs_mm, ys_mm, _ = drawn_points_mm(spec.robot, telemetry)
+    # Damaged records may have no valid pose.
+    far = (np.abs(xs_mm) >= _FAR_MM) | (np.abs(ys_mm) >= _FAR_MM)
+    xs_mm[far] = ys_mm[far] = np.nan
     places = np.nan_to_num(np.round(np.stack((xs_mm, ys_mm)) / _FINE_MM), nan=_FAR_MM)
     moved = np.any(np.diff(places, axis=1, prepend=np.nan) != 0, axis=0)
     # The end of a line is where the next one begins, or the pen is lifted.

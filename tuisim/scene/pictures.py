@@ -60,17 +60,16 @@ def scene_of(spec: RunSpec, pose: Pose | None, *, rays: bool = False) -> SceneSt
         pose: Where the robot is; None for no robot.
         rays: Whether the rays of the ultrasonic sensor are seen.
     """
-    robot, world = spec.robot, spec.world
-    if pose is None:
-        return SceneState(robot, world.start, world.obstacles, beacon=world.beacon, has_robot=False)
-    sensor = robot.ultrasonic if rays else None
+    robot, world, at = spec.robot, spec.world, pose or spec.world.start
+    sensor = robot.ultrasonic if rays and pose else None
     return SceneState(
         robot,
-        pose,
+        at,
         world.obstacles,
-        tuple(rays_mm(pose, sensor, world)) if sensor else (),
-        pressed=tuple(not touch.pressed_by and pressed(pose, touch, world) for touch in robot.touch_sensors),
+        tuple(rays_mm(at, sensor, world)) if sensor else (),
+        pressed=tuple(not touch.pressed_by and pressed(at, touch, world) for touch in robot.touch_sensors),
         beacon=world.beacon,
+        has_robot=pose is not None,
     )
 
 

@@ -3,14 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
+from rich.color import Color
 from rich.style import Style
+
+if TYPE_CHECKING:
+    from tuisim.terminal.pixels import Rgb
 
 Run: TypeAlias = tuple[str, Style]
 """A piece of a line in one style."""
 
 Line: TypeAlias = list[Run]
+
+
+def rgb_of(color: Color | None) -> Rgb | None:
+    """Return red, green and blue of a colour; None without one, and for a number of the terminal's palette."""
+    if color is None or color.triplet is None:
+        return None
+    red, green, blue = color.triplet
+    return red, green, blue
 
 
 def cut(text: str, width: int) -> str:
