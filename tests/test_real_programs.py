@@ -234,7 +234,7 @@ def test_every_program_is_in_the_table() -> None:
 @pytest.mark.parametrize("name", CASES)
 def test_the_robot_is_the_one_that_the_program_talks_about(name: str) -> None:
     facts = facts_of(read_program(file_of(name)).program)
-    assert (facts.for_brick, facts.of_course) == (True, False)
+    assert (facts.library is not None, facts.of_course) == (True, False)
     case = CASES[name]
     assert (facts.robot is None) == (not case.ports and not case.mechanics)
     robot = facts.robot.choice.spec if facts.robot else USUAL

@@ -35,7 +35,8 @@ def say(txt, wait=False, show=True):
 PRELUDE_TEXTS: Mapping[str, str] = {"none": "", "imports": _IMPORTS, "preloaded": _IMPORTS + _INSTANCES}
 """The text of each prelude, by name: it runs before a program and defines names for it."""
 
-LIBRARIES = ("ev3dev2", "ev3dev")
+PYBRICKS = "pybricks"
+LIBRARIES = ("ev3dev2", "ev3dev", PYBRICKS)
 """The packages of the libraries for a brick: a program that imports one needs no prelude."""
 
 PRELUDES: Mapping[str, str] = {

@@ -220,7 +220,8 @@ def test_on_the_brick_a_program_starts_in_its_own_folder(folder: Path, here: Com
     (folder / "own/cfg.json").write_text("found")
     reads = "# %%sim_magic\nimport os\nprint(os.path.exists('cfg.json'), os.path.exists(__file__))\n"
     (folder / "own/reads.py").write_text(reads)
-    assert here("run", "own/reads.py", "--profile", profile).stdout == f"{profile == 'ev3'} True\n"
+    on_brick = PROFILES[profile].starts_in_own_folder
+    assert here("run", "own/reads.py", "--profile", profile).stdout == f"{on_brick} True\n"
 
 
 # The app

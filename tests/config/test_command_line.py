@@ -26,7 +26,7 @@ ASKED = {
     "a column to stop at": ("run prog.py --break left_r", ["left_red", "left_red_pc"]),
     "a column of a log": ("log events last --when gyro_", ["gyro_deg", "gyro_rate_dps"]),
     "a name": ("run -b Grey_b", ["Grey_bands"]),
-    "a profile": ("run --profile ", ["robolab", "nbev3devsim", "ev3"]),
+    "a profile": ("run --profile ", ["robolab", "nbev3devsim", "ev3", "lego-micropython", "pybricks4"]),
     "actions": ("runs re", ["rerun"]),
     "options of an action": ("runs export --", ["--telemetry", "--help"]),
     "options of the default action": ("runs --js", ["--json"]),

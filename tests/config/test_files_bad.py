@@ -14,6 +14,7 @@ from tuisim.config.files import MAX_FILE_BYTES
 from tuisim.config.options import settings_of
 from tuisim.config.shared_options import parse_words
 from tuisim.config.worlds import load_world
+from tuisim.core.profile import PROFILES
 from tuisim.errors import ConfigError, ObstacleError, ProfileError, RobotError
 
 KINDS: dict[str, type[ConfigError]] = {
@@ -158,7 +159,7 @@ WRONG: dict[str, tuple[str, str]] = {
     "obstacle: no table": ("obstacle = [3]", "obstacle[1]: must be a table of keys and values, got 3"),
     "json obstacles: too many": (str([[0, 0, 1, 1]] * 1001), "has 1001 obstacles (at most 1000)"),
     "profile: name": ("name = 'ev3'", "name: 'ev3' is the name of a built-in profile (choose another"),
-    "profile: base": ("base = 'ev4'", "base: no such value 'ev4' (one of robolab, nbev3devsim, ev3)"),
+    "profile: base": ("base = 'ev4'", f"base: no such value 'ev4' (one of {', '.join(PROFILES)})"),
     "profile: no ticks": ("tick_hz = 0", "tick_hz: must be a whole number from 1 to 1000, got 0"),
     "profile: half ticks": ("tick_hz = 30.5", "tick_hz: must be a whole number from 1 to 1000, got 30.5"),
     "profile: negative": ("color_read_ms = -1", "color_read_ms: must be a number from 0 to 60000, got -1"),

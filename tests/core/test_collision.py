@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from tests.core.memory_sink import MemorySink
+from tests.core.motors import commanded
 from tuisim.core.collision import Solids
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import outline_of
@@ -49,7 +50,7 @@ def overlap_mm(sim: Simulation) -> float:
 def test_a_wall_stops_the_robot_where_its_front_touches(speed: float, profile: str) -> None:
     sim = simulation(WorldSpec(start=Pose(1800.0, 571.0, 0.0), solid=True), profile=profile)
     for motor in (sim.left, sim.right):
-        motor.run(speed)
+        commanded(motor).run(speed)
     sim.advance(sim.spec.profile.tick_hz * 30)
     assert sim.pose.x_mm + 45 == pytest.approx(FIELD_WIDTH_MM, abs=0.001)
     assert sim.left.blocked_ticks >= sim.stall_ticks
@@ -59,7 +60,7 @@ def test_a_thin_post_is_not_passed_at_full_speed() -> None:
     world = WorldSpec(start=Pose(300.0, 571.0, 0.0), obstacles=(Obstacle(1000.0, 570.0, 0.5, 0.5),), solid=True)
     sim = simulation(world, profile="nbev3devsim")
     for motor in (sim.left, sim.right):
-        motor.run(1050.0)
+        commanded(motor).run(1050.0)
     sim.advance(300)
     assert sim.pose.x_mm + 45 == pytest.approx(1000.0, abs=0.001)
 
@@ -76,7 +77,7 @@ def test_a_turn_pushes_the_robot_away_from_a_wall(left_dps: float, x_mm: float) 
 def test_without_solid_the_robot_drives_through() -> None:
     sim = simulation(WorldSpec(start=Pose(300.0, 571.0, 0.0), obstacles=(Obstacle(1000.0, 500.0, 100.0, 100.0),)))
     for motor in (sim.left, sim.right):
-        motor.run(1050.0)
+        commanded(motor).run(1050.0)
     sim.advance(1000)
     assert sim.pose.x_mm > FIELD_WIDTH_MM
 
@@ -84,7 +85,7 @@ def test_without_solid_the_robot_drives_through() -> None:
 def test_a_move_to_a_position_goes_on_once_the_way_is_clear() -> None:
     sim = simulation(WorldSpec(start=Pose(2200.0, 571.0, 0.0), solid=True))
     for motor in (sim.left, sim.right):
-        motor.run_to(720.0, 500.0, backwards=False)
+        commanded(motor).run_to(720.0, 500.0, backwards=False)
     sim.advance(400)
     assert sim.left.mode != 0
     sim.place(Pose(500.0, 571.0, 0.0))
@@ -97,7 +98,7 @@ def test_the_robot_can_leave_what_it_was_put_into() -> None:
     world = WorldSpec(start=Pose(1000.0, 571.0, 0.0), obstacles=(Obstacle(950.0, 500.0, 100.0, 100.0),), solid=True)
     sim = simulation(world)
     for motor in (sim.left, sim.right):
-        motor.run(-500.0)
+        commanded(motor).run(-500.0)
     sim.advance(300)
     assert sim.pose.x_mm < 700
 
@@ -108,8 +109,8 @@ def test_grouping_of_ticks_does_not_matter_near_obstacles() -> None:
             start=Pose(300.0, 571.0, 20.0), obstacles=(Obstacle(1000.0, 500.0, 100.0, 300.0),), solid=True
         )
         sim = simulation(world)
-        sim.left.run(500.0)
-        sim.right.run(430.0)
+        commanded(sim.left).run(500.0)
+        commanded(sim.right).run(430.0)
         for _ in range(900 // step):
             sim.advance(step)
         assert isinstance(sim._sink, MemorySink)
@@ -147,13 +148,13 @@ def drive(sim: Simulation, moves: list[tuple[str, float, float, int]]) -> float:
         for motor, speed in ((sim.left, left), (sim.right, right)):
             match kind:
                 case "forever":
-                    motor.run(float(int(speed)))
+                    commanded(motor).run(float(int(speed)))
                 case "timed":
-                    motor.run_until(float(int(speed)), sim.tick + ticks // 2)
+                    commanded(motor).run_until(float(int(speed)), sim.tick + ticks // 2)
                 case "position":
-                    motor.run_to(motor.position_deg + speed, 400.0, speed < 0)
+                    commanded(motor).run_to(motor.position_deg + speed, 400.0, speed < 0)
                 case _:
-                    motor.stop()
+                    commanded(motor).stop()
         for _ in range(ticks):
             sim.advance(1)
             deepest = max(deepest, overlap_mm(sim))
@@ -174,7 +175,7 @@ def check_case(
     assume(overlap_mm(sim) <= 0)
     assert drive(sim, moves) <= ALLOWED_MM
     for motor in (sim.left, sim.right):
-        motor.stop()
+        commanded(motor).stop()
     resting = sim.pose
     sim.advance(50)
     assert sim.pose == resting

@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
 from tests.core.memory_sink import MemorySink
+from tests.core.motors import commanded
 from tests.core.test_collision import overlap_mm, simulation
 from tuisim.config import mats
 from tuisim.core.geometry import Pose
@@ -38,8 +39,8 @@ def slow(*values: object) -> ParameterSet:
 
 def told(sim: Simulation, left_dps: float, right_dps: float, ticks: int) -> float:
     """Drive, and return the deepest overlap on the way."""
-    sim.left.run(left_dps)
-    sim.right.run(right_dps)
+    commanded(sim.left).run(left_dps)
+    commanded(sim.right).run(right_dps)
     deepest = -math.inf
     for _ in range(ticks // LOOK_TICKS):
         sim.advance(LOOK_TICKS)
@@ -127,8 +128,8 @@ def test_grouping_of_ticks_does_not_matter_inside_things(place: str) -> None:
         start, boxes = PLACES[place]
         sim = simulation(WorldSpec(obstacles=boxes, solid=True, start=start))
         for left, right in MOTIONS.values():
-            sim.left.run(left)
-            sim.right.run(right)
+            commanded(sim.left).run(left)
+            commanded(sim.right).run(right)
             for _ in range(90 // step):
                 sim.advance(step)
         assert isinstance(sim._sink, MemorySink)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tests.core.memory_sink import MemorySink
+from tests.core.motors import COMMANDED, commanded
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.simulation import Simulation
@@ -23,8 +24,8 @@ def driven(profile: str, robot: RobotSpec, left: float, right: float, step: int 
     """Drive along an arc, then straight on, by motors at these speeds."""
     sim = Simulation(RunSpec(robot, WORLD, PROFILES[profile]), MemorySink())
     for left_dps, right_dps in ((left, right), (left, left * (1 if left * right > 0 else -1))):
-        sim.left.run(left_dps)
-        sim.right.run(right_dps)
+        commanded(sim.left).run(left_dps)
+        commanded(sim.right).run(right_dps)
         for _ in range(0, 400, step):
             sim.advance(step)
     return sim
@@ -57,14 +58,14 @@ def test_reversed_motors_turn_the_wheels_backwards_in_the_browser_simulator_too(
     sim = Simulation(
         RunSpec(RobotSpec(left_reversed=True, right_reversed=True), WorldSpec(), PROFILES["nbev3devsim"]), MemorySink()
     )
-    sim.left.run(300.0)
-    sim.right.run(300.0)
+    commanded(sim.left).run(300.0)
+    commanded(sim.right).run(300.0)
     sim.advance(60)
     assert sim.pose.x_mm < WorldSpec().start.x_mm
     assert sim.left.position_deg > 0
 
 
-@pytest.mark.parametrize("profile", sorted(PROFILES))
+@pytest.mark.parametrize("profile", COMMANDED)
 @pytest.mark.parametrize("gear_ratio", [0.5, 3.0])
 def test_a_gear_divides_the_turns_of_the_motor(profile: str, gear_ratio: float) -> None:
     robot, speeds = RobotSpec(weight=0.0), (250.0, 310.0)
@@ -73,7 +74,7 @@ def test_a_gear_divides_the_turns_of_the_motor(profile: str, gear_ratio: float) 
     for spec, factor in ((robot, 1.0), (replace(robot, gear_ratio=gear_ratio), gear_ratio)):
         sim = Simulation(RunSpec(spec, world, PROFILES[profile]), MemorySink())
         for motor, dps in zip((sim.left, sim.right), speeds, strict=True):
-            motor.run(dps * factor)
+            commanded(motor).run(dps * factor)
         sim.advance(100)
         counts = sim.left.position_deg / factor, sim.right.position_deg / factor
         ends.append((*counts, sim.pose.x_mm, sim.pose.y_mm, sim.pose.heading_deg, sim.instant().turn_rate_dps))

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from tests.core.memory_sink import MemorySink
+from tests.core.motors import COMMANDED, commanded
 from tuisim.core.end_stops import NEAR_DEG, end_flag
 from tuisim.core.motors import POSITION, STOPPED
 from tuisim.core.profile import PROFILES
@@ -22,13 +23,15 @@ def arm_of(robot: RobotSpec = ROBOT, profile: str = "ev3") -> Simulation:
     return simulation_of(RunSpec(robot, WorldSpec(), PROFILES[profile]), MemorySink())
 
 
-@pytest.mark.parametrize("profile", sorted(PROFILES))
+@pytest.mark.parametrize("profile", COMMANDED)
 @pytest.mark.parametrize(("dps", "end_deg", "flag"), [(-200.0, -90.0, LOW), (500.0, 180.0, HIGH)], ids=["low", "high"])
 def test_a_motor_stops_at_its_end(profile: str, dps: float, end_deg: float, flag: int) -> None:
     sim = arm_of(profile=profile)
     arm = sim.others[1]
     # The browser simulator has no negative speeds.
-    arm.run_to(dps * 10, abs(dps), backwards=dps < 0) if profile == "nbev3devsim" else arm.run(dps)
+    commanded(arm).run_to(dps * 10, abs(dps), backwards=dps < 0) if profile == "nbev3devsim" else commanded(arm).run(
+        dps
+    )
     sim.advance(sim.spec.profile.tick_hz * 2)
     counted_deg = end_deg * (2 if profile == "nbev3devsim" else 1)
     assert arm.position_deg == pytest.approx(counted_deg, abs=1e-9)
@@ -38,7 +41,7 @@ def test_a_motor_stops_at_its_end(profile: str, dps: float, end_deg: float, flag
 def test_it_is_stalled_after_a_tenth_of_a_second() -> None:
     sim = arm_of()
     arm = sim.others[1]
-    arm.run(-200.0)
+    commanded(arm).run(-200.0)
     ends = []
     while sim.tick < 100:
         sim.changed = False
@@ -53,10 +56,10 @@ def test_it_is_stalled_after_a_tenth_of_a_second() -> None:
 def test_a_move_that_the_stop_cuts_short_goes_on_for_ever_and_ends_if_its_goal_is_the_stop() -> None:
     sim = arm_of()
     arm = sim.others[1]
-    arm.run_to(200.0, 300.0, backwards=False)
+    commanded(arm).run_to(200.0, 300.0, backwards=False)
     sim.advance(200)
     assert (arm.position_deg, arm.mode) == (180.0, POSITION)
-    arm.run_to(-90.0, 300.0, backwards=True)
+    commanded(arm).run_to(-90.0, 300.0, backwards=True)
     sim.advance(200)
     assert (arm.position_deg, arm.mode) == (-90.0, STOPPED)
 
@@ -64,11 +67,11 @@ def test_a_move_that_the_stop_cuts_short_goes_on_for_ever_and_ends_if_its_goal_i
 def test_the_stops_stay_where_they_are_when_the_program_sets_the_position() -> None:
     sim = arm_of()
     arm = sim.others[1]
-    arm.run(-200.0)
+    commanded(arm).run(-200.0)
     sim.advance(100)
-    arm.stop()
+    commanded(arm).stop()
     arm.position_deg = 0.0
-    arm.run(200.0)
+    commanded(arm).run(200.0)
     sim.advance(200)
     assert arm.position_deg == pytest.approx(270.0)
 
@@ -78,7 +81,7 @@ def test_a_motor_near_its_end_is_at_it() -> None:
     arm = sim.others[1]
     found = []
     for goal_deg in (-90 + NEAR_DEG + 1, -90 + NEAR_DEG - 1, -90 + NEAR_DEG + 1):
-        arm.run_to(goal_deg, 100.0, backwards=goal_deg < arm.position_deg)
+        commanded(arm).run_to(goal_deg, 100.0, backwards=goal_deg < arm.position_deg)
         sim.advance(200)
         found.append(sim.instant().end_flags)
     assert found == [0, LOW, 0]
@@ -99,10 +102,10 @@ def test_the_record_of_each_tick_says_which_end_a_motor_is_at(chunk: int) -> Non
     sink = sim._sink
     assert isinstance(sink, MemorySink)
     told: list[int] = []
-    sim.others[1].run(-200.0)
+    commanded(sim.others[1]).run(-200.0)
     for at in range(0, 150, chunk):
         if at >= 100 > at - chunk:
-            sim.others[1].run(200.0)
+            commanded(sim.others[1]).run(200.0)
         sim.advance(chunk)
         told.append(sim.instant().end_flags)
     flags = [record[-2] & END_FLAGS for record in TICK_RECORD.iter_unpack(sink.records())]

@@ -7,6 +7,7 @@ import math
 import pytest
 
 from tests.core.memory_sink import MemorySink
+from tests.core.motors import commanded
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.simulation import Simulation
@@ -22,8 +23,8 @@ MM_PER_DEG = math.pi * 56 / 360
 def test_arc(left_dps: float, right_dps: float, profile: str, ticks: int) -> None:
     world = WorldSpec(background="Empty_Map", start=START)
     sim = Simulation(RunSpec(RobotSpec(weight=0.0), world, PROFILES[profile]), MemorySink())
-    sim.left.run(left_dps)
-    sim.right.run(right_dps)
+    commanded(sim.left).run(left_dps)
+    commanded(sim.right).run(right_dps)
     sim.advance(ticks)
     seconds, spacing_mm = ticks / 100, 180.0
     turn = (right_dps - left_dps) * MM_PER_DEG * seconds / spacing_mm

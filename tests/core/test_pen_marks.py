@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from tests.core.memory_sink import MemorySink
+from tests.core.motors import commanded
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.pen_marks import PenMarks
@@ -33,8 +34,8 @@ def drawn(white: Field, pen: PenSpec) -> tuple[Simulation, PenMarks]:
     world = WorldSpec(start=Pose(500.0, 500.0, 0.0), pen_marks=True)
     sim = Simulation(RunSpec(RobotSpec(pen=pen), world, ROBOLAB), MemorySink())
     marks = PenMarks(white, sim.spec)
-    sim.left.run(500.0)
-    sim.right.run(500.0)
+    commanded(sim.left).run(500.0)
+    commanded(sim.right).run(500.0)
     for _ in range(10):
         sim.advance(10)
         marks.take_in(sim.records_since(marks.records))

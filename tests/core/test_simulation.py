@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from tests.core.memory_sink import MemorySink
+from tests.core.motors import commanded
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import NBEV3DEVSIM, NS_PER_S, ROBOLAB, ProfileSpec
 from tuisim.core.simulation import Simulation
@@ -23,7 +24,7 @@ def test_position_moves_end_exactly(speed: float, backwards: bool) -> None:
     sim = simulation(ROBOLAB)
     goal = -360.0 if backwards else 360.0
     for motor in (sim.left, sim.right):
-        motor.run_to(goal, speed, backwards)
+        commanded(motor).run_to(goal, speed, backwards)
     sim.advance(1000, until_change=True)
     assert sim.left.position_deg == goal
     assert abs(sim.pose.x_mm) == pytest.approx(math.pi * 56, abs=1e-9)
@@ -34,7 +35,7 @@ def test_seed_experiment_is_at_its_place_at_tick_162() -> None:
     sim = simulation(NBEV3DEVSIM)
     sim.place(Pose(150.0, 500.0, 0.0))
     for motor in (sim.left, sim.right):
-        motor.run(525.0)
+        commanded(motor).run(525.0)
     sim.advance(162)
     assert sim.pose.x_mm == pytest.approx(1459.50, abs=0.01)
 
@@ -46,17 +47,17 @@ def script(sim: Simulation, step: int) -> bytes:
         while ticks > 0:
             ticks -= sim.advance(min(step, ticks))
 
-    sim.left.run(300.0)
-    sim.right.run(-420.0)
+    commanded(sim.left).run(300.0)
+    commanded(sim.right).run(-420.0)
     advance(50)
-    sim.left.run_until(1000.0, sim.ticks_at(sim.due_ns(sim.tick) + NS_PER_S))
+    commanded(sim.left).run_until(1000.0, sim.ticks_at(sim.due_ns(sim.tick) + NS_PER_S))
     advance(120)
-    sim.left.run_to(sim.left.position_deg - 500, 400.0, backwards=True)
-    sim.right.run_to(sim.right.position_deg + 333, 250.0, backwards=False)
+    commanded(sim.left).run_to(sim.left.position_deg - 500, 400.0, backwards=True)
+    commanded(sim.right).run_to(sim.right.position_deg + 333, 250.0, backwards=False)
     advance(90)
-    sim.left.run(0.0)
+    commanded(sim.left).run(0.0)
     advance(40)
-    sim.right.stop()
+    commanded(sim.right).stop()
     advance(17)
     sink = sim._sink
     assert isinstance(sink, MemorySink)
@@ -86,11 +87,11 @@ def test_tight_loops_agree_with_the_full_tick() -> None:
 def test_braking_down_the_ramp(profile: ProfileSpec) -> None:
     sim = simulation(profile)
     for motor in (sim.left, sim.right):
-        motor.run(525.0)
+        commanded(motor).run(525.0)
     sim.advance(profile.tick_hz * 2)
     before = sim.pose.x_mm
     for motor in (sim.left, sim.right):
-        motor.run(0.0)
+        commanded(motor).run(0.0)
     sim.advance(profile.tick_hz * 3)
     assert sim.pose.x_mm - before == pytest.approx(76.0, abs=5.0)
     assert sim.left.moving_dps == 0
@@ -100,8 +101,8 @@ def test_seeds_give_different_noise_and_the_same_seed_the_same() -> None:
     def end(seed: int) -> float:
         spec = replace(simulation(ROBOLAB, motor_noise=50).spec, seed=seed)
         sim = Simulation(spec, MemorySink())
-        sim.left.run(500.0)
-        sim.right.run(500.0)
+        commanded(sim.left).run(500.0)
+        commanded(sim.right).run(500.0)
         sim.advance(300)
         return sim.pose.y_mm
 

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from tests.core.memory_sink import MemorySink
+from tests.core.motors import commanded
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES, ROBOLAB
 from tuisim.core.sensors import infrared, touch
@@ -114,9 +115,9 @@ def test_a_run_written_before_there_were_such_parts_can_be_read() -> None:
 def test_further_motors_go_the_same_way_however_the_ticks_are_divided(chunk: int) -> None:
     sim = simulation_of(RUN, MemorySink())
     arm, other = sim.others
-    sim.left.run(300.0)
-    arm.run_to(123.0, 400.0, backwards=False)
-    other.run_until(-200.0, 77)
+    commanded(sim.left).run(300.0)
+    commanded(arm).run_to(123.0, 400.0, backwards=False)
+    commanded(other).run_until(-200.0, 77)
     ends = []
     while sim.tick < 300:
         sim.changed = False
@@ -130,7 +131,7 @@ def test_further_motors_go_the_same_way_however_the_ticks_are_divided(chunk: int
 def _alone() -> tuple[float, float]:
     """Where the same robot gets to while no further motor runs."""
     sim = simulation_of(RUN, MemorySink())
-    sim.left.run(300.0)
+    commanded(sim.left).run(300.0)
     sim.advance(300)
     return sim.pose.x_mm, sim.pose.heading_deg
 
@@ -184,11 +185,11 @@ def test_turns_that_are_told_say_where_a_further_motor_is_at_any_tick(profile: s
     sim.on_turns = lambda turns: told.append((sim.tick, turns))
     arm, lift = sim.others
     steps: dict[int, Callable[[], None]] = {
-        0: lambda: arm.run(300.0),
-        40: lambda: lift.run_to(-90.0, 100.0, backwards=True),
-        60: lambda: arm.stop(),
+        0: lambda: commanded(arm).run(300.0),
+        40: lambda: commanded(lift).run_to(-90.0, 100.0, backwards=True),
+        60: lambda: commanded(arm).stop(),
         80: lambda: setattr(arm, "position_deg", 5.0),
-        90: lambda: arm.run_until(-50.0, 150),
+        90: lambda: commanded(arm).run_until(-50.0, 150),
     }
     for tick in range(300):
         steps.get(tick, lambda: None)()
@@ -209,7 +210,7 @@ def test_noise_makes_a_wheel_no_faster_than_its_motor(kind: str, limit_dps: floa
     sink = MemorySink()
     sim = Simulation(RunSpec(robot, WorldSpec(noise=NoiseSpec(0, 100)), ROBOLAB, seed=3), sink)
     for motor in (sim.left, sim.right):
-        motor.run(limit_dps)
+        commanded(motor).run(limit_dps)
     sim.advance(100)
     speeds = [TICK_RECORD.unpack_from(sink.buffer, 64 * (tick + 1))[7] for tick in range(1, 101)]
     assert max(speeds) == limit_dps

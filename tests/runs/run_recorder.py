@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 from weakref import finalize
 
+from tests.core.motors import commanded
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.protocol import End, Ended
@@ -38,8 +39,8 @@ class Recorder:
     def drive(self, left_dps: float, right_dps: float, ticks: int, line: int = 0) -> None:
         """Let the wheels turn for some ticks."""
         self.simulation.line = line
-        self.simulation.left.run(left_dps)
-        self.simulation.right.run(right_dps)
+        commanded(self.simulation.left).run(left_dps)
+        commanded(self.simulation.right).run(right_dps)
         self.simulation.advance(ticks)
 
     def print(self, text: str, line: int = 0, stream: Stream = Stream.STDOUT) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.core.motors import commanded
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.simulation import Simulation
@@ -32,40 +33,40 @@ SPEC = RunSpec(RobotSpec(), WorldSpec(), PROFILES["robolab"])
 
 
 def _straight(sim: Simulation) -> None:
-    sim.left.run(213.15)
-    sim.right.run(213.15)
+    commanded(sim.left).run(213.15)
+    commanded(sim.right).run(213.15)
     sim.advance(2000)
 
 
 def _curves(sim: Simulation) -> None:
     for turn in range(20):
-        sim.left.run(100.0 / (turn + 1))
-        sim.right.run(77.7 * (turn - 9))
+        commanded(sim.left).run(100.0 / (turn + 1))
+        commanded(sim.right).run(77.7 * (turn - 9))
         sim.advance(97)
 
 
 def _steered(sim: Simulation) -> None:
     chance = random.Random(1)
     for _ in range(1000):
-        sim.left.run(chance.uniform(-500, 500))
-        sim.right.run(chance.uniform(-500, 500))
+        commanded(sim.left).run(chance.uniform(-500, 500))
+        commanded(sim.right).run(chance.uniform(-500, 500))
         sim.advance(2)
 
 
 def _moves(sim: Simulation) -> None:
     for _ in range(10):
-        sim.left.run_to(sim.left.position_deg + 365.25, 300.0, False)
-        sim.right.run_to(sim.right.position_deg - 200.0, 250.0, True)
+        commanded(sim.left).run_to(sim.left.position_deg + 365.25, 300.0, False)
+        commanded(sim.right).run_to(sim.right.position_deg - 200.0, 250.0, True)
         sim.advance(150)
-        sim.left.run_until(-250.0, sim.tick + 40)
+        commanded(sim.left).run_until(-250.0, sim.tick + 40)
         sim.advance(60)
 
 
 def _moved_by_hand(sim: Simulation) -> None:
     for turn in range(10):
         sim.line = turn
-        sim.left.run(315.0)
-        sim.right.run(105.0)
+        commanded(sim.left).run(315.0)
+        commanded(sim.right).run(105.0)
         sim.advance(50)
         sim.place(Pose(100.0 * turn, -1e9 if turn == 5 else 3.25, 1e7 if turn == 6 else -0.0))
         sim.left.position_deg = 0.0
@@ -128,7 +129,7 @@ def test_a_reader_that_was_there_before_goes_on(tmp_path: Path) -> None:
     sim = Simulation(SPEC, writer)
     view = TelemetryView(folder)
     assert view.count == 1
-    sim.left.run(100.0)
+    commanded(sim.left).run(100.0)
     # More than the reader's map holds.
     sim.advance(20_000)
     writer.close()

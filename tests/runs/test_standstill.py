@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from tests.core.motors import commanded
 from tests.runs.run_recorder import Recorder
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
@@ -34,8 +35,8 @@ def words(record: Record, spec: RunSpec, moves: Moves) -> str:
     recorder = record(spec)
     for speeds, ticks in moves:
         if speeds is None:
-            recorder.simulation.left.stop()
-            recorder.simulation.right.stop()
+            commanded(recorder.simulation.left).stop()
+            commanded(recorder.simulation.right).stop()
             recorder.simulation.advance(ticks)
         else:
             recorder.drive(*speeds, ticks)

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from tuisim.config.files import close_beside, read_bytes
 from tuisim.config.folders import programs_folder, user_path
 from tuisim.config.program_robot.course import global_names, uses_course_names
-from tuisim.config.program_robot.source import imports_library, read_modules
+from tuisim.config.program_robot.source import library_of, read_modules
 from tuisim.config.shared_options import parse_words
 from tuisim.errors import ConfigError, did_you_mean, nearest, see_page
 from tuisim.regular_file import read_regular
@@ -162,7 +162,7 @@ def prelude_for(text: str, path: str = "") -> str:
     if "import *" in text:
         # The names may be those of a module of its own, which imports the library.
         modules = read_modules(Program("", text, path=path))
-        if imports_library(modules) and not uses_course_names(modules, text):
+        if library_of(modules) is not None and not uses_course_names(modules, text):
             return "none"
     return "preloaded"
 

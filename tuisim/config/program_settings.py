@@ -13,12 +13,14 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from tuisim.config.options import Settings, settings_of
+from tuisim.config.profiles import DEFAULT_PROFILE, load_profile
 from tuisim.config.program_file import ProgramSource
 from tuisim.config.program_robot.course import uses_course_names
-from tuisim.config.program_robot.source import data_files, imports_library, read_modules
+from tuisim.config.program_robot.source import data_files, library_of, read_modules
 from tuisim.config.robots import RobotChoice
-from tuisim.core.profile import PROFILES
+from tuisim.core.profile import PROFILES, Library, ProfileSpec
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.errors import ProfileError
 from tuisim.source import Program
 
 if TYPE_CHECKING:
@@ -26,6 +28,10 @@ if TYPE_CHECKING:
 
 BRICK_PROFILE = "ev3"
 """The profile of programs that are for a real brick."""
+PROFILE_OF: Mapping[Library, str] = {Library.EV3DEV2: BRICK_PROFILE, Library.PYBRICKS: "lego-micropython"}
+"""The profile with the rules of a real brick, by the library of the program."""
+SHEBANG = "#!/usr/bin/env pybricks-micropython"
+"""The first line of a program for LEGO's MicroPython."""
 _NO_PRELUDE = "none"
 
 
@@ -33,8 +39,8 @@ _NO_PRELUDE = "none"
 class SourceFacts:
     """What the source of a program says about its run."""
 
-    for_brick: bool = False
-    """Whether it imports a library for a brick, in itself or in its own modules."""
+    library: Library | None = None
+    """The library for a brick that it imports, in itself or in its own modules."""
     of_course: bool = False
     """Whether it uses names that only the course has."""
     robot: BuiltRobot | None = None
@@ -84,15 +90,18 @@ def facts_of(program: Program) -> SourceFacts:
     """Return what the source of a program says; nothing if it is not Python, or too deeply nested to be read."""
     try:
         modules = read_modules(program)
-        if not modules or not imports_library(modules):
-            return SourceFacts()
+        library = library_of(modules)
+        if library is None and program.text.startswith(SHEBANG):
+            library = Library.PYBRICKS
+        if not modules or library is None:
+            return SourceFacts(library)
         # Most programs are the course's, and need no reading of their own.
         from tuisim.config.program_robot.assembly import build_robot
         from tuisim.config.program_robot.mentions import mentions_in
         from tuisim.config.program_robot.report import USUAL
 
         robot = build_robot(mentions_in(modules, data_files(program)), program.name, USUAL)
-        return SourceFacts(True, uses_course_names(modules, program.text), robot)
+        return SourceFacts(library, uses_course_names(modules, program.text), robot)
     except RecursionError:
         return SourceFacts()
 
@@ -116,7 +125,7 @@ def program_settings(
     layers = (below or {}, source.options, *above)
     free = free_paths(layers, above, in_world=in_world, of_task=of_task)
     decided = decide(source, settings_of(*layers), free)
-    return ProgramSettings(settings_of(decided.layer, *layers), decided)
+    return ProgramSettings(settings_of(*layers, decided.layer), decided)
 
 
 def free_paths(
@@ -134,26 +143,55 @@ def free_paths(
     return frozenset(free)
 
 
-def decide(source: ProgramSource, settings: Settings, free: Collection[str]) -> Decided:
+def decide(source: ProgramSource, settings: Settings, free: Collection[str], *, insists: bool = True) -> Decided:
     """Return what the source of a program decides.
 
     Args:
         source: The program.
         settings: What is chosen.
         free: The fields that are not.
+        insists: Whether a chosen profile counts that is not for the program's library; else it is replaced.
+
+    Raises:
+        ProfileError: the chosen profile is not for the program's library.
     """
     prelude = settings["preload"] or source.program.prelude
-    facts = _facts_in_run(source, free) if prelude == _NO_PRELUDE else SourceFacts()
+    for_course = prelude != _NO_PRELUDE
+    facts = SourceFacts(Library.EV3DEV2) if for_course else _facts_in_run(source, free)
     layer: dict[str, Any] = {}
     if facts.robot and "robot" in free:
         layer["robot"] = facts.robot.choice
-    if _by_brick_rules(source, facts, free):
-        layer["profile"] = BRICK_PROFILE
+    if facts.library and not for_course and _by_brick_rules(source, facts, free):
+        layer["profile"] = PROFILE_OF[facts.library]
+    elif facts.library and not _fits(settings, facts.library):
+        if insists and settings.given.get("profile") is not None:
+            raise _misfit(source.program.name, facts.library)
+        layer["profile"] = DEFAULT_PROFILE if for_course or facts.of_course else PROFILE_OF[facts.library]
     profile = layer.get("profile", settings["profile"])
-    if profile in (BRICK_PROFILE, PROFILES[BRICK_PROFILE]) and not source.has_magic and {*_PLACE} <= {*free}:
+    by_rules = profile in PROFILE_OF.values() or profile in [PROFILES[name] for name in PROFILE_OF.values()]
+    if by_rules and not source.has_magic and {*_PLACE} <= {*free}:
         layer |= dict(zip(_PLACE, (FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2), strict=True))
     needed = facts.robot.choice if facts.robot else None
     return Decided(layer, *_in_words(source.program, facts, layer), needed, frozenset(free))
+
+
+def _fits(settings: Settings, library: Library) -> bool:
+    """Return whether the chosen profile is for a library; also if there is no such profile, which is told later."""
+    named = settings["profile"]
+    try:
+        profile = named if isinstance(named, ProfileSpec) else load_profile(named)
+    except ProfileError:
+        return True
+    return profile.motor_law.library is library
+
+
+def _misfit(name: str, library: Library) -> ProfileError:
+    fitting = [known for known, profile in PROFILES.items() if profile.motor_law.library is library]
+    return ProfileError(
+        f"{name} uses {library}, and the chosen profile is for another library",
+        f"leave it out, or choose {' or '.join(fitting)}",
+        key="--profile",
+    )
 
 
 def robot_for(source: ProgramSource) -> BuiltRobot | None:
@@ -175,12 +213,12 @@ def _facts_in_run(source: ProgramSource, free: Collection[str]) -> SourceFacts:
 
 
 def _by_brick_rules(source: ProgramSource, facts: SourceFacts, free: Collection[str]) -> bool:
-    return facts.for_brick and not facts.of_course and not source.has_magic and "profile" in free
+    return bool(facts.library) and not facts.of_course and not source.has_magic and "profile" in free
 
 
 def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) -> tuple[str, str]:
     """Return what the source of a program decided, and how to change it; both empty for nothing."""
-    rules = f"by the rules of a brick (profile {BRICK_PROFILE})" if "profile" in layer else ""
+    rules = f"by the rules of a brick (profile {layer['profile']})" if "profile" in layer else ""
     if facts.robot and "robot" in layer:
         from tuisim.config.program_robot.report import in_words
 

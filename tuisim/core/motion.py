@@ -18,6 +18,7 @@ from tuisim.core.end_stops import flags_at_start
 from tuisim.core.motors import Motor, MotorState, top_speed_dps
 from tuisim.core.noise import wheel_noise
 from tuisim.core.profile import MotorLaw
+from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING, TICK_RECORD, Buffer, TickSink
 
 if TYPE_CHECKING:
@@ -58,6 +59,8 @@ def motor_of(spec: RunSpec, kind: str) -> Motor:
             return BrickMotor(profile.tick_hz, step, fastest_dps)
         case MotorLaw.NBEV3DEVSIM:
             return BrowserMotor(profile.tick_hz, step, fastest_dps)
+        case MotorLaw.PYBRICKS | MotorLaw.PYBRICKS_4:
+            return ServoMotor(profile.tick_hz, profile.motor_law, kind)
         case _:
             assert_never(profile.motor_law)
 
@@ -66,7 +69,7 @@ def drive_of(spec: RunSpec) -> Drive:
     """Return the drive of a run's robot, at its initial pose."""
     robot, start, early = spec.robot, spec.world.start, 0.5 if spec.profile.halfway_heading else 0.0
     match spec.profile.motor_law:
-        case MotorLaw.BRICK:
+        case MotorLaw.BRICK | MotorLaw.PYBRICKS | MotorLaw.PYBRICKS_4:
             return BrickDrive(robot, start, early)
         case MotorLaw.NBEV3DEVSIM:
             return BrowserDrive(robot, start, early)

@@ -51,12 +51,16 @@ class Motor(Protocol):
     """Encoder position."""
     speed_dps: float
     """Current speed; some laws keep it while the motor is stopped."""
-    goal_deg: float
-    """Target of a move to a position."""
-    end_tick: float
-    """End of a timed move."""
     blocked_ticks: int
     """Number of consecutive ticks in which an obstacle or wall has blocked the wheel."""
+
+    @property
+    def goal_deg(self) -> float:
+        """Target of a move to a position."""
+
+    @property
+    def end_tick(self) -> float:
+        """End of a timed move."""
 
     @property
     def moving_dps(self) -> float: ...
@@ -74,15 +78,6 @@ class Motor(Protocol):
     def ramping_ticks(self) -> int:
         """Approximate number of ticks until the speed is steady; 0 only if it is steady."""
 
-    def run(self, speed_dps: float) -> None: ...
-
-    def run_until(self, speed_dps: float, end_tick: int) -> None:
-        """Run until a tick."""
-
-    def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None: ...
-
-    def stop(self) -> None: ...
-
     def step(self, tick: int, noise_dps: float) -> float:
         """Run one tick of any kind with noise added to the speed, and return the rotation of the wheel, in degrees."""
 
@@ -99,3 +94,16 @@ class Motor(Protocol):
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
         """Undo the rest of a tick in which an obstacle stopped the wheel: only a part of it, below 1, was possible."""
+
+
+class CommandedMotor(Motor, Protocol):
+    """A motor that a driver commands, as the kernel's drivers do."""
+
+    def run(self, speed_dps: float) -> None: ...
+
+    def run_until(self, speed_dps: float, end_tick: int) -> None:
+        """Run until a tick."""
+
+    def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None: ...
+
+    def stop(self) -> None: ...

@@ -6,13 +6,13 @@ simulator. A profile is only data: the code that reads it never checks its name.
 To add a rule: add a field with a default at the end of `ProfileSpec`, with the source of its numbers and `later=True`.
 To add a motor law: add it to `MotorLaw`; write the class of its motor and, if wheels move differently, of its drive in
 `core.drive`; add a case to `motor_of` and `drive_of` in `core.motion`; write its device in `shim.motor`, with a case in
-`tacho_of` in `shim.brick`; add it to the source of `motor_law`.
+`tacho_of` in `shim.brick`; add it to the source of `motor_law`; say in `MotorLaw.library` which library drives it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from enum import StrEnum
 from typing import Any
 
@@ -30,6 +30,13 @@ def due_ns(tick: int, tick_hz: int) -> int:
     return -(-tick * NS_PER_S // tick_hz)
 
 
+class Library(StrEnum):
+    """The library that a program drives the robot with."""
+
+    EV3DEV2 = "ev3dev2"
+    PYBRICKS = "pybricks"
+
+
 class MotorLaw(StrEnum):
     """How motors obey commands and move, and how the library drives them."""
 
@@ -37,6 +44,15 @@ class MotorLaw(StrEnum):
     """Moves end exactly at their goal or time, as on the real brick."""
     NBEV3DEVSIM = "nbev3devsim"
     """As in the browser simulator of that name, to the last bit."""
+    PYBRICKS = "pybricks"
+    """They follow trajectories, as Pybricks 2.0 moves them."""
+    PYBRICKS_4 = "pybricks-4"
+    """Likewise, with the settings of Pybricks 4."""
+
+    @property
+    def library(self) -> Library:
+        """The library whose programs can drive such motors."""
+        return Library.PYBRICKS if self in (MotorLaw.PYBRICKS, MotorLaw.PYBRICKS_4) else Library.EV3DEV2
 
 
 _OLD = "measured on the old simulator"
@@ -44,9 +60,9 @@ _NEW = "choice of this project"
 MAX_COST_MS = 60_000
 
 
-def _cost(*, default: int, source: str) -> Any:
+def _cost(*, default: int, source: str, later: bool = False) -> Any:
     """Return a field for a cost in simulated nanoseconds, which files give in milliseconds, too."""
-    return whole(0, MAX_COST_MS * MS, default=default, unit="ns", source=source)
+    return whole(0, MAX_COST_MS * MS, default=default, unit="ns", source=source, later=later)
 
 
 @spec
@@ -78,7 +94,7 @@ class ProfileSpec(Spec):
         MotorLaw,
         default=MotorLaw.BRICK,
         source=f"{MotorLaw.BRICK}: moves end at their target, as with the EV3 motor driver; "
-        f"{MotorLaw.NBEV3DEVSIM}: {_OLD}",
+        f"{MotorLaw.NBEV3DEVSIM}: {_OLD}; {MotorLaw.PYBRICKS}, {MotorLaw.PYBRICKS_4}: the firmware's own control code",
     )
     """How motors obey commands and move."""
     max_speed_dps: float = number(
@@ -111,6 +127,12 @@ class ProfileSpec(Spec):
         source="ev3dev starts a program in its own folder; a course starts it in the notebook's",
     )
     """Whether a program starts in its own folder, not in the user's working directory."""
+    mode_switch_ns: int = _cost(
+        default=0, later=True, source="Pybricks 2.0, `pbdevice.c`: 30 ms; ev3dev2: none, the driver answers at once"
+    )
+    """Time that a sensor needs for another mode than before."""
+    infrared_switch_ns: int = _cost(default=0, later=True, source="Pybricks 2.0, `pbdevice.c`: 1100 ms")
+    """Likewise, of the infrared sensor."""
 
 
 ROBOLAB = ProfileSpec(
@@ -145,7 +167,36 @@ EV3 = ProfileSpec(
     starts_in_own_folder=True,
 )
 
-PROFILES: Mapping[str, ProfileSpec] = {profile.name: profile for profile in (ROBOLAB, NBEV3DEVSIM, EV3)}
+LEGO_MICROPYTHON = ProfileSpec(
+    name="lego-micropython",
+    title="LEGO's MicroPython for the EV3: Pybricks 2.0",
+    tick_hz=100,
+    color_read_ns=1 * MS,
+    color_code_read_ns=1 * MS,
+    ultrasonic_read_ns=1 * MS,
+    gyro_read_ns=1 * MS,
+    motor_law=MotorLaw.PYBRICKS,
+    max_speed_dps=930.0,
+    reflected_max=100,
+    ambient_percent=10,
+    halfway_heading=True,
+    solid=True,
+    mend_library=False,
+    starts_in_own_folder=True,
+    mode_switch_ns=30 * MS,
+    infrared_switch_ns=1100 * MS,
+)
+
+PYBRICKS_4 = replace(
+    LEGO_MICROPYTHON,
+    name="pybricks4",
+    title="Pybricks 4 on the EV3: faster ramps, more names",
+    motor_law=MotorLaw.PYBRICKS_4,
+)
+
+PROFILES: Mapping[str, ProfileSpec] = {
+    profile.name: profile for profile in (ROBOLAB, NBEV3DEVSIM, EV3, LEGO_MICROPYTHON, PYBRICKS_4)
+}
 """All profiles, by name."""
 
 _EARLIER_BRICK: Mapping[str, Mapping[str, bool | int]] = {

@@ -14,6 +14,7 @@ from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.motors import Motor
 from tuisim.core.sensors import mounted
+from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.spec import (
     INPUT_PORTS,
     NO_PORT,
@@ -23,7 +24,7 @@ from tuisim.core.spec import (
 from tuisim.errors import NotSimulated
 from tuisim.shim.device_files import DeviceFiles, SimDevice, refuse
 from tuisim.shim.leds import LED_CLASS, Lights, led_name
-from tuisim.shim.motor import KINDS, BrowserTacho, Tacho, TachoMotor
+from tuisim.shim.motor import KINDS, BrowserTacho, ServoTacho, Tacho, TachoMotor
 from tuisim.shim.power import BATTERY, POWER_CLASS, Battery
 from tuisim.shim.sensors import DEVICES, ColorDevice, LegoSensor
 from tuisim.shim.session import DeviceSession
@@ -149,12 +150,23 @@ def ports_hint(session: DeviceSession, class_name: str) -> str:
     return f"{there} Another robot: -r ROBOT; `tuisim robots --from PROGRAM --out FILE` writes the program's own."
 
 
-def build_brick(session: DeviceSession) -> tuple[DeviceFiles, dict[str, ColorDevice]]:
-    """Build the brick and connect the robot's motors and sensors.
+@dataclass(frozen=True, slots=True)
+class BuiltBrick:
+    """The brick of a robot."""
 
-    Returns:
-        The brick, and its colour sensors by device path.
-    """
+    files: DeviceFiles
+    colors: dict[str, ColorDevice]
+    """Its colour sensors, by device path."""
+    sensors: dict[str, LegoSensor]
+    """By port."""
+    motors: dict[str, Motor]
+    """By port."""
+    lights: Lights
+    battery: Battery
+
+
+def build_brick(session: DeviceSession) -> BuiltBrick:
+    """Build the brick and connect the robot's motors and sensors."""
     brick, robot, sim = DeviceFiles(CLASSES), session.sim.spec.robot, session.sim
     motors = [*zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)]
     tachos: dict[str, Tacho] = {}
@@ -168,20 +180,22 @@ def build_brick(session: DeviceSession) -> tuple[DeviceFiles, dict[str, ColorDev
         for motor, simulated in motors[:2]
     )
     colors: dict[str, ColorDevice] = {}
-    sensors: list[LegoSensor] = []
+    sensors: dict[str, LegoSensor] = {}
+    heard: list[LegoSensor] = []
     for at, spec in enumerate(sorted(robot.sensors, key=lambda found: found.port)):
-        sensor = DEVICES[type(spec)](session, spec, sensors)
-        sensors.append(sensor)
+        sensor = sensors[spec.port] = DEVICES[type(spec)](session, spec, heard)
+        heard.append(sensor)
         brick.add(SENSOR_CLASS, f"sensor{at}", sensor.device())
         if isinstance(sensor, ColorDevice):
             colors[f"/sys/class/{SENSOR_CLASS}/sensor{at}"] = sensor
     for at, socket in enumerate(all_ports(session)):
         brick.add(PORT_CLASS, f"port{at}", socket)
-    for name, light in Lights(session).lights.items():
+    lights, battery = Lights(session), Battery(session)
+    for name, light in lights.lights.items():
         brick.add(LED_CLASS, led_name(name), light.device())
-    brick.add(POWER_CLASS, BATTERY, Battery(session).device())
+    brick.add(POWER_CLASS, BATTERY, battery.device())
     brick.add(BOARD_CLASS, BOARD, board(session))
-    return brick, colors
+    return BuiltBrick(brick, colors, sensors, {spec.port: motor for spec, motor in on_ports}, lights, battery)
 
 
 def board(session: DeviceSession) -> SimDevice:
@@ -198,4 +212,6 @@ def tacho_of(session: DeviceSession, motor: Motor, port: str, kind: str) -> Tach
             return TachoMotor(session, motor, port, kind)
         case BrowserMotor():
             return BrowserTacho(session, motor, port, kind)
+        case ServoMotor():
+            return ServoTacho(session, motor, port, kind)
     raise TypeError(f"no driver for {type(motor).__name__}")

@@ -10,7 +10,9 @@ from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from types import MappingProxyType
 
-from tuisim.shim.brick import build_brick, ports_hint
+from tuisim.core.profile import Library
+from tuisim.core.servo.motor import ServoMotor
+from tuisim.shim.brick import BuiltBrick, build_brick, ports_hint
 from tuisim.shim.buttons import DEVICE_PATHS, ButtonsFile, patch_button_module
 from tuisim.shim.console import Terminal, patch_console_module
 from tuisim.shim.display import DisplayFile, Screen, draw_with_the_bricks_font
@@ -28,8 +30,9 @@ from tuisim.shim.session import DeviceSession
 from tuisim.shim.shell.commands import Shell
 from tuisim.shim.shell.processes import Replace, System, finish_asyncio
 from tuisim.shim.sound import Mixer, patch_sound_module
-from tuisim.shim.unsupported.modules import HardwareFinder
+from tuisim.shim.unsupported.modules import HardwareFinder, OtherLibrary
 from tuisim.shim.unsupported.parts import OTHER_BOARDS, PROCESSES, REFUSED, refuse_board, refuse_classes
+from tuisim.source import PYBRICKS
 
 Finish = Callable[[types.ModuleType], None]
 Around = Callable[[], AbstractContextManager[None]]
@@ -95,7 +98,7 @@ def install(
     replace: Replace,
     is_own: Callable[[str], bool],
 ) -> None:
-    """Prepare the program's `import ev3dev2`, and show it the brick's files.
+    """Prepare the import of the program's library, and show it the brick's files.
 
     Args:
         session: Clock and simulation.
@@ -104,13 +107,13 @@ def install(
         replace: Replaces a function of a module.
         is_own: Whether a file belongs to the program.
     """
-    brick, colors = build_brick(session)
+    built = build_brick(session)
     screen = Screen(session)
     terminal, mixer = Terminal(session, screen), Mixer()
     system = System(session, Shell(session, terminal, mixer))
     system.patch_os(replace)
     tree = DeviceTree(
-        brick,
+        built.files,
         (
             DisplayFile(session, screen),
             *(ButtonsFile(session, path) for path in DEVICE_PATHS),
@@ -120,6 +123,30 @@ def install(
     patches = FilePatches(tree, files, replace)
     patches.apply()
     finishers: dict[str, Finish] = {
+        "PIL": quiet_pillow,
+        "glob": patches.finish_glob,
+        "subprocess": system.finish_subprocess,
+        "asyncio.base_events": finish_asyncio,
+        **more_finishers,
+    }
+    if session.sim.spec.profile.motor_law.library == Library.PYBRICKS:
+        finish_imports(finishers, is_own)
+        _install_pybricks(session, built)
+        return
+    finishers = _of_ev3dev(session, built, terminal, mixer) | finishers
+    finish_imports(finishers, is_own, dict.fromkeys(("ev3dev.core", "ev3dev.fonts"), surroundings))
+    sys.meta_path.insert(0, OtherLibrary((PYBRICKS,), "choose --profile lego-micropython"))
+    sys.meta_path.append(MissingLibrary())
+    sys.meta_path.append(HardwareFinder())
+    connect(built.files, partial(ports_hint, session))
+    sys.modules["ev3dev2_glue"] = glue_module(session)
+    sys.modules.update(evdev_modules(session))
+
+
+def _of_ev3dev(session: DeviceSession, built: BuiltBrick, terminal: Terminal, mixer: Mixer) -> dict[str, Finish]:
+    """Return what to do with the modules of `ev3dev2` and `ev3dev`."""
+    brick, colors = built.files, built.colors
+    return {
         "ev3dev.core": lambda module: finish_core(session, module, partial(ports_hint, session)),
         "ev3dev.fonts": patch_fonts_module,
         **dict.fromkeys(OTHER_BOARDS, refuse_board),
@@ -132,17 +159,19 @@ def install(
         "ev3dev2.sensor": lambda module: patch_sensor_module(session, module, brick),
         "ev3dev2.sensor.lego": lambda module: patch_lego_module(session, module, brick, colors),
         "ev3dev2.sound": lambda module: patch_sound_module(session, module, mixer),
-        "PIL": quiet_pillow,
-        "glob": patches.finish_glob,
-        "subprocess": system.finish_subprocess,
-        "asyncio.base_events": finish_asyncio,
         **dict.fromkeys(REFUSED, refuse_classes),
         **PROCESSES,
-        **more_finishers,
     }
-    finish_imports(finishers, is_own, dict.fromkeys(("ev3dev.core", "ev3dev.fonts"), surroundings))
-    sys.meta_path.append(MissingLibrary())
+
+
+def _install_pybricks(session: DeviceSession, built: BuiltBrick) -> None:
+    """Prepare the program's `import pybricks`."""
+    # Imported on demand: other programs start faster without it.
+    from tuisim.shim.pybricks import modules
+    from tuisim.shim.pybricks.brick import Brick
+
+    motors = {port: motor for port, motor in built.motors.items() if isinstance(motor, ServoMotor)}
+    hint = partial(ports_hint, session)
+    sys.meta_path.insert(0, OtherLibrary(("ev3dev2", "ev3dev"), "choose --profile ev3"))
     sys.meta_path.append(HardwareFinder())
-    connect(brick, partial(ports_hint, session))
-    sys.modules["ev3dev2_glue"] = glue_module(session)
-    sys.modules.update(evdev_modules(session))
+    modules.install(Brick(session, motors, built.sensors, built.lights, built.battery, hint))

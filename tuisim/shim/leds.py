@@ -8,7 +8,7 @@ from __future__ import annotations
 import _thread
 import errno
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import wraps
 from itertools import count
 from typing import Any
@@ -46,6 +46,12 @@ class Lights:
 
     def _brightness(self) -> dict[str, int]:
         return {name: light.shining for name, light in self.lights.items()}
+
+    def shine(self, brightness: Mapping[str, int]) -> None:
+        """Set the brightness of LEDs, by name."""
+        for name, value in brightness.items():
+            self.lights[name].shining = value
+        self.show()
 
     def show(self) -> None:
         """Record the brightness of the LEDs if it has changed."""

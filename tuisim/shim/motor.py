@@ -11,6 +11,8 @@ from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.motors import MEDIUM_MAX_SPEED_DPS, POSITION, STOPPED, TIMED
 from tuisim.core.profile import MS
+from tuisim.core.servo.motor import ServoMotor
+from tuisim.errors import NotSimulated
 from tuisim.protocol import MotorRegisters
 from tuisim.shim.device_files import NumberWriter, Reader, SimDevice, Writer, plain, refuse
 from tuisim.shim.session import DeviceSession
@@ -354,3 +356,34 @@ class BrowserTacho(Tacho):
     def _set_polarity(self, text: str) -> None:
         super()._set_polarity(text)
         self._motor.roll_sign = -1.0 if text == "inversed" else 1.0
+
+
+class ServoTacho(Tacho):
+    """One motor that the Pybricks firmware moves: the driver shows it, and takes no commands."""
+
+    def __init__(self, session: DeviceSession, motor: ServoMotor, port: str, kind: str = "large") -> None:
+        super().__init__(session, port, kind)
+        self._motor = motor
+
+    def device(self) -> SimDevice:
+        """Return the device with the state of the motor."""
+        motor = self._motor
+        readers: dict[str, Reader] = {
+            "position": lambda: round(motor.position_deg),
+            "speed": lambda: round(motor.speed_dps),
+            "duty_cycle": lambda: round(100 * motor.speed_dps / self._kind.max_speed_dps),
+            "state": lambda: "running" if motor.mode else "",
+        }
+        return self._device(readers, {}, {})
+
+    def registers(self) -> MotorRegisters:
+        """Return the state of the motor."""
+        motor = self._motor
+        command = "run-direct" if motor.mode else ""
+        return MotorRegisters(command, "normal", motor.aim_dps, round(motor.goal_deg), 0.0, motor.speed_dps)
+
+    def _command(self, text: str) -> None:
+        raise NotSimulated(
+            f"the motor on {self._port}: the command {text!r} of its driver is not simulated in a Pybricks program",
+            "use pybricks.ev3devices.Motor",
+        )

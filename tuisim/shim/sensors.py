@@ -53,7 +53,7 @@ class LegoSensor:
         self, session: DeviceSession, port: str, driver_name: str, modes: Mapping[str, Mode], default_mode: str
     ) -> None:
         self._session = session
-        self._port, self._driver_name = port, driver_name
+        self._port, self.driver_name = port, driver_name
         self.modes = dict(modes)
         self.mode = default_mode
         self._values: tuple[int, ...] = ()
@@ -68,7 +68,7 @@ class LegoSensor:
         session = self._session
         readers: dict[str, Callable[[], object]] = {
             "address": lambda: f"ev3-ports:{self._port}",
-            "driver_name": lambda: self._driver_name,
+            "driver_name": lambda: self.driver_name,
             "modes": lambda: " ".join(self.modes),
             "mode": lambda: self.mode,
             "commands": _no_commands,
@@ -88,7 +88,7 @@ class LegoSensor:
     def set_mode(self, text: str) -> None:
         """Switch the mode; costs nothing."""
         if text not in self.modes:
-            raise foreign_mode(text, self._port, self._driver_name) or refuse(text)
+            raise foreign_mode(text, self._port, self.driver_name) or refuse(text)
         self.mode = text
 
     def measure(self, mode: str) -> tuple[int, ...]:

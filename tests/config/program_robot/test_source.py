@@ -72,6 +72,6 @@ def test_modules_of_its_own_are_read_wherever_they_lie(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.py")
     text = (tmp_path / "main.py").read_text() + "import pipe, missing, json\n"
     facts = facts_of(Program("main.py", text, path=str(tmp_path / "main.py")))
-    assert facts.for_brick and facts.robot is not None
+    assert facts.library is not None and facts.robot is not None
     assert [part.what for part in facts.robot.parts if part.changes] == ["medium motor on outA"]
     assert str(facts.robot.parts[-1].where) == "parts/deep/arm.py, line 4"

@@ -15,7 +15,7 @@ from tuisim.config.obstacles import load_obstacles
 from tuisim.config.options import OF_THE_MAT, OF_THE_PROFILE, RUN_VALUES, START, Settings, settings_of
 from tuisim.config.profiles import load_profile
 from tuisim.config.program_file import ProgramSource
-from tuisim.config.program_settings import BRICK_PROFILE, PROGRAM_PATHS, Decided, decide
+from tuisim.config.program_settings import PROFILE_OF, PROGRAM_PATHS, Decided, decide
 from tuisim.config.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
 from tuisim.core import tree
 from tuisim.core.geometry import Pose
@@ -158,8 +158,9 @@ def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
     if on_mat:
         free -= {*START}
     # On a mat that was chosen, a program is taken to be the course's, unless it has been known not to be.
-    guessed = free if not on_mat or plan.spec.profile.name == BRICK_PROFILE else free - {"profile"}
-    decided = decide(source, settings.changed({key: usual[key] for key in free}), guessed)
+    guessed = free if not on_mat or plan.spec.profile.name in PROFILE_OF.values() else free - {"profile"}
+    decided = decide(source, settings.changed({key: usual[key] for key in free}), guessed, insists=False)
+    free |= decided.layer.keys() & {"profile"}
     layer, words = _resolved({key: decided.layer.get(key, usual[key]) for key in free})
     changed = {key: value for key, value in layer.items() if settings[key] != value}
     kept = {key: word for key, word in plan.words.items() if key not in changed}

@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tuisim.config.files import read_bytes
+from tuisim.core.profile import Library
 from tuisim.errors import ConfigError
-from tuisim.source import LIBRARIES, Program, decode_source
+from tuisim.source import LIBRARIES, PYBRICKS, Program, decode_source
 
 MAX_MODULES = 100
 MAX_MODULE_BYTES = 1 << 20
@@ -133,6 +134,9 @@ def _folder(program: Program) -> Path:
     return Path(program.module_folder or Path(program.path).parent)
 
 
-def imports_library(modules: dict[str, Module]) -> bool:
-    """Return whether a program imports a library for a brick, in itself or in its own modules."""
-    return any(name.split(".")[0] in LIBRARIES for module in modules.values() for name in _imported(module))
+def library_of(modules: dict[str, Module]) -> Library | None:
+    """Return the library for a brick that a program imports, in itself or in its own modules; None for none."""
+    names = {name.split(".")[0] for module in modules.values() for name in _imported(module)} & {*LIBRARIES}
+    if PYBRICKS in names:
+        return Library.PYBRICKS
+    return Library.EV3DEV2 if names else None

@@ -147,6 +147,30 @@ class HardwareModule(types.ModuleType):
         return _part(self, self.__name__, name)
 
 
+class OtherLibrary:
+    """Refuses to import the library that the rules of this run are not for; the first finder.
+
+    Args:
+        names: The packages of that library.
+        instead: What to do.
+    """
+
+    def __init__(self, names: Sequence[str], instead: str) -> None:
+        self._names, self._instead = names, instead
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None = None, target: types.ModuleType | None = None
+    ) -> None:
+        """Raise for a package of the library.
+
+        Raises:
+            NotSimulated: it is one; it is an ImportError, too.
+        """
+        if fullname in self._names:
+            told = NotSimulated(f"{fullname}: the rules of this run are for another library", self._instead)
+            raise refused_as(ImportError, told)
+
+
 class HardwareFinder:
     """Finds the modules for hardware; the last finder, so that a file of the program or a package comes first."""
 

@@ -1,0 +1,82 @@
+"""Servo motors in the simulation: the same to the last bit however ticks are divided, with and without obstacles."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+
+import pytest
+
+from tests.core.memory_sink import MemorySink
+from tuisim.core.geometry import Pose
+from tuisim.core.profile import PROFILES
+from tuisim.core.servo.control import Ending
+from tuisim.core.servo.drive_base import DriveBase
+from tuisim.core.servo.motor import ServoMotor
+from tuisim.core.simulation import Simulation
+from tuisim.core.spec import Obstacle, RobotSpec, RunSpec, WorldSpec
+
+PROFILE = PROFILES["lego-micropython"]
+WORLD = WorldSpec(start=Pose(600, 500, 0), solid=True)
+WALLED = replace(WORLD, obstacles=(Obstacle(900, 500, 40, 800),))
+
+
+class Robot:
+    """A robot in a world, whose drive base and motors get commands."""
+
+    def __init__(self, world: WorldSpec) -> None:
+        self.sink = MemorySink()
+        self.sim = Simulation(RunSpec(RobotSpec(), world, PROFILE), self.sink)
+        left, right = self.sim.left, self.sim.right
+        assert isinstance(left, ServoMotor) and isinstance(right, ServoMotor)
+        self.motors = left, right
+        self.base = DriveBase(left, right, 56, 120)
+
+    @property
+    def now_us(self) -> int:
+        return self.sim.tick * 10_000
+
+    def command(self, chance: random.Random) -> None:
+        """Give any command, some milliseconds after a tick."""
+        now_us, motor = self.now_us + chance.randrange(10) * 1000, chance.choice(self.motors)
+        match chance.randrange(7):
+            case 0:
+                self.base.move(now_us, chance.randrange(-300, 301), chance.choice((0, 0, 90, -37)))
+            case 1:
+                self.base.drive(now_us, chance.randrange(-200, 201), chance.randrange(-90, 91))
+            case 2:
+                self.base.stop(now_us, chance.choice((None, 0, 4000)))
+            case 3 | 4:
+                self.base.stop(now_us, None)
+                settings = motor.control.settings
+                rate = chance.randrange(-1600, 1601)
+                if chance.random() < 0.5:
+                    motor.control.run(now_us, motor.measured(now_us), rate, settings.acceleration, 700_000)
+                else:
+                    motor.control.run(now_us, motor.measured(now_us), rate, settings.acceleration)
+                motor.follow(ending=chance.choice((Ending.COAST, Ending.BRAKE, Ending.HOLD)))
+            case 5:
+                self.base.stop(now_us, None)
+                motor.control.hold(now_us, chance.randrange(-500_000, 500_000))
+                motor.follow()
+            case _:
+                self.base.stop(now_us, None)
+                motor.run_freely(now_us, chance.choice((None, 0, -9000, 6000)))
+
+
+@pytest.mark.parametrize("world", [WORLD, WALLED], ids=["free", "walled"])
+@pytest.mark.parametrize("seed", range(8))
+def test_ticks_are_the_same_however_they_are_divided(world: WorldSpec, seed: int) -> None:
+    records = []
+    for at_once in (True, False):
+        robot, chance = Robot(world), random.Random(seed)
+        for _ in range(25):
+            robot.command(chance)
+            ticks = chance.choice((1, 2, 7, 60, 150))
+            if at_once:
+                robot.sim.advance(ticks)
+            else:
+                for _ in range(ticks):
+                    robot.sim.tick_once()
+        records.append(robot.sink.records())
+    assert records[0] == records[1]

@@ -1,0 +1,65 @@
+"""A brick with motors and no robot around it, on a clock that looks every 10 ms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any, cast
+
+from tuisim.core.profile import PROFILES, MotorLaw
+from tuisim.core.servo.motor import ServoMotor
+from tuisim.shim.pybricks.brick import Brick, Connected
+
+TICK_NS = 10_000_000
+
+
+class Lab:
+    """A session whose time passes in ticks of 10 ms.
+
+    Args:
+        law: Which firmware moves the motors.
+        kinds: The kind of motor on each port.
+        stop_deg: Where an end stop blocks every motor, to either side; None for nowhere.
+    """
+
+    def __init__(self, law: MotorLaw, kinds: dict[str, str], stop_deg: float | None = None) -> None:
+        self.motors = {port: ServoMotor(100, law, kind) for port, kind in kinds.items()}
+        self.now = self.free = self.tick = 0
+        self.stop_deg = stop_deg
+        self.until_ns = 1 << 62
+        self.looks: list[Callable[[int], None]] = []
+        self.sim: Any = SimpleNamespace(spec=SimpleNamespace(profile=PROFILES["lego-micropython"]))
+        empty: Any = SimpleNamespace()
+        Connected.brick = self.brick = Brick(cast(Any, self), self.motors, {}, empty, empty, lambda _: "")
+
+    def spend(self, duration_ns: int) -> None:
+        """Let time pass.
+
+        Raises:
+            TimeoutError: the time of the experiment is over.
+        """
+        until = self.now + duration_ns
+        while (self.tick + 1) * TICK_NS <= min(until, self.until_ns):
+            self.tick += 1
+            self.now = self.tick * TICK_NS
+            for motor in self.motors.values():
+                before = motor.state()
+                turned = motor.step(self.tick, 0.0)
+                if self.stop_deg is not None and abs(motor.position_deg) > self.stop_deg and turned:
+                    beyond = abs(motor.position_deg) - self.stop_deg
+                    motor.hold_back(before, turned, max(0.0, 1 - beyond / abs(turned)))
+            for look in self.looks:
+                look(self.tick * 10)
+        if until > self.until_ns:
+            raise TimeoutError
+        self.now = until
+
+    def charge(self, _cost_ns: int) -> None:
+        """Charge nothing: the recordings have no costs of calls."""
+
+    def command(self) -> None:
+        """Count nothing."""
+
+    def wait_for_motor(self, timeout_ns: int, again: bool = False) -> None:
+        """Wait to the end."""
+        self.spend(timeout_ns)

@@ -1,0 +1,215 @@
+"""A controller: it follows one trajectory, of a motor or of the sum or difference of two.
+
+The simulated motor follows exactly as long as nothing holds it back. Where an obstacle does, the trajectory of a move
+to a position pauses, and a move at a speed forgets what it cannot catch up, as soon as the motor's power is used up.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from math import ceil
+
+from tuisim.core.servo.settings import PAUSE_MARGIN_MS, ControlSettings
+from tuisim.core.servo.trajectory import (
+    ENDLESS_US,
+    MILLI,
+    MS_US,
+    Reference,
+    Segment,
+    Trajectory,
+    angle_move,
+    divided,
+    standing,
+    timed_move,
+)
+
+
+class Ending(IntEnum):
+    """What a motor does after a move; the values are those of `pybricks.parameters.Stop`."""
+
+    COAST = 0
+    BRAKE = 1
+    HOLD = 2
+    NONE = 3
+    """It keeps on running."""
+
+
+class Controller:
+    """Follows one trajectory, or none."""
+
+    __slots__ = ("_behind_milli", "_paused_us", "_stalled_us", "duty_limit", "settings", "timed", "trajectory")
+
+    def __init__(self, settings: ControlSettings) -> None:
+        self.settings = settings
+        self.trajectory: Trajectory | None = None
+        """None while it is passive."""
+        self.timed = False
+        """Whether it controls the speed, not the position."""
+        self.duty_limit: int | None = None
+        """Highest power of the current move, in hundredths of a percent; None for that of the settings."""
+        self._paused_us = 0
+        """How long the trajectory has paused."""
+        self._behind_milli = 0
+        """How far a motion at a speed is behind its trajectory for good, in thousandths of a count."""
+        self._stalled_us = 0
+        """For how long it has hardly moved at its full power."""
+
+    @property
+    def actuation(self) -> int:
+        """The highest power, in hundredths of a percent."""
+        return self.settings.actuation if self.duty_limit is None else self.duty_limit
+
+    # The reference
+
+    def reference(self, now_us: int) -> Reference:
+        """Return where the trajectory is, without what the motion is behind."""
+        assert self.trajectory is not None
+        return self.trajectory.at(now_us - self._paused_us)
+
+    def milli(self, now_us: int) -> int:
+        """Return where the motion is wanted to be, in thousandths of a count."""
+        return self.reference(now_us).milli - self._behind_milli
+
+    def millis(self, times_us: range) -> list[int]:
+        """Return where the motion is wanted to be at several times of one segment."""
+        assert self.trajectory is not None
+        paused_us, behind = self._paused_us, self._behind_milli
+        then_us = range(times_us.start - paused_us, times_us.stop - paused_us, times_us.step)
+        millis = self.trajectory.segment(then_us[0]).millis(then_us)
+        return [milli - behind for milli in millis] if behind else millis
+
+    def rate(self, now_us: int) -> int:
+        """Return the wanted rate; 0 while it is passive."""
+        return self.reference(now_us).rate if self.trajectory else 0
+
+    @property
+    def end_us(self) -> int | None:
+        """When the trajectory ends; None if it has no end, or there is none."""
+        if self.trajectory is None or self.trajectory.endless:
+            return None
+        return self.trajectory.end_us + self._paused_us
+
+    def segment_end_us(self, now_us: int) -> int | None:
+        """Return when the current segment of the trajectory ends; None if it does not."""
+        if self.trajectory is None:
+            return None
+        end_us = self.trajectory.segment_end_us(now_us - self._paused_us)
+        return None if end_us is None else end_us + self._paused_us
+
+    # Commands
+
+    def release(self) -> None:
+        """Become passive."""
+        self.trajectory, self.duty_limit, self._stalled_us = None, None, 0
+
+    def hold(self, now_us: int, milli: int) -> None:
+        """Stay at a position."""
+        self._begin(standing(now_us, milli), timed=False)
+
+    def move_to(
+        self, now_us: int, measured: Segment, target: int, rate: int, acceleration: int, *, relative: bool = False
+    ) -> None:
+        """Begin a move to a position.
+
+        Args:
+            measured: Where the motion is, from which it begins if this controller is passive.
+            target: Where it shall end, in counts.
+            rate, acceleration: How.
+            relative: Whether `target` counts from where the motion begins.
+
+        Raises:
+            ValueError: the rate is 0, or the move takes too long.
+        """
+        settings = self.settings
+        rate, acceleration = min(abs(rate), settings.speed), min(abs(acceleration), settings.acceleration)
+        start, spliced = self._starts(now_us, measured)
+        if relative:
+            target += divided(start.milli, MILLI)
+        found = angle_move(start, target, rate, acceleration, settings.speed)
+        if spliced is not None and found.first.acceleration == start.acceleration:
+            found = angle_move(spliced, target, rate, acceleration, settings.speed)
+        self._begin(found, timed=False)
+
+    def run(self, now_us: int, measured: Segment, rate: int, acceleration: int, time_us: int | None = None) -> None:
+        """Begin a motion at a speed.
+
+        Args:
+            measured: Where the motion is, from which it begins if this controller is passive.
+            rate, acceleration: How.
+            time_us: How long it takes; None if it does not end.
+
+        Raises:
+            ValueError: the time is negative or too long.
+        """
+        settings, endless = self.settings, time_us is None
+        acceleration = min(abs(acceleration), settings.acceleration)
+        takes_us = ENDLESS_US if time_us is None else time_us
+        start, spliced = self._starts(now_us, measured)
+        found = timed_move(start, takes_us, rate, acceleration, settings.speed, endless=endless)
+        if spliced is not None and found.first.acceleration == start.acceleration:
+            takes_us += now_us - spliced.start_us
+            found = timed_move(spliced, takes_us, rate, acceleration, settings.speed, endless=endless)
+        self._begin(found, timed=True)
+
+    def _starts(self, now_us: int, measured: Segment) -> tuple[Segment, Segment | None]:
+        """Return where a new trajectory begins, and where the running segment began, if there is one."""
+        if self.trajectory is None:
+            return measured, None
+        then_us = now_us - self._paused_us
+        reference, running = self.trajectory.at(then_us), self.trajectory.segment(then_us)
+        return (
+            Segment(now_us, reference.milli, reference.rate, reference.acceleration),
+            Segment(running.start_us + self._paused_us, running.milli, running.rate, running.acceleration),
+        )
+
+    def _begin(self, trajectory: Trajectory, *, timed: bool) -> None:
+        self.trajectory, self.timed, self.duty_limit = trajectory, timed, None
+        self._paused_us = self._behind_milli = self._stalled_us = 0
+
+    # Following
+
+    def fall_behind(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
+        """Take note that the motion is not where it is wanted to be.
+
+        Args:
+            passed_us: Time since the last call, or since the motion was last where it was wanted.
+            milli, rate: Where the motion is, and how fast.
+        """
+        settings = self.settings
+        error = abs(self.milli(now_us) - milli)
+        power = settings.kp * error // MILLI
+        limit = self.actuation - settings.feed_forward + settings.kp * abs(rate) * PAUSE_MARGIN_MS // 1000
+        if power < limit:
+            self._stalled_us = 0
+            return
+        if self.timed:
+            self._behind_milli += self.milli(now_us) - self.milli(now_us - passed_us)
+        else:
+            self._paused_us += passed_us
+        self._stalled_us = self._stalled_us + passed_us if abs(rate) < settings.stall_speed else 0
+
+    @property
+    def stalled(self) -> bool:
+        """Whether the motion has hardly moved at full power for the time of the settings."""
+        return self.trajectory is not None and self._stalled_us >= self.settings.stall_time_ms * MS_US
+
+    def done(self, now_us: int, milli: int, rate: int) -> bool:
+        """Return whether no move is under way.
+
+        Args:
+            milli, rate: Where the motion is, and how fast.
+        """
+        end_us = self.end_us
+        if end_us is None:
+            return self.trajectory is None
+        if now_us < end_us:
+            return False
+        if self.timed:
+            return True
+        near = abs(self.milli(now_us) - milli) <= self.settings.position_tolerance * MILLI
+        return near and abs(rate) < self.settings.speed_tolerance
+
+
+def tick_after(time_us: int, tick_us: int) -> int:
+    """Return the first tick that is not before a time."""
+    return ceil(time_us / tick_us)

@@ -1,0 +1,156 @@
+"""`DriveBase` of `pybricks.robotics`."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from tuisim.core.servo import drive_base
+from tuisim.core.servo.control import Controller
+from tuisim.core.servo.trajectory import MILLI
+from tuisim.shim.pybricks.brick import Connected, invalid_argument, not_permitted, whole
+from tuisim.shim.pybricks.motor import Control, Motor
+from tuisim.shim.pybricks.parameters import Stop
+from tuisim.shim.pybricks.tools import wait
+
+
+class DriveBase(Connected):
+    """A robot with two driven wheels."""
+
+    current: ClassVar[DriveBase | None] = None
+    """The newest one: it stops the one before."""
+
+    def __init__(self, left_motor: Motor, right_motor: Motor, wheel_diameter: float, axle_track: float) -> None:
+        for motor in (left_motor, right_motor):
+            if not isinstance(motor, Motor):
+                raise TypeError(f"a Motor is needed, not {type(motor).__name__}")
+        if left_motor.simulated is right_motor.simulated or wheel_diameter <= 0 or axle_track <= 0:
+            raise invalid_argument()
+        if left_motor.simulated.control.settings != right_motor.simulated.control.settings:
+            raise invalid_argument()
+        if DriveBase.current is not None:
+            DriveBase.current.stop()
+        DriveBase.current = self
+        self.left, self.right = left_motor, right_motor
+        self._base = base = drive_base.DriveBase(
+            left_motor.simulated, right_motor.simulated, float(wheel_diameter), float(axle_track)
+        )
+        self.distance_control, self.heading_control = Control(self, base.distance), Control(self, base.heading)
+        self._zeros = 0, 0
+        self.reset()
+
+    # Motions
+
+    def straight(self, distance: float) -> None:
+        """Drive a distance in mm, and hold."""
+        self._move(whole(distance), 0, "straight()")
+
+    def turn(self, angle: float) -> None:
+        """Turn by an angle in degrees, clockwise, and hold."""
+        self._move(0, whole(angle), "turn()")
+
+    def _move(self, distance_mm: int, angle_deg: int, call: str) -> None:
+        base = self._base
+        now_us = self._command()
+        try:
+            base.move(now_us, distance_mm, angle_deg)
+        except ValueError:
+            raise invalid_argument() from None
+
+        def done(now_us: int) -> bool:
+            if base.stalled:
+                self.brick.say_stalled("the wheels", call)
+            return not base.active or base.done(now_us)
+
+        self.brick.wait_until(done, lambda: base.end_us)
+
+    def drive(self, *args: float, **named: float) -> None:
+        """Drive on at a speed in mm/s and a rate of turn in degrees per second; see `_drive`."""
+        if "drive_speed" in named:
+            named["speed"] = named.pop("drive_speed")
+        self._drive(*args, **named)
+
+    def _drive(self, speed: float, turn_rate: float) -> None:
+        self._base.drive(self._command(), whole(speed), whole(turn_rate))
+
+    def drive_time(self, speed: float, steering: float, time: float) -> None:
+        """Drive for a time in milliseconds, and coast; from version 1.0."""
+        self._drive(speed, steering)
+        wait(time)
+        self.stop()
+
+    def stop(self, stop_type: Stop = Stop.COAST) -> None:
+        """Stop."""
+        now_us, base = self._command(), self._base
+        match stop_type:
+            case Stop.COAST:
+                base.stop(now_us, None)
+            case Stop.BRAKE:
+                base.stop(now_us, 0)
+            case Stop.HOLD:
+                self.straight(0)
+            case _:
+                raise invalid_argument()
+
+    def _command(self) -> int:
+        return self.brick.command()
+
+    # Readings
+
+    def distance(self) -> int:
+        """Return the driven distance in mm."""
+        return self._position(self.brick.read())[0]
+
+    def angle(self) -> int:
+        """Return the turned angle in degrees, clockwise."""
+        return self._position(self.brick.read())[1]
+
+    def _position(self, now_us: int) -> tuple[int, int]:
+        total, difference = self._base.millis_at(now_us)
+        return (
+            self._base.distance.settings.units(round(total / MILLI) - self._zeros[0]),
+            self._base.heading.settings.units(round(difference / MILLI) - self._zeros[1]),
+        )
+
+    def state(self) -> tuple[int, int, int, int]:
+        """Return distance, speed, angle and rate of turn."""
+        now_us, base = self.brick.read(), self._base
+        (distance, angle), (speed, turn_rate) = self._position(now_us), base.rates_at(now_us)
+        return distance, base.distance.settings.units(speed), angle, base.heading.settings.units(turn_rate)
+
+    def reset(self) -> None:
+        """Make the current distance and angle 0."""
+        total, difference = self._base.millis_at(self.brick.command())
+        self._zeros = round(total / MILLI), round(difference / MILLI)
+
+    def move_done(self, now_us: int, control: Controller) -> bool:
+        """Return whether one of its controllers has no move under way."""
+        at = 0 if control is self._base.distance else 1
+        return control.done(now_us, self._base.millis_at(now_us)[at], self._base.rates_at(now_us)[at])
+
+    # Settings
+
+    def settings(
+        self,
+        straight_speed: float | None = None,
+        straight_acceleration: float | None = None,
+        turn_rate: float | None = None,
+        turn_acceleration: float | None = None,
+    ) -> tuple[int, ...] | None:
+        """Return how it moves in `straight` and `turn`, or set it."""
+        base = self._base
+        given: tuple[Any, ...] = (straight_speed, straight_acceleration, turn_rate, turn_acceleration)
+        if all(one is None for one in given):
+            return base.usual
+        if base.active:
+            raise not_permitted()
+        distance, heading = base.distance.settings, base.heading.settings
+        limits = (
+            distance.units(distance.speed), distance.units(distance.acceleration),
+            heading.units(heading.speed), heading.units(heading.acceleration),
+        )  # fmt: skip
+        chosen = [
+            usual if value is None else min(abs(whole(value)), limit)
+            for value, usual, limit in zip(given, base.usual, limits, strict=True)
+        ]
+        base.usual = (chosen[0], chosen[1], chosen[2], chosen[3])
+        return None

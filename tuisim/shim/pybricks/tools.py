@@ -1,0 +1,72 @@
+"""`pybricks.tools`: waiting, a stopwatch and a log."""
+
+from __future__ import annotations
+
+import time as clock
+from typing import Any
+
+from tuisim.core.profile import MS
+from tuisim.shim.pybricks.brick import Connected, whole
+from tuisim.shim.waits import Wait, waits_for
+
+
+@waits_for(Wait.SLEEP)
+def wait(time: float) -> None:
+    """Wait for a time in milliseconds."""
+    time_ms = whole(time)
+    if time_ms > 0:
+        Connected.brick.session.spend(time_ms * MS)
+    else:
+        Connected.brick.session.command()
+
+
+class StopWatch(Connected):
+    """A stopwatch, which runs at once."""
+
+    def __init__(self) -> None:
+        self._began_ns, self._counted_ns, self._runs = self.brick.session.now, 0, True
+
+    def _passed_ns(self) -> int:
+        return self._counted_ns + (self.brick.session.now - self._began_ns if self._runs else 0)
+
+    def time(self) -> int:
+        """Return the counted milliseconds."""
+        self.brick.session.charge(self.brick.session.sim.spec.profile.clock_read_ns)
+        return self._passed_ns() // MS
+
+    def pause(self) -> None:
+        """Stop counting."""
+        self._counted_ns, self._runs = self._passed_ns(), False
+
+    def resume(self) -> None:
+        """Go on counting."""
+        self._counted_ns, self._began_ns, self._runs = self._passed_ns(), self.brick.session.now, True
+
+    def reset(self) -> None:
+        """Count from 0, if it is running."""
+        self._counted_ns, self._began_ns = 0, self.brick.session.now
+
+
+class DataLog(Connected):
+    """A file with rows of values."""
+
+    def __init__(
+        self, *headers: Any, name: str = "log", timestamp: bool = True, extension: str = "csv", append: bool = False
+    ) -> None:
+        now_us = self.brick.now_us
+        stamp = f"{clock.strftime('_%Y_%m_%d_%H_%M_%S')}_{now_us % 1_000_000:06}" if timestamp else ""
+        self.file = open(f"{name}{stamp}.{extension}", "a+" if append else "w+")  # noqa: SIM115 - the program's
+        self.file.seek(0, 2)
+        if headers and not self.file.tell():
+            self.log(*headers)
+
+    def log(self, *values: Any) -> None:
+        """Write one row."""
+        print(*values, sep=", ", file=self.file)
+        self.file.flush()
+
+    def __repr__(self) -> str:
+        self.file.seek(0)
+        text = self.file.read()
+        self.file.seek(0, 2)
+        return text
