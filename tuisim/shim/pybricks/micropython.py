@@ -102,15 +102,16 @@ def clock_names(session: DeviceSession) -> dict[str, Callable[..., Any]]:
 
         return sleep
 
+    ticks_us = counter(US)
     return {
-        "clock": lambda: counter(US)() / 1e6,
+        "clock": lambda: ticks_us() / 1e6,
         "sleep_ms": sleeper(MS),
         "sleep_us": sleeper(US),
         "ticks_add": ticks_add,
-        "ticks_cpu": counter(US),
+        "ticks_cpu": ticks_us,
         "ticks_diff": ticks_diff,
         "ticks_ms": counter(MS),
-        "ticks_us": counter(US),
+        "ticks_us": ticks_us,
     }
 
 
