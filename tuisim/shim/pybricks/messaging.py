@@ -9,6 +9,11 @@ from typing import Any, ClassVar, Self
 from tuisim.errors import NotSimulated
 from tuisim.shim.pybricks.brick import Connected
 
+__all__ = [
+    "BluetoothMailboxClient", "BluetoothMailboxServer", "LogicMailbox", "Mailbox", "MailboxHandlerMixIn",
+    "NumericMailbox", "TextMailbox",
+]  # fmt: skip
+
 _ALONE = "there is one brick; a server and a client in the threads of one program can talk"
 
 
