@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from tuisim.core.servo.control import Controller
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.servo.settings import FIRMWARES, ControlSettings, pair_settings
-from tuisim.core.servo.trajectory import Segment
+from tuisim.core.servo.trajectory import Measure, Segment
 
 if TYPE_CHECKING:
     from tuisim.core.profile import MotorLaw
@@ -34,7 +34,7 @@ def usual_settings(law: MotorLaw, distance: ControlSettings, heading: ControlSet
     )
 
 
-def _move_by(control: Controller, now_us: int, measured: Segment, way: int, speed: int, acceleration: int) -> None:
+def _move_by(control: Controller, now_us: int, measured: Measure, way: int, speed: int, acceleration: int) -> None:
     counts = control.settings.counts
     control.move_to(now_us, measured, counts(way), counts(speed), counts(acceleration), relative=True)
 
@@ -96,18 +96,17 @@ class DriveBase:
         Raises:
             ValueError: the usual speed is 0, or the move takes too long.
         """
-        total, difference = self._measured(now_us)
         speed, acceleration, turn_rate, turn_acceleration = self.usual
-        _move_by(self.distance, now_us, total, distance_mm, speed, acceleration)
-        _move_by(self.heading, now_us, difference, turn_deg, turn_rate, turn_acceleration)
+        _move_by(self.distance, now_us, self._total, distance_mm, speed, acceleration)
+        _move_by(self.heading, now_us, self._difference, turn_deg, turn_rate, turn_acceleration)
         self._take()
 
     def drive(self, now_us: int, speed_mm_s: int, turn_rate_dps: int) -> None:
         """Drive on at a speed and a rate of turn."""
-        rates = self.distance.settings.counts(speed_mm_s), self.heading.settings.counts(turn_rate_dps)
-        controls = self.distance, self.heading
-        for control, measured, rate in zip(controls, self._measured(now_us), rates, strict=True):
-            control.run(now_us, measured, rate, control.settings.acceleration)
+        distance, heading = self.distance, self.heading
+        ours, other = distance.settings, heading.settings
+        distance.run(now_us, self._total, ours.counts(speed_mm_s), ours.acceleration)
+        heading.run(now_us, self._difference, other.counts(turn_rate_dps), other.acceleration)
         self._take()
 
     def stop(self, now_us: int, duty: int | None) -> None:
@@ -117,12 +116,13 @@ class DriveBase:
         self.distance.release()
         self.heading.release()
 
-    def _measured(self, now_us: int) -> tuple[Segment, Segment]:
+    def _total(self, now_us: int) -> Segment:
         left, right = self.left.measured(now_us), self.right.measured(now_us)
-        return (
-            Segment(now_us, left.milli + right.milli, left.rate + right.rate, 0),
-            Segment(now_us, left.milli - right.milli, left.rate - right.rate, 0),
-        )
+        return Segment(now_us, left.milli + right.milli, left.rate + right.rate, 0)
+
+    def _difference(self, now_us: int) -> Segment:
+        left, right = self.left.measured(now_us), self.right.measured(now_us)
+        return Segment(now_us, left.milli - right.milli, left.rate - right.rate, 0)
 
     def _take(self) -> None:
         self._at_us = self._behind_us = -1
@@ -134,8 +134,8 @@ class DriveBase:
     @property
     def end_us(self) -> int | None:
         """When the motion ends; None if it does not."""
-        ends = [control.end_us for control in (self.distance, self.heading)]
-        return None if None in ends else max(end for end in ends if end is not None)
+        one, other = self.distance.end_us, self.heading.end_us
+        return None if one is None or other is None else max(one, other)
 
     def halves(self, now_us: int, motor: ServoMotor) -> int:
         """Return where a motor is wanted to be."""

@@ -124,6 +124,6 @@ def whole(value: Any) -> int:
     Raises:
         TypeError: it is no number.
     """
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    if not isinstance(value, int | float):
         raise TypeError(f"can't convert {type(value).__name__} to int")
     return int(value)

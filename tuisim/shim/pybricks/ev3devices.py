@@ -45,15 +45,15 @@ class Sensor(Connected):
         self._sensor: LegoSensor = found
 
     def _read(self, mode: str) -> tuple[int, ...]:
-        """Return a measurement in a mode. Another mode than before costs the time that the sensor needs for it."""
-        if self._sensor.mode != mode:
-            self._switch(mode)
-        return self._sensor.measure(mode)
+        """Return a measurement in a mode; the first one in another mode than before costs the time of the change."""
+        return self._sensor.measure(mode) if self._sensor.mode == mode else self._switched(mode)
 
-    def _switch(self, mode: str) -> None:
-        profile = self.brick.session.sim.spec.profile
+    def _switched(self, mode: str) -> tuple[int, ...]:
+        """Switch the mode, and return the first measurement in it."""
+        brick, profile = self.brick, self.brick.session.sim.spec.profile
         self._sensor.set_mode(mode)
-        self.brick.session.charge(profile.infrared_switch_ns if mode.startswith("IR") else profile.mode_switch_ns)
+        brick.session.charge(profile.infrared_switch_ns if mode.startswith("IR") else profile.mode_switch_ns)
+        return self._sensor.modes[mode].measure()
 
 
 class TouchSensor(Sensor):
@@ -100,8 +100,7 @@ class UltrasonicSensor(Sensor):
     def distance(self, silent: bool = False) -> int:
         """Return the distance to the next object in mm; `silent` switches the sensor off after the measurement."""
         if silent:
-            self._switch("US-SI-CM")
-            return self._sensor.measure("US-SI-CM")[0]
+            return self._switched("US-SI-CM")[0]
         return self._read("US-DIST-CM")[0]
 
     def presence(self) -> bool:
@@ -154,10 +153,11 @@ class GyroSensor(Sensor):
         self._zero = 0
         self._zero = self._angle()
 
-    def _switch(self, mode: str) -> None:
-        super()._switch(mode)
+    def _switched(self, mode: str) -> tuple[int, ...]:
+        super()._switched(mode)
         self.brick.session.sim.reset_gyro()
         self._zero = 0
+        return self._sensor.modes[mode].measure()
 
     def _angle(self) -> int:
         return self._read("GYRO-ANG")[0] * self._sign

@@ -130,7 +130,7 @@ class Motor(DCMotor):
         """Run at a speed in degrees per second."""
         now_us, motor = self._command(), self._motor
         settings = motor.control.settings
-        motor.control.run(now_us, motor.measured(now_us), settings.counts(whole(speed)), settings.acceleration)
+        motor.control.run(now_us, motor.measured, settings.counts(whole(speed)), settings.acceleration)
         motor.follow()
 
     def track_target(self, target_angle: float) -> None:
@@ -148,7 +148,7 @@ class Motor(DCMotor):
         if not 0 <= time_us <= LONGEST_US:
             raise invalid_argument()
         rate = settings.counts(whole(speed))
-        motor.control.run(now_us, motor.measured(now_us), rate, settings.acceleration, time_us)
+        motor.control.run(now_us, motor.measured, rate, settings.acceleration, time_us)
         self._begin(then, wait, "run_time()")
 
     def run_angle(self, speed: float, rotation_angle: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
@@ -165,7 +165,7 @@ class Motor(DCMotor):
         settings = motor.control.settings
         try:
             motor.control.move_to(
-                now_us, motor.measured(now_us), settings.counts(angle), settings.counts(speed), settings.acceleration,
+                now_us, motor.measured, settings.counts(angle), settings.counts(speed), settings.acceleration,
                 relative=relative,
             )  # fmt: skip
         except ValueError:
@@ -197,6 +197,7 @@ class Motor(DCMotor):
         self.run(speed)
         motor = self._motor
         motor.control.duty_limit = limit
+        motor.follow()
         self.brick.wait_until(lambda _: motor.guide is None or motor.control.stalled, lambda: None)
         angle = self.angle()
         match then:
