@@ -20,6 +20,7 @@ from tuisim.core.servo.trajectory import (
     angle_move,
     divided,
     endless_move,
+    proportional,
     standing,
     timed_move,
 )
@@ -142,6 +143,11 @@ class Controller:
         if spliced is not None and found.first.acceleration == start.acceleration:
             found = angle_move(spliced, target, rate, acceleration, settings.speed)
         self._begin(found, timed=False)
+
+    def keep_pace_with(self, other: Controller) -> None:
+        """Make the new trajectory take as long as that of another controller, in proportion to it at every time."""
+        if self.trajectory is not None and other.trajectory is not None:
+            self.trajectory = proportional(self.trajectory, other.trajectory)
 
     def run(self, now_us: int, measured: Measure, rate: int, acceleration: int, time_us: int | None = None) -> None:
         """Begin a motion at a speed.

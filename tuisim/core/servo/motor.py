@@ -156,10 +156,12 @@ class ServoMotor:
 
     # Commands
 
-    def set_up(self, now_us: int, sign: int, gear_ratio: float) -> None:
-        """Begin anew, as a program does that makes a motor: it coasts, and its position is 0."""
+    def set_up(self, now_us: int, sign: int, gear_ratio: float, *, keeps_angle: bool = False) -> None:
+        """Begin anew, as a program does that makes a motor: it coasts, and its position is 0 unless it is kept."""
         self.run_freely(now_us, None)
-        self.sign, self.position_deg, self._jump_deg = sign, 0.0, 0.0
+        self.sign = sign
+        if not keeps_angle:
+            self.position_deg = self._jump_deg = 0.0
         self.control.settings = motor_settings(self.law, self.kind, gear_ratio)
 
     def follow(self, guide: Guide | None = None, ending: Ending = Ending.HOLD) -> None:
@@ -169,6 +171,7 @@ class ServoMotor:
             ending: What it does at the end of the motion.
         """
         if guide is not None and guide is self._guide:
+            self._ending = ending
             self.mode, self.blocked_ticks = FOREVER if guide.end_us is None else POSITION, 0
             return
         if self._guide is None:

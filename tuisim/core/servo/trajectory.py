@@ -235,3 +235,17 @@ def timed_move(start: Segment, time_us: int, rate: int, acceleration: int, faste
     t2 = at + time_us - t3
     last = Segment(t2, even.milli_at(t2), sign * w1, -sign * acceleration)
     return Trajectory(first, even, last, Segment(t2 + t3, last.milli_at(t2 + t3), 0, 0))
+
+
+def proportional(trajectory: Trajectory, leader: Trajectory) -> Trajectory:
+    """Return a move with the ends of a trajectory and the times of a leader, in proportion to its positions."""
+    begin, whole = trajectory.first.milli, trajectory.end.milli - trajectory.first.milli
+    from_milli, way = leader.first.milli, leader.end.milli - leader.first.milli
+
+    def part(number: int) -> int:
+        return divided(number * whole, way) if way else 0
+
+    def scaled(one: Segment) -> Segment:
+        return Segment(one.start_us, begin + part(one.milli - from_milli), part(one.rate), part(one.acceleration))
+
+    return Trajectory(scaled(leader.first), scaled(leader.even), scaled(leader.last), scaled(leader.end))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import errno
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.shim.leds import Lights
@@ -17,6 +17,21 @@ from tuisim.shim.waits import Wait, waits_for
 
 POLL_US = 5000
 """A blocking call looks for the end of its move this often, as the firmware's does."""
+
+
+Result = TypeVar("Result")
+Waiting = Generator[int, None, Result]
+"""Something that takes time: it yields the times in microseconds until which to wait."""
+
+
+class Awaited(Generic[Result]):
+    """What a task awaits in place of a blocking call."""
+
+    def __init__(self, waiting: Waiting[Result]) -> None:
+        self._waiting = waiting
+
+    def __await__(self) -> Waiting[Result]:
+        return self._waiting
 
 
 @dataclass(slots=True)
@@ -33,6 +48,8 @@ class Brick:
     """Returns what is on the ports of a class of devices."""
     stalled: set[str] = field(default_factory=set)
     """The ports of motors of which it was said that they are stalled."""
+    in_task: bool = False
+    """Whether the program runs a task of version 4, in which nothing blocks."""
 
     @property
     def now_us(self) -> int:
@@ -50,9 +67,8 @@ class Brick:
         self.session.command()
         return self.session.now // 1000
 
-    @waits_for(Wait.MOTOR)
-    def wait_until(self, done: Callable[[int], bool], end_us: Callable[[], int | None]) -> None:
-        """Block until a move is done.
+    def until_done(self, done: Callable[[int], bool], end_us: Callable[[], int | None]) -> Waiting[None]:
+        """Wait until a move is done.
 
         Args:
             done: Whether it is, at a time.
@@ -61,9 +77,24 @@ class Brick:
         begin = now = self.now_us
         while not done(now):
             until = max(end_us() or 0, now + 1)
-            until = begin - (begin - until) // POLL_US * POLL_US
-            self.session.wait_for_motor((until - now) * 1000)
+            yield begin - (begin - until) // POLL_US * POLL_US
             now = self.now_us
+
+    def finish(self, waiting: Waiting[Result]) -> Result:
+        """Do what waits: block until it is over, or, in a task of version 4, return what a task awaits."""
+        awaited: Any = Awaited(waiting)
+        return awaited if self.in_task else self.block(waiting)
+
+    @waits_for(Wait.MOTOR)
+    def block(self, waiting: Waiting[Result]) -> Result:
+        """Block until what waits is over, and return its result."""
+        while True:
+            try:
+                until_us = waiting.send(None)
+            except StopIteration as end:
+                result: Result = end.value
+                return result
+            self.session.wait_for_motor((until_us - self.now_us) * 1000)
 
     def say_stalled(self, port: str, call: str) -> None:
         """Say once that a call waits for a motor that something blocks."""

@@ -6,18 +6,26 @@ import time as clock
 from typing import Any
 
 from tuisim.core.profile import MS
-from tuisim.shim.pybricks.brick import Connected, whole
+from tuisim.shim.pybricks.brick import Connected, Waiting, whole
 from tuisim.shim.waits import Wait, waits_for
 
 
 @waits_for(Wait.SLEEP)
 def wait(time: float) -> None:
     """Wait for a time in milliseconds."""
-    time_ms = whole(time)
+    brick, time_ms = Connected.brick, whole(time)
+    if brick.in_task:
+        return brick.finish(_until(brick.now_us + time_ms * 1000))
     if time_ms > 0:
-        Connected.brick.session.spend(time_ms * MS)
+        brick.session.spend(time_ms * MS)
     else:
-        Connected.brick.session.command()
+        brick.session.command()
+    return None
+
+
+def _until(end_us: int) -> Waiting[None]:
+    while Connected.brick.now_us < end_us:
+        yield end_us
 
 
 class StopWatch(Connected):
