@@ -25,7 +25,7 @@ class Lab:
     def __init__(self, law: MotorLaw, kinds: dict[str, str], stop_deg: float | None = None) -> None:
         self.motors = {port: ServoMotor(100, law, kind) for port, kind in kinds.items()}
         self.now = self.free = self.tick = 0
-        self.stop_deg = stop_deg
+        self.stop_deg, self.held_up = stop_deg, ""
         self.until_ns = 1 << 62
         self.looks: list[Callable[[int], None]] = []
         self.sim: Any = SimpleNamespace(spec=SimpleNamespace(profile=PROFILES["lego-micropython"]))

@@ -47,7 +47,7 @@ class Brick:
     hint: Callable[[str], str]
     """Returns what is on the ports of a class of devices."""
     stalled: set[str] = field(default_factory=set)
-    """The ports of motors of which it was said that they are stalled."""
+    """Of what it was said that it is stalled."""
     in_task: bool = False
     """Whether the program runs a task of version 4, in which nothing blocks."""
 
@@ -92,15 +92,22 @@ class Brick:
             try:
                 until_us = waiting.send(None)
             except StopIteration as end:
+                self.session.held_up = ""
                 result: Result = end.value
                 return result
             self.session.wait_for_motor((until_us - self.now_us) * 1000)
 
-    def say_stalled(self, port: str, call: str) -> None:
-        """Say once that a call waits for a motor that something blocks."""
-        if port not in self.stalled:
-            self.stalled.add(port)
-            self.say(f"the motor on {port} is stalled: {call} waits until it can go on, as on the brick")
+    def say_stalled(self, what: str, call: str) -> None:
+        """Say once that a call waits because something blocks a motor.
+
+        Args:
+            what: What is blocked, with its verb, such as `the wheels are`.
+        """
+        told = f"{what} stalled: {call} waits until the way is free, as on the brick"
+        self.session.held_up = told
+        if what not in self.stalled:
+            self.stalled.add(what)
+            self.say(told)
 
     def say(self, text: str) -> None:
         """Say something to the user, in the program's error output."""

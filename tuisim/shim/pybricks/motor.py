@@ -201,7 +201,7 @@ class Motor(DCMotor):
         if motor.guide is None:
             return True
         if motor.control.stalled:
-            self.brick.say_stalled(self._name, call)
+            self.brick.say_stalled(f"the motor on {self._name} is", call)
         return self.move_done(now_us, motor.control)
 
     def move_done(self, now_us: int, control: Controller) -> bool:

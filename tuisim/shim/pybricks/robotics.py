@@ -64,7 +64,7 @@ class DriveBase(Connected):
 
         def done(now_us: int) -> bool:
             if base.stalled:
-                self.brick.say_stalled("the wheels", call)
+                self.brick.say_stalled("the wheels are", call)
             return not base.active or base.done(now_us)
 
         return self.brick.finish(self.brick.until_done(done, lambda: base.end_us))
