@@ -11,12 +11,16 @@ from typing import Any, ClassVar, Generic, TypeVar
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.shim.leds import Lights
 from tuisim.shim.power import Battery
+from tuisim.shim.pybricks.parameters import Port
 from tuisim.shim.sensors import LegoSensor
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.waits import Wait, waits_for
 
 POLL_US = 5000
 """A blocking call looks for the end of its move this often, as the firmware's does."""
+
+BLOCKED_POLL_US = 100_000
+"""Likewise while something blocks a motor, to say it when the motor is stalled."""
 
 
 Result = TypeVar("Result")
@@ -77,6 +81,8 @@ class Brick:
         begin = now = self.now_us
         while not done(now):
             until = max(end_us() or 0, now + 1)
+            if any(motor.blocked_ticks for motor in self.motors.values()):
+                until = min(until, now + BLOCKED_POLL_US)
             yield begin - (begin - until) // POLL_US * POLL_US
             now = self.now_us
 
@@ -119,9 +125,11 @@ class Connected:
 
     brick: ClassVar[Brick]
 
-    def __init_subclass__(cls, **named: Any) -> None:
-        super().__init_subclass__(**named)
-        cls.__module__ = cls.__module__.replace("tuisim.shim.", "", 1)
+    port: Port | None = None
+    """Where it is connected."""
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.port or ''})"
 
 
 def invalid_argument() -> ValueError:

@@ -8,7 +8,7 @@ from tuisim.core.sensors import SENSORS, color
 from tuisim.shim.brick import SENSOR_CLASS
 from tuisim.shim.pybricks.brick import Connected, invalid_argument, no_device, whole
 from tuisim.shim.pybricks.parameters import Button, Color, Direction, Port
-from tuisim.shim.sensors import ColorDevice, LegoSensor
+from tuisim.shim.sensors import ColorDevice
 
 CODES = (
     None, Color.BLACK, Color.BLUE, Color.GREEN, Color.YELLOW, Color.RED, Color.WHITE, Color.BROWN,
@@ -42,7 +42,7 @@ class Sensor(Connected):
         found = self.brick.sensors.get(port.device_port)
         if found is None or found.driver_name != SENSORS[self.KIND].driver_name:
             raise no_device(self.brick.hint(SENSOR_CLASS))
-        self._sensor: LegoSensor = found
+        self.port, self._sensor = port, found
 
     def _read(self, mode: str) -> tuple[int, ...]:
         """Return a measurement in a mode; the first one in another mode than before costs the time of the change."""

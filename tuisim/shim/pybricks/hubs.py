@@ -70,7 +70,7 @@ class Battery(Connected):
         return round(1000 * self.brick.battery.current_a())
 
 
-class EV3Brick:
+class EV3Brick(Connected):
     """The brick."""
 
     buttons = Buttons()

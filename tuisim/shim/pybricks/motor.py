@@ -73,7 +73,7 @@ class DCMotor(Connected):
         name = _port(port)
         if not name.startswith("out"):
             raise ValueError("Invalid port")
-        self._name = name
+        self._name, self.port = name, port
         return name
 
     @property
