@@ -65,7 +65,7 @@ class Robot:
 
 
 @pytest.mark.parametrize("world", [WORLD, WALLED], ids=["free", "walled"])
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(24))
 def test_ticks_are_the_same_however_they_are_divided(world: WorldSpec, seed: int) -> None:
     records = []
     for at_once in (True, False):

@@ -289,13 +289,20 @@ class ServoMotor:
     def _quiet_ticks(self, tick: int) -> int:
         if self.mode == STOPPED:
             return ENDLESS
-        if self._guide is None or self._course is None:
+        guide, now_us = self._guide, tick * self._tick_us
+        if guide is None or self._course is None or not self._can_follow(guide, now_us):
             return 0
-        now_us = tick * self._tick_us
-        end_us = self._guide.segment_end_us(now_us)
+        end_us = guide.segment_end_us(now_us)
         if end_us is not None:
             return max(0, (end_us - 1) // self._tick_us - tick)
-        return 0 if self._guide.end_us is not None else ENDLESS
+        return 0 if guide.end_us is not None else ENDLESS
+
+    def _can_follow(self, guide: Guide, now_us: int) -> bool:
+        """Return whether the motor is fast enough for the next tick and for the rest of the segment."""
+        assert self._course is not None
+        next_deg = abs(guide.halves(now_us + self._tick_us, self) - self._course) / HALVES_PER_DEG
+        fastest_dps = max(abs(self.moving_dps), abs(self.aim_dps))
+        return next_deg <= self._fastest_deg and fastest_dps * self._tick_s <= self._fastest_deg
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
         """Stand for some ticks; see `Motor.glide_evenly`."""
