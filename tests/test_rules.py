@@ -55,7 +55,6 @@ TESTED_BESIDE = {
     "lessons/spec.py": "lessons/test_files.py",
     "runtime/debugger/conditions.py": "runtime/debugger/test_debugger.py",
     "shim/pybricks/brick.py": "shim/pybricks/test_reference.py",
-    "shim/pybricks/version_4.py": "shim/pybricks/test_reference.py",
     "shim/pybricks/ev3devices.py": "shim/pybricks/test_reference.py",
     "shim/pybricks/motor.py": "shim/pybricks/test_reference.py",
     "shim/pybricks/robotics.py": "shim/pybricks/test_reference.py",
