@@ -36,6 +36,11 @@ class Library(StrEnum):
     EV3DEV2 = "ev3dev2"
     PYBRICKS = "pybricks"
 
+    @property
+    def joins_threads(self) -> bool:
+        """Whether the end of a program waits for its threads, as in Python; MicroPython ends with the main thread."""
+        return self is not Library.PYBRICKS
+
 
 class MotorLaw(StrEnum):
     """How motors obey commands and move, and how the library drives them."""

@@ -8,7 +8,7 @@ from tuisim.core.sensors import SENSORS, color
 from tuisim.shim.brick import SENSOR_CLASS
 from tuisim.shim.pybricks.brick import Connected, invalid_argument, no_device, whole
 from tuisim.shim.pybricks.parameters import Button, Color, Direction, Port
-from tuisim.shim.sensors import ColorDevice
+from tuisim.shim.sensors import ColorDevice, GyroDevice
 
 CODES = (
     None, Color.BLACK, Color.BLUE, Color.GREEN, Color.YELLOW, Color.RED, Color.WHITE, Color.BROWN,
@@ -31,8 +31,8 @@ CHANNELS = range(1, 5)
 class Sensor(Connected):
     """A sensor on an input port."""
 
-    KIND: ClassVar[str]
-    """One of `core.sensors.SENSORS`."""
+    KIND: ClassVar[str] = ""
+    """One of `core.sensors.SENSORS`; empty for any of them."""
 
     def __init__(self, port: Port) -> None:
         if not isinstance(port, Port):
@@ -40,7 +40,7 @@ class Sensor(Connected):
         if not port.device_port.startswith("in"):
             raise ValueError("Invalid port")
         found = self.brick.sensors.get(port.device_port)
-        if found is None or found.driver_name != SENSORS[self.KIND].driver_name:
+        if found is None or (self.KIND and found.driver_name != SENSORS[self.KIND].driver_name):
             raise no_device(self.brick.hint(SENSOR_CLASS))
         self.port, self._sensor = port, found
 
@@ -53,6 +53,8 @@ class Sensor(Connected):
         brick, profile = self.brick, self.brick.session.sim.spec.profile
         self._sensor.set_mode(mode)
         brick.session.charge(profile.infrared_switch_ns if mode.startswith("IR") else profile.mode_switch_ns)
+        if isinstance(self._sensor, GyroDevice):
+            brick.session.sim.reset_gyro()
         return self._sensor.modes[mode].measure()
 
 
@@ -155,7 +157,6 @@ class GyroSensor(Sensor):
 
     def _switched(self, mode: str) -> tuple[int, ...]:
         super()._switched(mode)
-        self.brick.session.sim.reset_gyro()
         self._zero = 0
         return self._sensor.modes[mode].measure()
 

@@ -8,8 +8,20 @@ from collections.abc import Mapping
 from typing import Any
 
 from tuisim.core.profile import MotorLaw
-from tuisim.shim.pybricks import ev3devices, hubs, motor, parameters, robotics, tools
+from tuisim.shim.pybricks import (
+    ev3devices,
+    experimental,
+    hubs,
+    iodevices,
+    messaging,
+    micropython,
+    motor,
+    parameters,
+    robotics,
+    tools,
+)
 from tuisim.shim.pybricks.brick import Brick, Connected
+from tuisim.shim.pybricks.unsimulated import IO_DEVICES, NXT_DEVICES, refused_classes
 
 
 def _public(module: types.ModuleType, *names: str) -> dict[str, Any]:
@@ -21,6 +33,21 @@ MODULES: Mapping[str, Mapping[str, Any]] = {
     "pybricks.hubs": _public(hubs, "EV3Brick"),
     "pybricks.ev3devices": _public(motor, "Motor")
     | _public(ev3devices, "TouchSensor", "ColorSensor", "InfraredSensor", "UltrasonicSensor", "GyroSensor"),
+    "pybricks.experimental": _public(experimental, "run_parallel"),
+    "pybricks.iodevices": _public(motor, "DCMotor")
+    | _public(iodevices, "Ev3devSensor")
+    | refused_classes("pybricks.iodevices", IO_DEVICES),
+    "pybricks.messaging": _public(
+        messaging,
+        "Mailbox",
+        "LogicMailbox",
+        "NumericMailbox",
+        "TextMailbox",
+        "MailboxHandlerMixIn",
+        "BluetoothMailboxServer",
+        "BluetoothMailboxClient",
+    ),
+    "pybricks.nxtdevices": _public(motor, "Motor") | refused_classes("pybricks.nxtdevices", NXT_DEVICES),
     "pybricks.parameters": _public(parameters, "Port", "Stop", "Direction", "Button", "Color", "Align"),
     "pybricks.robotics": _public(robotics, "DriveBase"),
     "pybricks.tools": _public(tools, "wait", "StopWatch", "DataLog") | {"print": print},
@@ -44,7 +71,8 @@ def _version_4() -> Mapping[str, Mapping[str, Any]]:
 
 
 def install(brick: Brick) -> None:
-    """Let a program import the library."""
+    """Let a program import the library, and the modules of MicroPython."""
+    micropython.install(brick.session)
     Connected.brick = brick
     law = brick.session.sim.spec.profile.motor_law
     names = _version_4() if law == MotorLaw.PYBRICKS_4 else MODULES

@@ -15,6 +15,8 @@ from tuisim.core.servo.trajectory import LONGEST_US, MILLI, MS_US
 from tuisim.shim.brick import MOTOR_CLASS
 from tuisim.shim.pybricks.brick import Connected, Waiting, invalid_argument, no_device, not_permitted, whole
 from tuisim.shim.pybricks.parameters import Direction, Port, Stop
+from tuisim.shim.pybricks.unsimulated import LOGGER
+from tuisim.shim.unsupported.modules import refused_part
 
 PERCENT = FULL_ACTUATION // 100
 
@@ -110,6 +112,7 @@ class Motor(DCMotor):
 
     ENDINGS: ClassVar[Mapping[Any, Ending]] = {stop: Ending(stop.value) for stop in Stop}
     """What it does after a move, by the library's name for it."""
+    log = refused_part("Motor", "log", LOGGER)
 
     def __init__(self, port: Port, positive_direction: Direction = Direction.CLOCKWISE, gears: Any = None) -> None:
         self._set_up(port, positive_direction, gear_ratio(gears))

@@ -11,6 +11,8 @@ from tuisim.shim.pybricks.brick import Connected, invalid_argument, not_permitte
 from tuisim.shim.pybricks.motor import Control, Motor
 from tuisim.shim.pybricks.parameters import Stop
 from tuisim.shim.pybricks.tools import wait
+from tuisim.shim.pybricks.unsimulated import LOGGER
+from tuisim.shim.unsupported.modules import refused_part
 
 
 class DriveBase(Connected):
@@ -20,6 +22,7 @@ class DriveBase(Connected):
 
     current: ClassVar[DriveBase | None] = None
     """The newest one: it stops the one before."""
+    log = refused_part("DriveBase", "log", LOGGER)
 
     def __init__(self, left_motor: Motor, right_motor: Motor, wheel_diameter: float, axle_track: float) -> None:
         for motor in (left_motor, right_motor):
