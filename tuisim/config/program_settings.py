@@ -203,11 +203,13 @@ def robot_for(source: ProgramSource) -> BuiltRobot | None:
 def _facts_in_run(source: ProgramSource, free: Collection[str]) -> SourceFacts:
     """Return what the source of a program says that counts in its run.
 
-    What it says of sizes, sides and mountings counts only where it also brings its rules. A program of the course, or
-    one that is told where or how to run, keeps the default robot if that has every part on its port.
+    What it says of sizes, sides and mountings counts only where it also brings its rules, as one for Pybricks always
+    does. A program of the course, or one that is told where or how to run, keeps the default robot if that has every
+    part on its port.
     """
     facts = facts_of(source.program)
-    if facts.robot and facts.robot.keeps_ports and not _by_brick_rules(source, facts, free):
+    brings_rules = facts.library is Library.PYBRICKS or _by_brick_rules(source, facts, free)
+    if facts.robot and facts.robot.keeps_ports and not brings_rules:
         return replace(facts, robot=None)
     return facts
 
