@@ -54,6 +54,7 @@ TESTED_BESIDE = {
     "goals/spec.py": "goals/test_files.py",
     "lessons/spec.py": "lessons/test_files.py",
     "runtime/debugger/conditions.py": "runtime/debugger/test_debugger.py",
+    "shim/pybricks/brick.py": "shim/pybricks/test_reference.py",
     "shim/pybricks/ev3devices.py": "shim/pybricks/test_reference.py",
     "shim/pybricks/motor.py": "shim/pybricks/test_reference.py",
     "shim/pybricks/robotics.py": "shim/pybricks/test_reference.py",

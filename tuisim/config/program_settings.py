@@ -16,7 +16,7 @@ from tuisim.config.options import Settings, settings_of
 from tuisim.config.profiles import DEFAULT_PROFILE, load_profile
 from tuisim.config.program_file import ProgramSource
 from tuisim.config.program_robot.course import uses_course_names
-from tuisim.config.program_robot.source import data_files, library_of, read_modules
+from tuisim.config.program_robot.source import Module, data_files, library_of, read_modules
 from tuisim.config.robots import RobotChoice
 from tuisim.core.profile import PROFILES, Library, MotorLaw, ProfileSpec
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
@@ -103,9 +103,7 @@ def facts_of(program: Program) -> SourceFacts:
     """Return what the source of a program says; nothing if it is not Python, or too deeply nested to be read."""
     try:
         modules = read_modules(program)
-        library = library_of(modules)
-        if library is None and program.text.startswith(SHEBANG):
-            library = Library.PYBRICKS
+        library = _library_in(program, modules)
         if not modules or library is None:
             return SourceFacts(library)
         # Most programs are the course's, and need no reading of their own.
@@ -121,12 +119,31 @@ def facts_of(program: Program) -> SourceFacts:
         return SourceFacts()
 
 
+def _library_in(program: Program, modules: dict[str, Module]) -> Library | None:
+    """Return the library for a brick that a program uses, by its imports, else by its first line; None for none."""
+    library = library_of(modules)
+    return Library.PYBRICKS if library is None and program.text.startswith(SHEBANG) else library
+
+
+def require_library(program: Program, profile: ProfileSpec) -> None:
+    """Check that a profile is for the library that a program uses, if it uses one.
+
+    Raises:
+        ProfileError: it is for another one.
+    """
+    for_course = program.prelude != _NO_PRELUDE
+    library = Library.EV3DEV2 if for_course else _library_in(program, read_modules(program))
+    if library is not None and profile.motor_law.library is not library:
+        raise _misfit(program.name, library, profile)
+
+
 def program_settings(
     source: ProgramSource,
     *above: Mapping[str, Any],
     below: Mapping[str, Any] | None = None,
     in_world: bool = False,
     of_task: bool = False,
+    insists: bool = True,
 ) -> ProgramSettings:
     """Return the settings of a program.
 
@@ -136,10 +153,14 @@ def program_settings(
         below: What they take precedence over: the user's defaults.
         in_world: Whether a world file, goals or a lesson say where it runs: then these decide the profile.
         of_task: Whether a task with a world of its own says so: then it also decides the robot.
+        insists: As for `decide`.
+
+    Raises:
+        ProfileError: as `decide`.
     """
     layers = (below or {}, source.options, *above)
     free = free_paths(layers, above, in_world=in_world, of_task=of_task)
-    decided = decide(source, settings_of(*layers), free)
+    decided = decide(source, settings_of(*layers), free, insists=insists)
     return ProgramSettings(settings_of(*layers, decided.layer), decided)
 
 
@@ -168,10 +189,12 @@ def decide(source: ProgramSource, settings: Settings, free: Collection[str], *, 
         insists: Whether a chosen profile counts that is not for the program's library; else it is replaced.
 
     Raises:
-        ProfileError: the chosen profile is not for the program's library.
+        ProfileError: the chosen profile is not for the program's library, or its prelude is not.
     """
     prelude = settings["preload"] or source.program.prelude
     for_course = prelude != _NO_PRELUDE
+    if for_course and insists:
+        _check_prelude(source.program)
     facts = SourceFacts(Library.EV3DEV2) if for_course else _facts_in_run(source, free)
     layer: dict[str, Any] = {}
     if facts.robot and "robot" in free:
@@ -180,7 +203,7 @@ def decide(source: ProgramSource, settings: Settings, free: Collection[str], *, 
         layer["profile"] = PROFILE_OF[facts.library]
     elif facts.library and not _fits(settings, facts.library):
         if insists and settings.given.get("profile") is not None:
-            raise _misfit(source.program.name, facts.library)
+            raise _misfit(source.program.name, facts.library, _profile(settings["profile"]))
         layer["profile"] = DEFAULT_PROFILE if for_course or facts.of_course else PROFILE_OF[facts.library]
     profile = layer.get("profile", settings["profile"])
     by_rules = profile in PROFILE_OF.values() or profile in [PROFILES[name] for name in PROFILE_OF.values()]
@@ -192,13 +215,22 @@ def decide(source: ProgramSource, settings: Settings, free: Collection[str], *, 
     return Decided(layer, *_in_words(source.program, facts, layer), needed, frozenset(free), refused)
 
 
+def _check_prelude(program: Program) -> None:
+    """Check that a program with a prelude, which uses ev3dev2, does not use Pybricks itself."""
+    if Library.PYBRICKS in program.text and library_of(read_modules(program)) is Library.PYBRICKS:
+        raise ProfileError(
+            f"{program.name} uses {Library.PYBRICKS}, and the names of its prelude are of {Library.EV3DEV2}",
+            "use %%sim_magic, or --preload none",
+            key="preload",
+        )
+
+
 def _law(named: str | ProfileSpec) -> MotorLaw | None:
     """Return the motor law of a profile; None if there is no such profile, which is told later."""
     try:
-        profile = named if isinstance(named, ProfileSpec) else load_profile(named)
+        return _profile(named).motor_law
     except ProfileError:
         return None
-    return profile.motor_law
 
 
 def _fits(settings: Settings, library: Library) -> bool:
@@ -207,12 +239,16 @@ def _fits(settings: Settings, library: Library) -> bool:
     return law is None or law.library is library
 
 
-def _misfit(name: str, library: Library) -> ProfileError:
+def _profile(named: str | ProfileSpec) -> ProfileSpec:
+    return named if isinstance(named, ProfileSpec) else load_profile(named)
+
+
+def _misfit(name: str, library: Library, profile: ProfileSpec) -> ProfileError:
     fitting = [known for known, profile in PROFILES.items() if profile.motor_law.library is library]
     return ProfileError(
-        f"{name} uses {library}, and the chosen profile is for another library",
-        f"leave it out, or choose {' or '.join(fitting)}",
-        key="--profile",
+        f"{name} uses {library}, and the profile {profile.name} is for {profile.motor_law.library}",
+        f"choose {' or '.join(fitting)}, or none",
+        key="profile",
     )
 
 
@@ -225,11 +261,13 @@ def robot_for(source: ProgramSource) -> BuiltRobot | None:
 def _facts_in_run(source: ProgramSource, free: Collection[str]) -> SourceFacts:
     """Return what the source of a program says that counts in its run.
 
-    What it says of sizes, sides and mountings counts only where it also brings its rules. A program of the course, or
-    one that is told where or how to run, keeps the default robot if that has every part on its port.
+    What it says of sizes, sides and mountings counts only where it also brings its rules, as one for Pybricks always
+    does. A program of the course, or one that is told where or how to run, keeps the default robot if that has every
+    part on its port.
     """
     facts = facts_of(source.program)
-    if facts.robot and facts.robot.keeps_ports and not _by_brick_rules(source, facts, free):
+    brings_rules = facts.library is Library.PYBRICKS or _by_brick_rules(source, facts, free)
+    if facts.robot and facts.robot.keeps_ports and not brings_rules:
         return replace(facts, robot=None)
     return facts
 

@@ -29,6 +29,11 @@ READING_NAMES: Mapping[Reading, frozenset[str]] = {kind: frozenset(names.split()
 _PRINTS = frozenset({"print", "say", "write"})
 _KEEPS = frozenset({"append", "appendleft", "extend", "insert", "add", "update", "put", "setdefault"})
 """Methods that put their arguments into the object."""
+_PAUSING = (
+    "sleep", "wait", "on_for", "run_to", "run_time", "run_angle", "run_target", "run_until", "straight", "turn",
+    "drive_time", "play", "speak", "say", "beep",
+)  # fmt: skip
+"""How the names of calls begin that let time pass."""
 _LEAVES = (ast.Break, ast.Continue, ast.Return, ast.Raise, ast.While)
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -234,7 +239,7 @@ def _says(node: ast.AST, name: str) -> bool:
 
 def _pauses(call: ast.Call) -> bool:
     """Return whether a call lets time pass besides readings, by its name."""
-    return _called(call).startswith(("sleep", "wait", "on_for", "run_to", "run_timed", "play", "speak", "beep"))
+    return _called(call).startswith(_PAUSING)
 
 
 def _called(call: ast.Call) -> str:
