@@ -32,6 +32,10 @@ CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float | Non
     "-b of the usual mat": (USUAL, {"above": {"background": "Empty_Map"}}, ("robolab", "Default_Robot", MAT)),
     "--profile": (CLAW, {"above": {"profile": "robolab"}}, ("robolab", "Robot of p.py", MAT)),
     "--profile ev3": (SENSOR, {"above": {"profile": "ev3"}}, ("ev3", "Default_Robot", MIDDLE)),
+    "--profile pybricks4": (
+        "from pybricks.tools import wait\nwait(5)\n", {"above": {"profile": "pybricks4"}},
+        ("pybricks4", "Default_Robot", MIDDLE),
+    ),
     "--profile ev3 on a mat": (
         USUAL, {"above": {"profile": "ev3", "background": "Loop"}}, ("ev3", "Default_Robot", MAT)
     ),
