@@ -102,6 +102,33 @@ def test_a_program_runs_in_a_world_file(tmp_path: Path) -> None:
     assert tuisim.simulate(POSE, arguments=["slow"], world=tmp_path / "lab.toml").output == "['slow']\n"
 
 
+PYBRICKS = """\
+from pybricks.ev3devices import Motor
+from pybricks.parameters import Direction, Port
+from pybricks.robotics import DriveBase
+left, right = (Motor(port, Direction.COUNTERCLOCKWISE, [12, 36]) for port in (Port.A, Port.D))
+robot = DriveBase(left, right, wheel_diameter=55.5, axle_track=104)
+robot.straight(100)
+robot.turn(90)
+print("Distance:", robot.distance())
+"""
+
+
+def test_a_pybricks_program_drives_as_far_as_it_asks_for() -> None:
+    run = tuisim.simulate(PYBRICKS)
+    assert (run.state, run.samples["value"].tolist()) == ("finished", [100])
+    first, last = run.stored.telemetry.record(0), run.stored.telemetry.last()
+    assert last is not None
+    assert (last.x_mm - first.x_mm, last.y_mm - first.y_mm) == pytest.approx((100, 0), abs=1)
+    # Positive turns are clockwise.
+    assert last.heading_deg - first.heading_deg == pytest.approx(-90, abs=1)
+
+
+def test_a_pybricks_program_in_an_experiment() -> None:
+    frame = tuisim.experiment(PYBRICKS, seeds=[1, 2], jobs=1)
+    assert frame["Distance_last"].tolist() == [100, 100]
+
+
 def test_an_experiment_takes_place_in_a_world_file_instead_of_that_of_its_goals(tmp_path: Path) -> None:
     (tmp_path / "lab.toml").write_text(LAB)
     (tmp_path / "goals.toml").write_text("background = 'Square'\n[[goal]]\nname = 'done'\nfinish = true\n")

@@ -96,6 +96,14 @@ def test_wrong_parameters_are_found_before_anything_is_run(choices: Any, given: 
         plan(choices, subject(given=given))
 
 
+def test_a_profile_for_another_library_is_found_before_anything_is_run() -> None:
+    pybricks = Program("p.py", "from pybricks.tools import wait\n")
+    known = Subject(pybricks, Settings({"profile": "lego-micropython"}))
+    assert len(plan({"profile": ("lego-micropython", "pybricks4")}, known)) == 2
+    with pytest.raises(ConfigError, match=r"p\.py uses pybricks, and the profile ev3 is for ev3dev2"):
+        plan({"profile": ("pybricks4", "ev3")}, known)
+
+
 @pytest.mark.parametrize(
     "other, same",
     [

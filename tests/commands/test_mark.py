@@ -261,6 +261,45 @@ def test_the_world_of_the_goals_replaces_that_of_a_magic_line(tmp_path: Path, he
     assert done.stdout.splitlines()[1].split()[:2] == ["cheat", "0"]
 
 
+BOTH_LIBRARIES = {
+    "dev": "from ev3dev2.motor import MoveTank\nMoveTank('outB', 'outC').on_for_seconds(50, 50, 1)\n",
+    "lego": "from pybricks.ev3devices import Motor\nfrom pybricks.parameters import Port\n"
+    "Motor(Port.C).run_angle(300, 90)\n",
+}
+FINISH = "[[goal]]\nname = 'done'\nfinish = true\n"
+
+
+@pytest.mark.parametrize(
+    ("task", "points", "told"),
+    [
+        ("title = 'No world'\n", ["1", "1"], ""),
+        ("background = 'Loop'\n", ["1", "1"], ""),
+        ("profile = 'robolab'\n", ["1", "0"], "lego.py uses pybricks, and the profile robolab is for ev3dev2"),
+        ("profile = 'pybricks4'\n", ["0", "1"], "dev.py uses ev3dev2, and the profile pybricks4 is for pybricks"),
+    ],
+    ids=["no world", "a mat", "a profile of ev3dev2", "a profile of pybricks"],
+)
+def test_each_program_runs_by_the_rules_for_its_library(
+    tmp_path: Path, here: Command, task: str, points: list[str], told: str
+) -> None:
+    (tmp_path / "class").mkdir()
+    for name, text in BOTH_LIBRARIES.items():
+        (tmp_path / "class" / f"{name}.py").write_text(text)
+    (tmp_path / "goals.toml").write_text(task + FINISH)
+    done = here("mark", "goals.toml", "class", "--seeds", "0", "--jobs", "1", "--keep", "none")
+    assert [line.split()[1] for line in done.stdout.splitlines()[1:3]] == points, done.stdout
+    assert told in done.stdout
+
+
+def test_a_task_with_the_profile_of_another_library_than_all_programs_is_refused(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "class").mkdir()
+    (tmp_path / "class" / "lego.py").write_text(BOTH_LIBRARIES["lego"])
+    (tmp_path / "goals.toml").write_text("profile = 'ev3'\n" + FINISH)
+    done = here("mark", "goals.toml", "class", "--seeds", "0", "--jobs", "1", "--keep", "none")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "profile: lego.py uses pybricks, and the profile ev3 is for ev3dev2" in done.stderr
+
+
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["int", "term"])
 def test_a_signal_ends_a_marking_in_good_order(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], number: int, code: int

@@ -12,12 +12,16 @@ import pytest
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.program_file import parse_program
-from tuisim.config.program_settings import program_settings
+from tuisim.config.program_settings import program_settings, require_library
+from tuisim.core.profile import PROFILES
+from tuisim.errors import ProfileError
 
 BRICK = "from ev3dev2.motor import MediumMotor, MoveTank, OUTPUT_A, OUTPUT_B, OUTPUT_C\n"
 CLAW = f"{BRICK}MediumMotor(OUTPUT_A).on(5)\n"
 USUAL = f"{BRICK}MoveTank(OUTPUT_B, OUTPUT_C).on(5, 5)\n"
 SENSOR = "from ev3dev2.sensor.lego import ColorSensor\nprint(ColorSensor('in2').reflected_light_intensity)\n"
+PYBRICKS = "from pybricks.ev3devices import Motor\nfrom pybricks.parameters import Port\nMotor(Port.B).run(200)\n"
+BASE = f"from pybricks.robotics import DriveBase\n{PYBRICKS}DriveBase(Motor(Port.B), Motor(Port.C), 55.5, 104)\n"
 MIDDLE = (1181.0, 571.5)
 MAT = (None, None)
 
@@ -32,10 +36,6 @@ CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float | Non
     "-b of the usual mat": (USUAL, {"above": {"background": "Empty_Map"}}, ("robolab", "Default_Robot", MAT)),
     "--profile": (CLAW, {"above": {"profile": "robolab"}}, ("robolab", "Robot of p.py", MAT)),
     "--profile ev3": (SENSOR, {"above": {"profile": "ev3"}}, ("ev3", "Default_Robot", MIDDLE)),
-    "--profile pybricks4": (
-        "from pybricks.tools import wait\nwait(5)\n", {"above": {"profile": "pybricks4"}},
-        ("pybricks4", "Default_Robot", MIDDLE),
-    ),
     "--profile ev3 on a mat": (
         USUAL, {"above": {"profile": "ev3", "background": "Loop"}}, ("ev3", "Default_Robot", MAT)
     ),
@@ -65,6 +65,17 @@ CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float | Non
         ("ev3", "Default_Robot", MIDDLE),
     ),
     "no library": ("print(1)\n", {}, ("robolab", "Default_Robot", MAT)),
+    "pybricks": (PYBRICKS, {}, ("lego-micropython", "Default_Robot", MIDDLE)),
+    "pybricks by the first line": (
+        "#!/usr/bin/env pybricks-micropython\n", {}, ("lego-micropython", "Default_Robot", MIDDLE)
+    ),
+    "pybricks with its robot": (BASE, {}, ("lego-micropython", "Robot of p.py", MIDDLE)),
+    "pybricks on a mat": (BASE, {"above": {"background": "Loop"}}, ("lego-micropython", "Robot of p.py", MAT)),
+    "pybricks and a magic line": (f"# %%sim_magic\n{BASE}", {}, ("lego-micropython", "Robot of p.py", MAT)),
+    "pybricks in a task": (
+        BASE, {"above": {"seed": 1}, "in_world": True, "of_task": True}, ("lego-micropython", "Default_Robot", MAT)
+    ),
+    "--profile pybricks4": (PYBRICKS, {"above": {"profile": "pybricks4"}}, ("pybricks4", "Default_Robot", MIDDLE)),
     "the older library": ("from ev3dev.ev3 import *\nm = LargeMotor('outB')\n", {}, ("ev3", "Default_Robot", MIDDLE)),
 }  # fmt: skip
 
@@ -79,6 +90,51 @@ def test_what_is_decided(case: str) -> None:
     assert (spec.profile.name, spec.robot.name) == (profile, robot)
     assert (found.settings["start.x_mm"], found.settings["start.y_mm"]) == place
     assert bool(found.decided.note) == bool({"robot", "profile"} & found.decided.layer.keys())
+
+
+MISFITS: Mapping[str, tuple[str, dict[str, Any], str]] = {
+    "a profile of the other library": (
+        PYBRICKS, {"profile": "ev3"}, "profile: p.py uses pybricks, and the profile ev3 is for ev3dev2"
+    ),
+    "a profile of pybricks": (
+        USUAL, {"profile": "pybricks4"}, "profile: p.py uses ev3dev2, and the profile pybricks4 is for pybricks"
+    ),
+    "names of a prelude": (
+        "tank_drive.on(5, 5)\n", {"profile": "lego-micropython"}, "p.py uses ev3dev2, and the profile lego-micropython"
+    ),
+    "a prelude before pybricks": (
+        f"# %%sim_magic_preloaded\n{PYBRICKS}", {}, "preload: p.py uses pybricks, and the names of its prelude"
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", MISFITS)
+def test_what_is_for_the_other_library_is_refused(case: str) -> None:
+    text, above, told = MISFITS[case]
+    with pytest.raises(ProfileError, match=told):
+        program_settings(parse_program(text, "p.py"), above)
+
+
+def test_a_program_with_a_profile_for_the_other_library_can_be_opened() -> None:
+    found = program_settings(parse_program(PYBRICKS, "p.py"), {"profile": "ev3"}, insists=False)
+    assert found.settings["profile"] == "lego-micropython"
+
+
+@pytest.mark.parametrize(
+    ("text", "fitting", "other"),
+    [(PYBRICKS, "pybricks4", "ev3"), (USUAL, "robolab", "pybricks4"), ("tank_drive.on(5, 5)\n", "ev3", "pybricks4")],
+    ids=["pybricks", "ev3dev2", "a prelude"],
+)
+def test_a_profile_is_required_to_be_for_the_library_of_the_program(text: str, fitting: str, other: str) -> None:
+    program = parse_program(text, "p.py").program
+    require_library(program, PROFILES[fitting])
+    with pytest.raises(ProfileError, match=f"the profile {other} is for"):
+        require_library(program, PROFILES[other])
+
+
+def test_a_program_without_a_library_runs_by_any_rules() -> None:
+    for profile in PROFILES.values():
+        require_library(parse_program("print(1)\n", "p.py").program, profile)
 
 
 def test_a_course_program_has_the_settings_that_it_had() -> None:
@@ -136,3 +192,22 @@ def test_sizes_and_sides_count_where_the_program_brings_its_rules(
 ) -> None:
     source = parse_program(magic + ON_USUAL_PORTS, "program.py")
     assert ("robot" in program_settings(source, above).decided.layer) is is_built
+
+
+FORMATTED = "from pybricks.tools import wait\nprint(f'{1}')\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "above", "refusal"),
+    [
+        (FORMATTED, {}, "p.py:2: the brick's Python would refuse this line (f-string)"),
+        (f"{FORMATTED}x: int = 1\n", {}, "p.py:2: the brick's Python would refuse this line (f-string), and 1 more"),
+        (FORMATTED, {"profile": "pybricks4"}, ""),
+        (FORMATTED.replace("f'", "'"), {}, ""),
+        (f"{USUAL}print(f'')\n", {}, ""),
+    ],
+)
+def test_lines_that_the_brick_refuses_are_told_of_its_programs(
+    text: str, above: Mapping[str, Any], refusal: str
+) -> None:
+    assert program_settings(parse_program(text, "p.py"), above).decided.refusal == refusal

@@ -223,6 +223,44 @@ def test_what_a_robots_file_has_that_means_nothing_here_is_said_once(cell: Cell,
     assert "ignored unknown keys" not in cell("%sim_magic -W -x 100").err
 
 
+PYBRICKS = """\
+from pybricks.ev3devices import Motor
+from pybricks.parameters import Direction, Port
+from pybricks.robotics import DriveBase
+left, right = Motor(Port.B, Direction.COUNTERCLOCKWISE), Motor(Port.C, Direction.COUNTERCLOCKWISE)
+robot = DriveBase(left, right, 55.5, 104)
+robot.straight(100)
+print('Distance:', robot.distance())
+"""
+EV3DEV2 = "from ev3dev2.motor import MoveTank\nMoveTank('outB', 'outC').on_for_seconds(20, 20, 1)\nprint('Done: 1')\n"
+
+
+def test_the_imports_of_a_cell_choose_its_profile(cell: Cell) -> None:
+    shown = cell(f"%%sim_magic -RW\n{PYBRICKS}")
+    assert shown.out == "Distance: 100\n"
+    assert "both wheel motors the other way round; by the rules of a brick (profile lego-micropython)" in shown.err
+    (sample,) = cell("%sim_data").result.to_dict("records")
+    assert (sample["variable"], sample["value"], sample["line"], round(sample["x_mm"])) == ("Distance", 100, 8, 236)
+    assert cell(f"%%sim_magic -RW\n{EV3DEV2}").out == "Done: 1\n"
+    assert cell(program("-RW", "print('Kept:', len([gyro]))")).out == "Kept: 1\n"
+    assert cell(f"%%sim_magic -RW\n{PYBRICKS}").out == "Distance: 100\n"
+
+
+def test_a_chosen_profile_of_the_same_library_wins(cell: Cell) -> None:
+    assert "profile" not in cell(f"%%sim_magic -RW --profile pybricks4\n{PYBRICKS}").err
+    assert cell("roboSim.spec.profile.name").result == "pybricks4"
+    misfit = "tuisim: profile: cell uses ev3dev2, and the profile pybricks4 is for pybricks"
+    assert cell(f"%%sim_magic -RW\n{EV3DEV2}").err.startswith(misfit)
+    # A line chooses for the cells below it, whatever the cell above it uses.
+    assert cell("%sim_magic -W --profile ev3").err == ""
+    assert cell(f"%%sim_magic -RW\n{EV3DEV2}").out == "Done: 1\n"
+
+
+def test_the_names_of_a_prelude_are_not_for_pybricks(cell: Cell) -> None:
+    told = cell(f"%%sim_magic_preloaded -RW\n{PYBRICKS}").err
+    assert told.startswith("tuisim: preload: cell uses pybricks, and the names of its prelude are of ev3dev2")
+
+
 def test_a_cell_gets_the_robot_that_its_program_talks_about_under_the_course_s_rules(cell: Cell) -> None:
     text = (
         "from ev3dev2.motor import MediumMotor\nfrom ev3dev2.sensor.lego import ColorSensor\n"

@@ -15,6 +15,7 @@ from tuisim.batch.task import Keep, Task, Value
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.overrides import settings_of_keys
+from tuisim.config.program_settings import require_library
 from tuisim.core.spec import RunSpec
 from tuisim.core.tree import to_plain
 from tuisim.errors import ConfigError
@@ -88,7 +89,9 @@ class Plan:
                 message = f"{name} varies what an option sets"
                 raise ConfigError(message, "give one of them", key=str(self.path))
         for values in Grid(tuple(own)):
-            self.spec_of(subject, values)
+            spec = self.spec_of(subject, values)
+            if "profile" in values:
+                require_library(subject.program, spec.profile)
 
     def __len__(self) -> int:
         return len(self.subjects) * len(self.grid)

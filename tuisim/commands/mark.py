@@ -26,10 +26,11 @@ from tuisim.config.folders import backgrounds_folder
 from tuisim.config.mat_image import decode, read_file
 from tuisim.config.mats import background
 from tuisim.config.options import APP, PANEL, settings_of
+from tuisim.config.program_file import ProgramSource
 from tuisim.config.program_settings import program_settings
 from tuisim.config.shared_options import shared_options
 from tuisim.core.spec import RunSpec
-from tuisim.errors import ConfigError, ExportError, counted, listed, printable, see_page
+from tuisim.errors import ConfigError, ExportError, ProfileError, counted, listed, printable, see_page
 from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.goals.spec import Goal
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
@@ -234,23 +235,38 @@ def _entries(found: StudentsFound, task: GoalsFile, arguments: Arguments) -> tup
     """Return the students whose programs can be run, and all students.
 
     Raises:
-        ConfigError: the world of the goals, or an option, is wrong.
+        ConfigError: the world of the goals, or an option, is wrong, or none of the programs can run by its profile.
     """
     shared = build_run_spec(settings_of(task.settings, arguments.settings))
-    entries, students = [], []
+    names_profile = "profile" in {**task.settings, **arguments.settings}
+    entries, students, misfits = [], [], []
     for student in found.students:
         spec = shared
-        if student.source and not task.settings:
+        if student.source:
             try:
-                spec = _own_spec(student, arguments)
+                spec = _shared_spec(student.source, task, arguments) if task.settings else _own_spec(student, arguments)
             except ConfigError as error:
+                misfits += [error] if isinstance(error, ProfileError) and names_profile else []
                 cause = error.__cause__
                 is_unread = isinstance(cause, OSError) and of_the_machine(cause)
                 student = replace(student, source=None, problem=_told(error, student), is_unread=is_unread)
         if student.source:
             entries.append(RunEntry(student, spec))
         students.append(student)
+    if misfits and not entries:
+        raise misfits[0]
     return entries, students
+
+
+def _shared_spec(source: ProgramSource, task: GoalsFile, arguments: Arguments) -> RunSpec:
+    """Return the world of the goals, by the rules for the library of a program where the goals name no others.
+
+    Raises:
+        ProfileError: they name a profile for another library.
+    """
+    bare = replace(source, options={})
+    layers = task.settings, arguments.settings
+    return build_run_spec(program_settings(bare, *layers, in_world=True, of_task=True).settings)
 
 
 def _own_spec(student: Student, arguments: Arguments) -> RunSpec:

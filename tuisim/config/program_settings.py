@@ -16,15 +16,16 @@ from tuisim.config.options import Settings, settings_of
 from tuisim.config.profiles import DEFAULT_PROFILE, load_profile
 from tuisim.config.program_file import ProgramSource
 from tuisim.config.program_robot.course import uses_course_names
-from tuisim.config.program_robot.source import data_files, library_of, read_modules
+from tuisim.config.program_robot.source import Module, data_files, library_of, read_modules
 from tuisim.config.robots import RobotChoice
-from tuisim.core.profile import PROFILES, PYBRICKS_4, Library, ProfileSpec
+from tuisim.core.profile import PROFILES, PYBRICKS_4, Library, MotorLaw, ProfileSpec
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import ProfileError
 from tuisim.source import Program
 
 if TYPE_CHECKING:
     from tuisim.config.program_robot.assembly import BuiltRobot
+    from tuisim.config.program_robot.brick_syntax import RefusedLine
 
 BRICK_PROFILE = "ev3"
 """The profile of programs that are for a real brick."""
@@ -47,6 +48,8 @@ class SourceFacts:
     """Whether it uses names that only the course has."""
     robot: BuiltRobot | None = None
     """The robot that it needs; None if the default one does."""
+    refused: tuple[RefusedLine, ...] = ()
+    """Its lines that LEGO's MicroPython refuses, if it is for that."""
 
 
 _PLACE = ("start.x_mm", "start.y_mm")
@@ -68,11 +71,21 @@ class Decided:
     """The robot that the program needs, even if another one was chosen; None for the default one."""
     free: frozenset[str] = frozenset()
     """Which of `PROGRAM_PATHS` nobody has chosen."""
+    refused: tuple[RefusedLine, ...] = ()
+    """The lines that the Python of the simulated brick would refuse."""
 
     @property
     def note(self) -> str:
         """What is decided and how to change it, in one line; empty for nothing."""
         return f"{self.said}. {self.hint}" if self.said else ""
+
+    @property
+    def refusal(self) -> str:
+        """The first line that the brick's Python would refuse, and how many follow; empty for none."""
+        if not self.refused:
+            return ""
+        first, *others = self.refused
+        return f"{first}, and {len(others)} more" if others else str(first)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,20 +105,38 @@ def facts_of(program: Program) -> SourceFacts:
     """Return what the source of a program says; nothing if it is not Python, or too deeply nested to be read."""
     try:
         modules = read_modules(program)
-        library = library_of(modules)
-        if library is None and program.text.startswith(SHEBANG):
-            library = Library.PYBRICKS
+        library = _library_in(program, modules)
         if not modules or library is None:
             return SourceFacts(library)
         # Most programs are the course's, and need no reading of their own.
         from tuisim.config.program_robot.assembly import build_robot
+        from tuisim.config.program_robot.brick_syntax import refused_lines
         from tuisim.config.program_robot.mentions import mentions_in
         from tuisim.config.program_robot.report import USUAL
 
         robot = build_robot(mentions_in(modules, data_files(program)), program.name, USUAL)
-        return SourceFacts(library, uses_course_names(modules, program.text), robot)
+        refused = refused_lines(modules.values()) if library is Library.PYBRICKS else ()
+        return SourceFacts(library, uses_course_names(modules, program.text), robot, refused)
     except RecursionError:
         return SourceFacts()
+
+
+def _library_in(program: Program, modules: dict[str, Module]) -> Library | None:
+    """Return the library for a brick that a program uses, by its imports, else by its first line; None for none."""
+    library = library_of(modules)
+    return Library.PYBRICKS if library is None and program.text.startswith(SHEBANG) else library
+
+
+def require_library(program: Program, profile: ProfileSpec) -> None:
+    """Check that a profile is for the library that a program uses, if it uses one.
+
+    Raises:
+        ProfileError: it is for another one.
+    """
+    for_course = program.prelude != _NO_PRELUDE
+    library = Library.EV3DEV2 if for_course else _library_in(program, read_modules(program))
+    if library is not None and profile.motor_law.library is not library:
+        raise _misfit(program.name, library, profile)
 
 
 def program_settings(
@@ -114,6 +145,7 @@ def program_settings(
     below: Mapping[str, Any] | None = None,
     in_world: bool = False,
     of_task: bool = False,
+    insists: bool = True,
 ) -> ProgramSettings:
     """Return the settings of a program.
 
@@ -123,10 +155,14 @@ def program_settings(
         below: What they take precedence over: the user's defaults.
         in_world: Whether a world file, goals or a lesson say where it runs: then these decide the profile.
         of_task: Whether a task with a world of its own says so: then it also decides the robot.
+        insists: As for `decide`.
+
+    Raises:
+        ProfileError: as `decide`.
     """
     layers = (below or {}, source.options, *above)
     free = free_paths(layers, above, in_world=in_world, of_task=of_task)
-    decided = decide(source, settings_of(*layers), free)
+    decided = decide(source, settings_of(*layers), free, insists=insists)
     return ProgramSettings(settings_of(*layers, decided.layer), decided)
 
 
@@ -155,10 +191,12 @@ def decide(source: ProgramSource, settings: Settings, free: Collection[str], *, 
         insists: Whether a chosen profile counts that is not for the program's library; else it is replaced.
 
     Raises:
-        ProfileError: the chosen profile is not for the program's library.
+        ProfileError: the chosen profile is not for the program's library, or its prelude is not.
     """
     prelude = settings["preload"] or source.program.prelude
     for_course = prelude != _NO_PRELUDE
+    if for_course and insists:
+        _check_prelude(source.program)
     facts = SourceFacts(Library.EV3DEV2) if for_course else _facts_in_run(source, free)
     layer: dict[str, Any] = {}
     if facts.robot and "robot" in free:
@@ -167,32 +205,52 @@ def decide(source: ProgramSource, settings: Settings, free: Collection[str], *, 
         layer["profile"] = PROFILE_OF[facts.library]
     elif facts.library and not _fits(settings, facts.library):
         if insists and settings.given.get("profile") is not None:
-            raise _misfit(source.program.name, facts.library)
+            raise _misfit(source.program.name, facts.library, _profile(settings["profile"]))
         layer["profile"] = DEFAULT_PROFILE if for_course or facts.of_course else PROFILE_OF[facts.library]
     profile = layer.get("profile", settings["profile"])
     by_rules = profile in OF_BRICKS or profile in [PROFILES[name] for name in OF_BRICKS]
     if by_rules and not source.has_magic and {*_PLACE} <= {*free}:
         layer |= dict(zip(_PLACE, (FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2), strict=True))
     needed = facts.robot.choice if facts.robot else None
-    return Decided(layer, *_in_words(source.program, facts, layer), needed, frozenset(free))
+    law = _law(profile) if facts.refused else None
+    refused = facts.refused if law is MotorLaw.PYBRICKS else ()
+    return Decided(layer, *_in_words(source.program, facts, layer), needed, frozenset(free), refused)
+
+
+def _check_prelude(program: Program) -> None:
+    """Check that a program with a prelude, which uses ev3dev2, does not use Pybricks itself."""
+    if Library.PYBRICKS in program.text and library_of(read_modules(program)) is Library.PYBRICKS:
+        raise ProfileError(
+            f"{program.name} uses {Library.PYBRICKS}, and the names of its prelude are of {Library.EV3DEV2}",
+            "use %%sim_magic, or --preload none",
+            key="preload",
+        )
+
+
+def _law(named: str | ProfileSpec) -> MotorLaw | None:
+    """Return the motor law of a profile; None if there is no such profile, which is told later."""
+    try:
+        return _profile(named).motor_law
+    except ProfileError:
+        return None
 
 
 def _fits(settings: Settings, library: Library) -> bool:
-    """Return whether the chosen profile is for a library; also if there is no such profile, which is told later."""
-    named = settings["profile"]
-    try:
-        profile = named if isinstance(named, ProfileSpec) else load_profile(named)
-    except ProfileError:
-        return True
-    return profile.motor_law.library is library
+    """Return whether the chosen profile is for a library; also if there is no such profile."""
+    law = _law(settings["profile"])
+    return law is None or law.library is library
 
 
-def _misfit(name: str, library: Library) -> ProfileError:
+def _profile(named: str | ProfileSpec) -> ProfileSpec:
+    return named if isinstance(named, ProfileSpec) else load_profile(named)
+
+
+def _misfit(name: str, library: Library, profile: ProfileSpec) -> ProfileError:
     fitting = [known for known, profile in PROFILES.items() if profile.motor_law.library is library]
     return ProfileError(
-        f"{name} uses {library}, and the chosen profile is for another library",
-        f"leave it out, or choose {' or '.join(fitting)}",
-        key="--profile",
+        f"{name} uses {library}, and the profile {profile.name} is for {profile.motor_law.library}",
+        f"choose {' or '.join(fitting)}, or none",
+        key="profile",
     )
 
 
@@ -205,11 +263,13 @@ def robot_for(source: ProgramSource) -> BuiltRobot | None:
 def _facts_in_run(source: ProgramSource, free: Collection[str]) -> SourceFacts:
     """Return what the source of a program says that counts in its run.
 
-    What it says of sizes, sides and mountings counts only where it also brings its rules. A program of the course, or
-    one that is told where or how to run, keeps the default robot if that has every part on its port.
+    What it says of sizes, sides and mountings counts only where it also brings its rules, as one for Pybricks always
+    does. A program of the course, or one that is told where or how to run, keeps the default robot if that has every
+    part on its port.
     """
     facts = facts_of(source.program)
-    if facts.robot and facts.robot.keeps_ports and not _by_brick_rules(source, facts, free):
+    brings_rules = facts.library is Library.PYBRICKS or _by_brick_rules(source, facts, free)
+    if facts.robot and facts.robot.keeps_ports and not brings_rules:
         return replace(facts, robot=None)
     return facts
 

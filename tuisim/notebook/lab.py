@@ -248,7 +248,10 @@ class Lab:
             program = Program("cell", "\n" + text, preload)
         settings = settings_of(persistent, words.settings)
         if program is not None:
-            found = program_settings(ProgramSource(program, has_magic=True), persistent, words.settings)
+            source = ProgramSource(program, has_magic=True)
+            # A line says what holds for the cells below it: the program above it has run already.
+            insists = text is not None or settings["autorun"]
+            found = program_settings(source, persistent, words.settings, insists=insists)
             settings = found.settings
             if text is not None and found.decided.note:
                 print(f"tuisim: note: {found.decided.note}", file=sys.stderr)

@@ -141,7 +141,8 @@ class ProgramRunner:
 
     def _run(self) -> ProgramOutcome:
         outcome = self._outcome(self._execute)
-        if self._session.stop_reason is None and outcome.end in (End.FINISHED, End.RAISED):
+        joins = self._config.spec.profile.motor_law.library.joins_threads
+        if joins and self._session.stop_reason is None and outcome.end in (End.FINISHED, End.RAISED):
             # As in Python, also after an error or an exit of the main thread.
             later = self._outcome(self._scheduler.join_all)
             outcome = outcome if later.end is End.FINISHED else later

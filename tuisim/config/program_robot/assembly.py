@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from tuisim.config.program_robot.library import DeviceKind
+from tuisim.config.program_robot.kinds import with_others, with_tools
+from tuisim.config.program_robot.library import PAIRS, DeviceKind
 from tuisim.config.program_robot.mechanics import Mechanics, mechanics_in
 from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.config.program_robot.places import Body, NewSensors, places_for, say_other_sides, with_sides
@@ -115,7 +116,8 @@ class _Builder:
 
     def motors(self) -> dict[str, Any]:
         """Return the fields of the robot that are about motors and wheels."""
-        kinds = self._kinds([*self._of_pairs(), *(one for one in self.mentions.devices if one.kind.is_motor)])
+        motors = (one for one in self.mentions.devices if one.kind.is_motor)
+        kinds = with_tools(self._kinds([*self._of_pairs(), *motors]), self.mentions)
         where = {one.port: one.where for one in (*self.mentions.devices, *self._of_pairs()) if one.port}
         wheels = wheels_of(self.mentions, kinds, self.usual)
         left, right = (kinds.get(port, DeviceKind.LARGE) for port in (wheels.left, wheels.right))
@@ -123,10 +125,10 @@ class _Builder:
         changes |= {"left_motor": _motor_kind(left), "right_motor": _motor_kind(right)}
         changes |= self._sizes(wheels.pair)
         further = [port for port in sorted(kinds) if port not in (wheels.left, wheels.right)]
-        further_kinds = {port: kinds[port] for port in further}
+        further_kinds = with_others({port: kinds[port] for port in further}, self.mentions)
         self._free_motors(further_kinds, (wheels.left, wheels.right))
         self._tell_wheels(wheels, changes)
-        changes |= self._reversed(wheels)
+        changes |= self._reversed(wheels) | self._geared(wheels)
         extra = [self._further(port, kind) for port, kind in further_kinds.items()]
         changes["extra_motors"] = tuple(extra)
         for motor in extra:
@@ -153,6 +155,19 @@ class _Builder:
             where = turned[wheels.left if "left" in sides else wheels.right]
             self.parts.append(RobotPart(f"{what} the other way round", f"{sides[0]}_reversed", where))
         return {f"{side}_reversed": True for side in sides}
+
+    def _geared(self, wheels: WheelMotors) -> dict[str, float]:
+        """Return the gears between the wheels and their motors; a robot has the same on both sides."""
+        motors = [motor for port in (wheels.left, wheels.right) if (motor := self.mentions.motor_on(port))]
+        ratios = {motor.gear_ratio for motor in motors}
+        if len(motors) < 2 or ratios == {self.usual.gear_ratio}:
+            return {}
+        if len(ratios) > 1:
+            self.doubts.append("the gears of the two wheels differ: none are built")
+            return {}
+        ratio = ratios.pop()
+        self.parts.append(RobotPart(f"gears of {ratio:g} motor turns per wheel turn", "gear_ratio", motors[0].where))
+        return {"gear_ratio": ratio}
 
     def with_presses(self, changes: dict[str, Any]) -> dict[str, Any]:
         """Return the changes with the touch sensors that a motor presses at its end."""
@@ -193,16 +208,17 @@ class _Builder:
                 missing -= 1
 
     def _sizes(self, pair: Pair | None) -> dict[str, float]:
-        """Return what MoveDifferential says about the wheels, if it differs from those of the usual robot."""
+        """Return what the class of the wheels says about them, if it differs from those of the usual robot."""
         found: dict[str, float] = {}
         if pair and pair.wheel_mm and pair.wheel_mm[0] != self.usual.wheel_diameter_mm:
-            found["wheel_diameter_mm"], found["wheel_width_mm"] = pair.wheel_mm
+            found["wheel_diameter_mm"], width_mm = pair.wheel_mm
+            found["wheel_width_mm"] = self.usual.wheel_width_mm if width_mm is None else width_mm
         if pair and pair.spacing_mm is not None and pair.spacing_mm != self.usual.wheel_spacing_mm:
             found["wheel_spacing_mm"] = pair.spacing_mm
         return found
 
     def said_sizes(self, motors: Mapping[str, Any]) -> dict[str, float]:
-        """Return what constants of the program say about the wheels, where `MoveDifferential` says nothing."""
+        """Return what constants of the program say about the wheels, where their class says nothing."""
         said = self._said_sizes(motors)
         self._tell_sizes({key: size.mm for key, size in said.items()}, {key: size.where for key, size in said.items()})
         return {key: size.mm for key, size in said.items()}
@@ -213,8 +229,18 @@ class _Builder:
         return {
             key: size
             for key, size in sizes.items()
-            if size and motors["left_port"] != NO_PORT and key not in motors and size.mm != getattr(self.usual, key)
+            if size
+            and motors["left_port"] != NO_PORT
+            and key not in {*motors, *self._exact()}
+            and size.mm != getattr(self.usual, key)
         }
+
+    def _exact(self) -> Iterator[str]:
+        """Yield the sizes that a `DriveBase` says, also if they are as usual."""
+        for pair in self.mentions.pairs:
+            if PAIRS[pair.class_name].takes_motors:
+                yield from ["wheel_diameter_mm"] if pair.wheel_mm else []
+                yield from ["wheel_spacing_mm"] if pair.spacing_mm is not None else []
 
     def _tell_sizes(self, sizes: Mapping[str, float], where: Mapping[str, Where | None]) -> None:
         for key, words in (("wheel_diameter_mm", "wheels of {:g} mm"), ("wheel_spacing_mm", "{:g} mm apart")):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from tuisim.config.program_robot import library
 from tuisim.config.program_robot.calls import Call, argument_of
@@ -175,7 +175,7 @@ class Evaluation:
     def attribute(self, value: Value, name: str) -> Iterator[Value]:
         """Yield what an attribute of a value can be."""
         match value:
-            case LibraryModule(name=module):
+            case LibraryModule(name=module) if module not in library.OTHER_HARDWARE:
                 if name in library.CONSTANTS:
                     yield library.CONSTANTS[name]
                 elif name in library.CLASSES:
@@ -192,12 +192,14 @@ class Evaluation:
                     yield from self._from_stars(scope, name)
             case OwnClass(scope=scope):
                 yield from self._of_class(scope, name, is_bound=False)
-            case Instance(of=OwnClass(scope=scope)):
-                yield from self._of_class(scope, name, is_bound=True)
+            case Instance(of=OwnClass(scope=scope), call=call):
+                yield from _made_by(call, self._of_class(scope, name, is_bound=True))
             case Parent(of=scope):
                 for base in self.bases(scope):
                     if isinstance(base, OwnClass):
                         yield from self._of_class(base.scope, name, is_bound=True)
+            case LibraryClass(name=enumeration) if name in library.MEMBERS.get(enumeration, ()):
+                yield library.MEMBERS[enumeration][name]
             case Instance(of=LibraryClass()) | LibraryClass() if name in library.CONSTANTS:
                 yield library.CONSTANTS[name]
             case Options():
@@ -337,7 +339,7 @@ class Evaluation:
                 case LibraryClass() | OwnClass():
                     yield Instance(value, node)
                 case OwnFunction():
-                    yield from self.returned(value)
+                    yield from _made_by(node, self.returned(value))
 
     def _of_method(self, base: ast.expr, name: str, node: ast.Call, scope: Scope) -> Iterator[Value]:
         """Yield the result of a method of Python's own types."""
@@ -440,6 +442,12 @@ class Evaluation:
             else:
                 found += [(value, call) for value in given]
         return found or usual
+
+
+def _made_by(call: ast.Call | None, values: Iterable[Value]) -> Iterator[Value]:
+    """Yield values with the call that makes them, where none nearer to them is known."""
+    for value in values:
+        yield replace(value, via=call) if isinstance(value, Instance) and value.via is None else value
 
 
 def _from_end(index: object, table: SourceCollection) -> int:

@@ -1,4 +1,4 @@
-"""What the names of the libraries `ev3dev2` and `ev3dev` stand for: ports, devices, pairs of motors, wheels.
+"""What the names of the libraries for a brick stand for: ports, devices, pairs of motors, wheels, moves.
 
 To add a device: add its class to `DEVICES`. To add a class that drives two wheels: add it to `PAIRS`.
 """
@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
+from tuisim.core.profile import Library
 from tuisim.core.spec import INPUT_PORTS, OUTPUT_PORTS
 
 COURSE_MODULE = "ev3dev2_glue"
@@ -48,8 +49,18 @@ DEVICES: Mapping[str, DeviceKind] = {
     "Sensor": DeviceKind.SENSOR,
     "RemoteControl": DeviceKind.INFRARED,
     "BeaconSeeker": DeviceKind.INFRARED,
+    "DCMotor": DeviceKind.MOTOR,
+    "Ev3devSensor": DeviceKind.SENSOR,
 }
-"""The classes of devices that are simulated, in both libraries."""
+"""The classes of devices that are simulated, in all libraries."""
+
+OTHER_HARDWARE = frozenset({"pybricks.nxtdevices"})
+"""Modules whose classes are for other hardware, also where they have the same names."""
+
+PORT_NAMES = ("address", "port")
+"""What the libraries call the first argument of a class of devices."""
+DIRECTION, GEARS = "positive_direction", "gears"
+"""Arguments of the motors of Pybricks, after the port."""
 
 WITHOUT_PORT = frozenset({"RemoteControl", "BeaconSeeker"})
 """Classes of devices whose first argument is no port."""
@@ -59,7 +70,7 @@ MOTOR_SET = "MotorSet"
 
 @dataclass(frozen=True, slots=True)
 class PairClass:
-    """A class that is made with the ports of a left and a right motor, as its first two arguments."""
+    """A class that is made with a left and a right motor, or with their ports, as its first two arguments."""
 
     left: str
     right: str
@@ -74,6 +85,8 @@ class PairClass:
     """The ports where the arguments are missing."""
     reverses: bool = False
     """Whether it turns the polarity of its motors unless it is told not to."""
+    takes_motors: bool = False
+    """Whether it is made with motors."""
 
 
 _PORTS = ("left_motor_port", "right_motor_port")
@@ -86,6 +99,7 @@ PAIRS: Mapping[str, PairClass] = {
     "WebControlledTank": PairClass(*_HELPER, rank=2),
     "RemoteControlledTank": PairClass(*_PORTS, rank=2, needs=(DeviceKind.INFRARED,), reverses=True),
     "GyroBalancer": PairClass(*_PORTS, needs=(DeviceKind.GYRO, DeviceKind.TOUCH), usual=("outD", "outA")),
+    "DriveBase": PairClass(*_HELPER, rank=3, takes_motors=True),
     "Tank": PairClass(*_HELPER, rank=2),
     "LargeMotorPair": PairClass(*_HELPER),
     "MotorPair": PairClass(*_HELPER),
@@ -95,6 +109,8 @@ PAIRS: Mapping[str, PairClass] = {
 
 WHEEL_CLASS, DISTANCE = "wheel_class", "wheel_distance_mm"
 """Arguments of `MoveDifferential`, after the ports."""
+WHEEL_DIAMETER, AXLE_TRACK = "wheel_diameter", "axle_track"
+"""Arguments of `DriveBase`, after the motors."""
 POLARITY = "polarity"
 """Argument of a class that turns the polarity of its motors, after the ports."""
 MOTOR_CLASS = "motor_class"
@@ -121,8 +137,62 @@ CONSTANTS: Mapping[str, str] = {
 }
 """Names of the library with the value that matters here."""
 
-CLASSES = frozenset({*DEVICES, *PAIRS, *WHEELS, MOTOR_SET, WHEEL})
+INVERSED, NORMAL = CONSTANTS["POLARITY_INVERSED"], CONSTANTS["POLARITY_NORMAL"]
+
+MEMBERS: Mapping[str, Mapping[str, str]] = {
+    "Port": {(port[-1] if port.startswith("out") else f"S{port[-1]}"): port for port in (*OUTPUT_PORTS, *INPUT_PORTS)},
+    "Direction": {"CLOCKWISE": NORMAL, "COUNTERCLOCKWISE": INVERSED},
+}
+"""The enumerations of Pybricks that matter here, with the value of each member."""
+
+CLASSES = frozenset({*DEVICES, *PAIRS, *WHEELS, *MEMBERS, MOTOR_SET, WHEEL})
 """Every class of the libraries that says something about the robot."""
+
+
+@dataclass(frozen=True, slots=True)
+class Moves:
+    """The methods of a library that move motors, one or two, and the names of their arguments."""
+
+    endless: frozenset[str]
+    """Those after which a motor moves on."""
+    ending: frozenset[str]
+    """Those that end by themselves."""
+    unsigned: frozenset[str]
+    """Those of them whose arguments do not say in which direction a motor turns: moves to a place, and turns."""
+    speeds: tuple[str, ...]
+    """The names of speeds."""
+    lengths: tuple[str, ...]
+    """The names of lengths and of places."""
+    length_at: Mapping[str, int]
+    """Where a length or a place stands in a call of a motor; for two motors one place later."""
+    of_both: frozenset[str] = frozenset()
+    """Those that give one speed or length for two motors."""
+    stalling: frozenset[str] = frozenset()
+    """Those that end when something stops the motor."""
+
+
+MOVES: Mapping[Library, Moves] = {
+    Library.EV3DEV2: Moves(
+        endless=frozenset({"on", "run_forever", "run_direct"}),
+        ending=frozenset({"on_for_degrees", "on_for_rotations", "on_for_seconds", "on_to_position", "run_to_rel_pos",
+                          "run_to_abs_pos", "run_timed"}),
+        unsigned=frozenset({"on_to_position", "run_to_abs_pos"}),
+        speeds=("speed", "speed_sp", "duty_cycle_sp"),
+        lengths=("degrees", "position", "position_sp", "rotations"),
+        length_at=dict.fromkeys(("on_for_degrees", "on_for_rotations", "on_to_position"), 1),
+    ),
+    Library.PYBRICKS: Moves(
+        endless=frozenset({"run", "dc", "drive"}),
+        ending=frozenset({"run_time", "run_angle", "run_target", "track_target", "straight", "turn", "drive_time"}),
+        unsigned=frozenset({"run_target", "track_target", "turn"}),
+        speeds=("speed", "duty", "drive_speed", "distance"),
+        lengths=("rotation_angle", "target_angle"),
+        length_at={"run_angle": 1, "run_target": 1, "track_target": 0},
+        of_both=frozenset({"drive", "straight", "drive_time"}),
+        stalling=frozenset({"run_until_stalled"}),
+    ),
+}  # fmt: skip
+"""The moves of each library."""
 
 _DRIVERS: Mapping[str, DeviceKind] = {
     "lego-ev3-l-motor": DeviceKind.LARGE,

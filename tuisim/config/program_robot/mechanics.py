@@ -8,21 +8,12 @@ from dataclasses import dataclass, field
 
 from tuisim.config.program_robot import library
 from tuisim.config.program_robot.evaluation import Evaluation
-from tuisim.config.program_robot.library import DeviceKind
+from tuisim.config.program_robot.library import INVERSED, NORMAL, DeviceKind, Moves
 from tuisim.config.program_robot.mentions import Mentions, Pair, Where
 from tuisim.config.program_robot.scopes import FUNCTIONS, Bound, Scope
 from tuisim.config.program_robot.values import Instance, OwnClass, OwnFunction, Value
 from tuisim.config.program_robot.words import means_forwards
 
-_INVERSED, _NORMAL = "inversed", "normal"
-_ENDLESS = frozenset({"on", "run_forever", "run_direct"})
-_ENDING = frozenset(
-    {"on_for_degrees", "on_for_rotations", "on_for_seconds", "on_to_position", "run_to_rel_pos", "run_to_abs_pos",
-     "run_timed"}
-)  # fmt: skip
-_SPEEDS = ("speed", "speed_sp", "duty_cycle_sp")
-_LENGTHS = ("degrees", "position", "position_sp")
-_TO_PLACE = frozenset({"on_to_position", "run_to_abs_pos"})
 _USUAL_REACH_DEG = 180.0
 _MARGIN_DEG = 45.0
 """How far the end stop, at which a motor finds its place, is from where it is at the start."""
@@ -59,6 +50,8 @@ class Mechanics:
     """The farthest that the program turns a motor, from where it stands or from its end stop."""
     endless: set[str] = field(default_factory=set)
     """The motors that the program turns by an angle that is not known."""
+    closed: set[str] = field(default_factory=set)
+    """The motors that the program drives against an end stop in both directions."""
 
     def range_of(self, port: str) -> tuple[float | None, float | None]:
         """Return the end stops of a motor, from its position at the start; None for a side without one."""
@@ -68,7 +61,7 @@ class Mechanics:
         reach = max(_USUAL_REACH_DEG, min(self.reach_deg.get(port, 0.0), _MOST_REACH_DEG)) + _MARGIN_DEG
         if stop.forwards is None:
             return -reach, reach
-        far = None if port in self.endless else reach
+        far = None if port in self.endless - self.closed else reach
         return (-far if far else None, _MARGIN_DEG) if stop.forwards else (-_MARGIN_DEG, far)
 
 
@@ -76,13 +69,15 @@ def mechanics_in(mentions: Mentions) -> Mechanics:
     """Return what a program says about how its motors are mounted."""
     if mentions.evaluation is None:
         return Mechanics()
-    return _MechanicsReader(mentions, mentions.evaluation).read()
+    return _MechanicsReader(mentions, mentions.evaluation, library.MOVES[mentions.library]).read()
 
 
 @dataclass(slots=True)
 class _MechanicsReader:
     mentions: Mentions
     evaluation: Evaluation
+    moves: Moves
+    """Of the library."""
     found: Mechanics = field(default_factory=Mechanics)
     normal: set[str] = field(default_factory=set)
     places: dict[str, set[float]] = field(default_factory=dict)
@@ -96,8 +91,11 @@ class _MechanicsReader:
 
     def read(self) -> Mechanics:
         for pair in self.mentions.pairs:
-            if library.PAIRS[pair.class_name].reverses and pair.polarity != _NORMAL:
-                self._turn((pair.left, pair.right), _INVERSED, pair.where)
+            if library.PAIRS[pair.class_name].reverses and pair.polarity != NORMAL:
+                self._turn((pair.left, pair.right), INVERSED, pair.where)
+        for device in self.mentions.devices:
+            if device.is_turned:
+                self._turn([device.port], INVERSED, device.where)
         for scope in self.mentions.scopes:
             for node in scope.body:
                 self._read(node, scope)
@@ -116,6 +114,9 @@ class _MechanicsReader:
         for port, targets in self.targets.items():
             far = max(abs(target - place) for target in targets for place in self.places.get(port, {0.0}))
             self.found.reach_deg[port] = max(self.found.reach_deg.get(port, 0.0), far)
+        for port, reach_deg in self.found.reach_deg.items():
+            if mention := self.mentions.motor_on(port):
+                self.found.reach_deg[port] = reach_deg * mention.gear_ratio
         return self.found
 
     def _read(self, node: ast.AST, scope: Scope) -> None:
@@ -130,12 +131,9 @@ class _MechanicsReader:
             case ast.Attribute(value=base, attr="is_stalled"):
                 self._stall(base, scope, node)
             case ast.While(test=ast.Compare(left=left, ops=[ast.Gt() | ast.GtE() | ast.NotEq()])):
-                match left:
-                    case (
-                        ast.Attribute(value=base, attr="speed")
-                        | ast.Call(func=ast.Name(id="abs"), args=[ast.Attribute(value=base, attr="speed")])
-                    ) if self._only_moves_endlessly(base, scope):
-                        self._stall(base, scope, node)
+                motor = _speed_of(left)
+                if motor is not None and self._only_moves_endlessly(motor, scope):
+                    self._stall(motor, scope, node)
             case ast.Compare(left=left, comparators=[ast.Attribute(value=base, attr="state")]):
                 if "stalled" in self.evaluation.values(left, scope):
                     self._stall(base, scope, node)
@@ -145,8 +143,23 @@ class _MechanicsReader:
             case ast.Call(func=ast.Attribute(value=base, attr="wait_until_not_moving")):
                 if self._only_moves_endlessly(base, scope):
                     self._stall(base, scope, node)
-            case ast.Call(func=ast.Attribute(value=base, attr=name)) if name in _ENDING:
-                self._note_reach(node, name, self._motors(base, scope), scope)
+            case ast.Call(func=ast.Attribute(value=base, attr=name)):
+                self._read_call(node, name, base, scope)
+
+    def _read_call(self, call: ast.Call, name: str, base: ast.expr, scope: Scope) -> None:
+        """Note a move, or what a method of Pybricks says about a motor."""
+        if name in self.moves.ending:
+            self._note_reach(call, name, self._motors(base, scope), scope)
+        elif name in self.moves.stalling:
+            self._stall(base, scope, call, [speed > 0 for speed in self._speeds(call, scope) if speed])
+        elif name == "stalled":
+            match base:
+                case ast.Attribute(value=motor, attr="control"):
+                    self._stall(motor, scope, call)
+                case _:
+                    self._stall(base, scope, call)
+        elif name == "reset_angle" and call.args:
+            self._note_places(base, call.args[0], scope)
 
     def _read_assigned(self, target: ast.Attribute, value: ast.expr, scope: Scope) -> None:
         match target.attr:
@@ -154,10 +167,13 @@ class _MechanicsReader:
                 for text in self.evaluation.values(value, scope):
                     self._turn(self._known_motors(target.value, scope), text, _where(target, scope))
             case "position":
-                for port in self._motors(target.value, scope):
-                    self.places.setdefault(port, set()).update(self._numbers(value, scope))
+                self._note_places(target.value, value, scope)
             case "position_sp":
                 self._note_targets(value, self._motors(target.value, scope), scope)
+
+    def _note_places(self, base: ast.expr, value: ast.expr, scope: Scope) -> None:
+        for port in self._motors(base, scope):
+            self.places.setdefault(port, set()).update(self._numbers(value, scope))
 
     def _read_forwards(self, scope: Scope) -> None:
         """Note motors that a function, which is named for driving forwards, turns backwards only."""
@@ -166,7 +182,7 @@ class _MechanicsReader:
         for node in scope.body:
             if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)):
                 continue
-            if node.func.attr not in (*_ENDLESS, *_ENDING) or node.func.attr in _TO_PLACE:
+            if node.func.attr not in self.moves.endless | self.moves.ending - self.moves.unsigned:
                 continue
             if any(
                 length < 0 for one in self._lengths(node, node.func.attr, scope) for length in self._numbers(one, scope)
@@ -183,20 +199,21 @@ class _MechanicsReader:
         """Yield the speeds that a call gives, to one motor or to both of a pair."""
         assert isinstance(call.func, ast.Attribute)
         pairs = self._pairs(call.func.value, scope)
-        first, last = (0, 1) if not pairs or call.func.attr.startswith("on_for_distance") else (0, 2)
+        first, last = (0, 1) if not pairs or call.func.attr in self.moves.of_both else (0, 2)
         if any(pair.class_name == "MoveSteering" for pair in pairs):
             first, last = 1, 2
-        given = [keyword.value for keyword in call.keywords if keyword.arg in (*_SPEEDS, "left_speed", "right_speed")]
+        names = (*self.moves.speeds, "left_speed", "right_speed")
+        given = [keyword.value for keyword in call.keywords if keyword.arg in names]
         for node in (*given, *call.args[first:last]):
             yield from self._numbers(node.args[0] if isinstance(node, ast.Call) and node.args else node, scope)
 
     def _lengths(self, call: ast.Call, name: str, scope: Scope) -> list[ast.expr]:
         """Return what a call of a movement gives for its length or its end."""
-        given = [keyword.value for keyword in call.keywords if keyword.arg in (*_LENGTHS, "rotations")]
-        if not name.startswith("on_") or name == "on_for_seconds":
+        given = [keyword.value for keyword in call.keywords if keyword.arg in self.moves.lengths]
+        if name not in self.moves.length_at:
             return given
         assert isinstance(call.func, ast.Attribute)
-        at = 2 if self._pairs(call.func.value, scope) else 1
+        at = self.moves.length_at[name] + (1 if self._pairs(call.func.value, scope) else 0)
         return given + call.args[at : at + 1]
 
     def _numbers(self, node: ast.expr, scope: Scope) -> list[float]:
@@ -204,15 +221,28 @@ class _MechanicsReader:
 
     def _turn(self, ports: Iterable[str], text: object, where: Where) -> None:
         for port in ports:
-            if text == _INVERSED:
+            if text == INVERSED:
                 self.found.reversed.setdefault(port, where)
-            elif text == _NORMAL:
+            elif text == NORMAL:
                 self.normal.add(port)
 
-    def _stall(self, base: ast.expr, scope: Scope, node: ast.AST) -> None:
+    def _stall(self, base: ast.expr, scope: Scope, node: ast.AST, said: Sequence[bool] = ()) -> None:
+        """Note an end stop of a motor.
+
+        Args:
+            said: Whether the motor turns forwards there, for each time; empty if its movements say it.
+        """
         for port in self._motors(base, scope):
-            forwards = next(self._directions(scope.body, [port], scope), None)
-            self.found.stops.setdefault(port, EndStop(_where(node, scope), forwards))
+            forwards = next(iter(said or self._directions(scope.body, [port], scope)), None)
+            stop = EndStop(_where(node, scope), self._as_mounted(port, forwards))
+            known = self.found.stops.setdefault(port, stop)
+            if any(self._as_mounted(port, way) != known.forwards for way in said):
+                self.found.closed.add(port)
+
+    def _as_mounted(self, port: str, forwards: bool | None) -> bool | None:
+        """Return a direction of the program as that of a motor."""
+        mention = self.mentions.motor_on(port)
+        return not forwards if forwards is not None and mention and mention.is_turned else forwards
 
     # Movements
 
@@ -235,26 +265,28 @@ class _MechanicsReader:
     def _only_moves_endlessly(self, base: ast.expr, scope: Scope) -> bool:
         """Return whether a motor, in some part of the program, moves and never by itself ends to."""
         ports = self._motors(base, scope)
-        return self._moves(scope, ports, _ENDLESS) and not self._moves(scope, ports, _ENDING)
+        return self._moves(scope, ports, self.moves.endless) and not self._moves(scope, ports, self.moves.ending)
 
     def _directions(self, nodes: Sequence[ast.AST], ports: Iterable[str], scope: Scope) -> Iterator[bool]:
         """Yield whether the movements without an end among some nodes are forwards."""
         ports = [*ports]
-        for call in self._calls(nodes, ports, _ENDLESS, scope):
-            given = [keyword.value for keyword in call.keywords if keyword.arg in _SPEEDS]
+        for call in self._calls(nodes, ports, self.moves.endless, scope):
+            given = [keyword.value for keyword in call.keywords if keyword.arg in self.moves.speeds]
             for node in (*given, *call.args[:1]):
                 inside = node.args[0] if isinstance(node, ast.Call) and node.args else node
                 yield from (value > 0 for value in self._numbers(inside, scope) if value)
         for one in nodes:
             match one:
-                case ast.Assign(targets=[ast.Attribute(value=base, attr=name)], value=speed) if name in _SPEEDS:
+                case ast.Assign(targets=[ast.Attribute(value=base, attr=name)], value=speed) if (
+                    name in self.moves.speeds
+                ):
                     if {*ports} & {*self._motors(base, scope)}:
                         yield from (value > 0 for value in self._numbers(speed, scope) if value)
 
     def _note_reach(self, call: ast.Call, name: str, ports: Sequence[str], scope: Scope) -> None:
         turns = 360.0 if name == "on_for_rotations" else 1.0
         for node in self._lengths(call, name, scope):
-            if name in _TO_PLACE:
+            if name in self.moves.unsigned:
                 self._note_targets(node, ports, scope)
                 continue
             lengths = self._numbers(node, scope)
@@ -280,7 +312,9 @@ class _MechanicsReader:
             case ast.While(test=ast.UnaryOp(op=ast.Not(), operand=ast.Attribute(value=base, attr="is_pressed"))):
                 pass
             case ast.While(
-                test=ast.UnaryOp(op=ast.Not(), operand=ast.Call(func=ast.Attribute(value=base, attr="value")))
+                test=ast.UnaryOp(
+                    op=ast.Not(), operand=ast.Call(func=ast.Attribute(value=base, attr="value" | "pressed"))
+                )
             ):
                 pass
             case ast.Expr(value=ast.Call(func=ast.Attribute(value=base, attr="wait_for_pressed"))):
@@ -293,12 +327,14 @@ class _MechanicsReader:
             port
             for node in nodes
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)
-            and node.func.attr in (*_ENDLESS, *_ENDING)
+            and node.func.attr in self.moves.endless | self.moves.ending
             for port in self._motors(node.func.value, scope)
         }  # fmt: skip
         if len(moved) == 1 and touches:
             forwards = next(self._directions([*nodes, *scope.body], moved, scope), None)
-            self.found.presses.append(StopPress(touches[0], moved.pop(), EndStop(_where(last, scope), forwards)))
+            motor = moved.pop()
+            stop = EndStop(_where(last, scope), self._as_mounted(motor, forwards))
+            self.found.presses.append(StopPress(touches[0], motor, stop))
 
     # Devices
 
@@ -320,11 +356,7 @@ class _MechanicsReader:
         found = [port for pair in self._pairs(node, scope) for port in (pair.left, pair.right)]
         for value in self._values(node, scope):
             if isinstance(value, Instance):
-                found += [
-                    one.port
-                    for one in self.mentions.devices
-                    if one.kind in kinds and self._is_of(value, one.call, one.owner)
-                ]
+                found += [one.port for one in self.mentions.devices if one.kind in kinds and one.makes(value)]
         return list(dict.fromkeys(found))
 
     def _values(self, node: ast.expr, scope: Scope) -> Sequence[Value]:
@@ -358,16 +390,18 @@ class _MechanicsReader:
         found = []
         for value in self.evaluation.values(node, scope):
             if isinstance(value, Instance):
-                found += [pair for pair in self.mentions.pairs if self._is_of(value, pair.call, pair.owner)]
+                found += [pair for pair in self.mentions.pairs if pair.makes(value)]
         return found
 
-    @staticmethod
-    def _is_of(value: Instance, call: ast.Call | None, owner: Scope | None) -> bool:
-        """Return whether a call makes an instance: itself, or from the `__init__` of its class."""
-        if value.call is not None and value.call is call:
-            return True
-        from_init = call is not None and isinstance(call.func, ast.Attribute) and call.func.attr == "__init__"
-        return from_init and isinstance(value.of, OwnClass) and value.of.scope is owner
+
+def _speed_of(node: ast.expr) -> ast.expr | None:
+    """Return the motor whose speed an expression is, or the amount of its speed; None if it is no speed."""
+    match node:
+        case ast.Call(func=ast.Name(id="abs"), args=[inner]):
+            return _speed_of(inner)
+        case ast.Attribute(value=base, attr="speed") | ast.Call(func=ast.Attribute(value=base, attr="speed")):
+            return base
+    return None
 
 
 def _where(node: ast.AST, scope: Scope) -> Where:

@@ -12,8 +12,9 @@ from tuisim.config.program_robot.evaluation import Evaluation
 from tuisim.config.program_robot.library import DeviceKind, PairClass
 from tuisim.config.program_robot.reach import reachable, skipped
 from tuisim.config.program_robot.scopes import FUNCTIONS, Function, Parameter, Scope, scope_of
-from tuisim.config.program_robot.source import DataFiles, Module
+from tuisim.config.program_robot.source import DataFiles, Module, library_of
 from tuisim.config.program_robot.values import (
+    Instance,
     LibraryClass,
     OwnClass,
     OwnFunction,
@@ -21,6 +22,7 @@ from tuisim.config.program_robot.values import (
     SourceCollection,
     Value,
 )
+from tuisim.core.profile import Library
 
 _ROUNDS = 3
 """How often the calls are looked up: each time more is known about what is called."""
@@ -55,6 +57,16 @@ class Mention:
     """Whether the program takes any device of the kind; else its port is not known."""
     call: ast.Call | None = None
     """What makes it."""
+    via: ast.Call | None = field(default=None, compare=False)
+    """The call of the function in which it is made, if that has several."""
+    is_turned: bool = False
+    """Whether the program makes the motor with the opposite direction as the positive one."""
+    gear_ratio: float = 1.0
+    """Turns of the motor per turn of what it drives, as the program says."""
+
+    def makes(self, value: Instance) -> bool:
+        """Return whether this makes an instance: itself, or from the `__init__` of its class."""
+        return _makes(self.call, self.owner, value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,8 +81,8 @@ class Pair:
     """The higher, the likelier these are the wheels."""
     where: Where
     class_name: str
-    wheel_mm: tuple[float, float] | None = None
-    """Diameter and width."""
+    wheel_mm: tuple[float, float | None] | None = None
+    """Diameter and width; the width is None if it does not say that."""
     spacing_mm: float | None = None
     names: tuple[str, ...] = ()
     call: ast.Call | None = None
@@ -79,6 +91,10 @@ class Pair:
     """The class in which it is made."""
     polarity: str = ""
     """What the program gives for the polarity of its motors, for a class that takes it."""
+
+    def makes(self, value: Instance) -> bool:
+        """Return whether this makes an instance: itself, or from the `__init__` of its class."""
+        return _makes(self.call, self.owner, value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +107,12 @@ class Mentions:
     """What of the program can run."""
     evaluation: Evaluation | None = None
     """What its expressions can be."""
+    library: Library = Library.EV3DEV2
+    """The library that it uses."""
+
+    def motor_on(self, port: str) -> Mention | None:
+        """Return the first motor that the program makes on a port."""
+        return next((one for one in self.devices if one.port == port and one.kind.is_motor), None)
 
 
 def mentions_in(modules: dict[str, Module], files: DataFiles) -> Mentions:
@@ -101,7 +123,8 @@ def mentions_in(modules: dict[str, Module], files: DataFiles) -> Mentions:
         files: What it may read besides.
     """
     scopes = {name: scope_of(module) for name, module in modules.items()}
-    return _Reader(scopes, files).read()
+    found = _Reader(scopes, files).read()
+    return replace(found, library=library_of(modules) or found.library)
 
 
 @dataclass(slots=True)
@@ -137,11 +160,13 @@ class _Reader:
         devices: list[Mention] = []
         pairs: list[Pair] = []
         whole = self.evaluation
-        for name, call in self.made:
+        of_ports = [one for one in self.made if not _takes_motors(one[0])]
+        # Its motors are known by then.
+        for name, call in (*of_ports, *(one for one in self.made if _takes_motors(one[0]))):
             for inside, via in self._ways(name, call, whole):
                 self.evaluation, self.via = inside, via
                 if name in library.PAIRS:
-                    pairs += self._pairs(name, call)
+                    pairs += self._pairs(name, call, devices)
                     devices += self._needs(name, call)
                 elif name == library.MOTOR_SET:
                     devices += self._motor_set(call)
@@ -273,26 +298,46 @@ class _Reader:
         elif kind is DeviceKind.SENSOR:
             kind = self._kind_by_mode(call) or kind
         names = self._called(call)
-        owner = call.scope.owner
-        ports = [("", names)] if name in library.WITHOUT_PORT else list(self._ports(call, "address", 0, names))
-        if not ports and not any(isinstance(value, str) for value in self._given(call)):
+        made = Mention(
+            kind, "", where, names, call.scope.owner, call=call.node, via=self.via.node if self.via else None
+        )
+        word = next((one.arg for one in call.node.keywords if one.arg in library.PORT_NAMES), library.PORT_NAMES[0])
+        ports = [("", names)] if name in library.WITHOUT_PORT else list(self._ports(call, word, 0, names))
+        if not ports and not any(isinstance(value, str) for value in self._given(call, word)):
             # A text that is no port of the brick names something that is not simulated.
-            yield Mention(kind, "", where, names, owner, self._takes_any(call), call.node)
+            yield replace(made, is_any=self._takes_any(call, word))
         for port, called in dict(ports).items():
             if port and port.startswith("out") != kind.is_motor:
                 continue
-            yield Mention(kind, port, where, called, owner, not port, call.node)
+            found = replace(made, port=port, names=called, is_any=not port)
+            yield self._mounted(found, call) if kind.is_motor else found
+
+    def _mounted(self, motor: Mention, call: Call) -> Mention:
+        """Return a motor with the direction and the gears that the call says."""
+        is_turned = library.INVERSED in (argument_of(call, library.DIRECTION, 1, self.evaluation) or ())
+        return replace(motor, is_turned=is_turned, gear_ratio=self._gear_ratio(call))
+
+    def _gear_ratio(self, call: Call) -> float:
+        """Return the turns of a motor per turn of what it drives: its gears are one train, or a list of trains."""
+        parts = [*self._flat(argument_of(call, library.GEARS, 2, self.evaluation) or ())]
+        trains = [[*self._flat([part])] for part in parts if isinstance(part, SourceCollection)] or [parts]
+        ratio = 1.0
+        for train in trains:
+            teeth = [one for one in train if isinstance(one, int | float) and one > 0]
+            if len(teeth) > 1:
+                ratio *= teeth[-1] / teeth[0]
+        return ratio
 
     def _called(self, call: Call) -> tuple[str, ...]:
         """Return what the program calls the thing that a call makes."""
         outside = self.hints.get(self.via.node, ()) if self.via else ()
         return tuple(dict.fromkeys((*self.hints.get(call.node, ()), *outside)))
 
-    def _given(self, call: Call) -> Sequence[Value]:
-        return argument_of(call, "address", 0, self.evaluation) or ()
+    def _given(self, call: Call, word: str) -> Sequence[Value]:
+        return argument_of(call, word, 0, self.evaluation) or ()
 
-    def _takes_any(self, call: Call) -> bool:
-        node = argument_node(call, "address", 0)
+    def _takes_any(self, call: Call, word: str) -> bool:
+        node = argument_node(call, word, 0)
         return node is None or (isinstance(node, ast.Constant) and node.value is None)
 
     def _ports(self, call: Call, name: str, at: int, names: tuple[str, ...]) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -360,29 +405,59 @@ class _Reader:
 
     # Pairs
 
-    def _pairs(self, name: str, call: Call) -> Iterator[Pair]:
+    def _pairs(self, name: str, call: Call, devices: Sequence[Mention]) -> Iterator[Pair]:
+        """Yield the pairs of motors that a call makes.
+
+        Args:
+            devices: What the program makes besides, with the motors of a class that takes motors.
+        """
         known, names = library.PAIRS[name], self._called(call)
-        # The ports of a balancing robot come last.
-        at = (10, 11) if known.usual[0] else (0, 1)
-        left = [port for port, _ in self._ports(call, known.left, at[0], names)]
-        right = [port for port, _ in self._ports(call, known.right, at[1], names)]
+        polarities = [str(value) for value in argument_of(call, library.POLARITY, 2, self.evaluation) or ()]
+        for one, other in self._ends(known, call, names, devices):
+            if one != other and one.startswith("out") and other.startswith("out"):
+                yield Pair(
+                    one, other, self._motor_kind(name, known, call), known.rank, _where(call), name,
+                    *self._sizes(known, call), names, call.node,
+                    call.scope.owner, polarities[0] if polarities else "",
+                )  # fmt: skip
+
+    def _ends(
+        self, known: PairClass, call: Call, names: tuple[str, ...], devices: Sequence[Mention]
+    ) -> Iterable[tuple[str, str]]:
+        """Return the ports of the left and the right motor, for each pair that a call can make."""
+        if known.takes_motors:
+            left, right = self._driven(call, known.left, 0, devices), self._driven(call, known.right, 1, devices)
+            if len(left) == 2 and right in ([], left):
+                # As `motors[0]` and `motors[1]` of `motors = [Motor(port) for port in ports]`.
+                left, right = left[:1], left[1:]
+        else:
+            # The ports of a balancing robot come last.
+            at = (10, 11) if known.usual[0] else (0, 1)
+            left = [port for port, _ in self._ports(call, known.left, at[0], names)]
+            right = [port for port, _ in self._ports(call, known.right, at[1], names)]
         left = left or ([known.usual[0]] if known.usual[0] else [])
         right = right or ([known.usual[1]] if known.usual[1] else [])
         if len(left) != len(right):
             left, right = left[:1], right[:1]
-        spacings = [
-            float(value)
-            for value in argument_of(call, library.DISTANCE, 3, self.evaluation) or ()
-            if isinstance(value, int | float)
-        ] if known.rank == 3 else []  # fmt: skip
-        polarities = [str(value) for value in argument_of(call, library.POLARITY, 2, self.evaluation) or ()]
-        for one, other in dict.fromkeys(zip(left, right, strict=True)):
-            if one != other and one.startswith("out") and other.startswith("out"):
-                yield Pair(
-                    one, other, self._motor_kind(name, known, call), known.rank, _where(call), name,
-                    self._wheel(call) if known.rank == 3 else None, spacings[0] if spacings else None, names, call.node,
-                    call.scope.owner, polarities[0] if polarities else "",
-                )  # fmt: skip
+        return dict.fromkeys(zip(left, right, strict=False))
+
+    def _driven(self, call: Call, name: str, at: int, devices: Sequence[Mention]) -> list[str]:
+        """Return the ports of the motors that an argument can be."""
+        given = [one for one in argument_of(call, name, at, self.evaluation) or () if isinstance(one, Instance)]
+        made = [(one, value) for value in given for one in devices if one.kind.is_motor and one.makes(value)]
+        return list(dict.fromkeys(one.port for one, value in made if value.via is None or one.via in (None, value.via)))
+
+    def _sizes(self, known: PairClass, call: Call) -> tuple[tuple[float, float | None] | None, float | None]:
+        """Return the size of the wheels, and their distance."""
+        if known.takes_motors:
+            diameter_mm = self._size(call, library.WHEEL_DIAMETER, 2)
+            wheel_mm = (diameter_mm, None) if diameter_mm is not None else None
+            return wheel_mm, self._size(call, library.AXLE_TRACK, 3)
+        return (self._wheel(call), self._size(call, library.DISTANCE, 3)) if known.rank == 3 else (None, None)
+
+    def _size(self, call: Call, name: str, at: int) -> float | None:
+        given = argument_of(call, name, at, self.evaluation) or ()
+        return next((float(value) for value in given if isinstance(value, int | float)), None)
 
     def _motor_kind(self, name: str, known: PairClass, call: Call) -> DeviceKind:
         given = argument_of(call, library.MOTOR_CLASS, library.MOTOR_CLASS_AT.get(name), self.evaluation)
@@ -420,6 +495,18 @@ class _Reader:
 def _calls_in(scope: Scope) -> list[ast.Call]:
     left_out = skipped(scope)
     return [node for node in scope.body if isinstance(node, ast.Call) and node not in left_out]
+
+
+def _takes_motors(name: str) -> bool:
+    return name in library.PAIRS and library.PAIRS[name].takes_motors
+
+
+def _makes(call: ast.Call | None, owner: Scope | None, value: Instance) -> bool:
+    """Return whether a call in a class makes an instance."""
+    if value.call is not None and value.call is call:
+        return True
+    from_init = call is not None and isinstance(call.func, ast.Attribute) and call.func.attr == "__init__"
+    return from_init and isinstance(value.of, OwnClass) and value.of.scope is owner
 
 
 def _where(call: Call) -> Where:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from tuisim.config.program_robot.scopes import Function, Scope
@@ -55,6 +55,8 @@ class Instance:
     of: OwnClass | LibraryClass
     call: ast.Call | None = None
     """None for the `self` of a method."""
+    via: ast.Call | None = field(default=None, compare=False)
+    """The call of the program's function or class that makes it with `call`, if that is known."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -46,6 +46,9 @@ def _words(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
+_LARGE = _words(
+    "large big groß großer große großes gross grosser grosse grosses grande gran gros groot grote stor duzy"
+)
 _FORWARDS = _words(
     "forward forwards ahead vorwaerts vorwärts geradeaus avancer avance adelante avanzar avanti vooruit frente framat "
     "naprzod"
@@ -104,6 +107,11 @@ def means_forwards(name: str) -> bool:
     """Return whether a function's name says that it drives forwards."""
     parts = {*_parts(name)}
     return bool(parts & _FORWARDS) and not parts & _BACKWARDS
+
+
+def means_large(names: Iterable[str]) -> bool:
+    """Return whether names say that a motor is a large one."""
+    return any(part in _LARGE for name in names for part in _parts(name))
 
 
 def means_tool(names: Iterable[str]) -> bool:
