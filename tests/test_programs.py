@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.conftest import ROOT, Command
 from tuisim.config.program_file import programs, read_program
+from tuisim.core.profile import PROFILES, Library
 from tuisim.runs.brick_state import ROW_BYTES, BrickState, face_after
 from tuisim.runs.records import Stream
 from tuisim.runs.store import load_run
@@ -20,6 +23,9 @@ EXAMPLES: dict[str, dict[str, object]] = {
     "follow_line.py": {"lines": 1, "samples": 0},
     "log_greys.py": {"background": "Grey_bands"},
     "name_colour.py": {"background": "Rainbow_bands", "x_mm": 300.0, "y_mm": 500.0, "lines": 2},
+    "pybricks_data_log.py": {"background": "Grey_bands", "y_mm": 500.0},
+    "pybricks_line_follower.py": {"background": "Lollipop", "samples": 1},
+    "pybricks_mission.py": {"background": "Empty_Map", "samples": 1},
     "read_once.py": {"background": "Grey_bands", "x_mm": 325.0, "lines": 6},
     "square.py": {"background": "Empty_Map", "lines": 4},
     "stop_at_wall.py": {"background": "Empty_Map", "lines": 1, "samples": 1},
@@ -28,6 +34,13 @@ EXAMPLES: dict[str, dict[str, object]] = {
 """What is known of each run beside that it finishes."""
 AWAY_FROM_THE_WALL: dict[str, dict[str, object]] = {"until_black.py": {"samples": 527}}
 """What is else under `ev3`, where walls are solid and the robot starts with room to turn."""
+RUNS = [
+    (name, profile.name)
+    for name in EXAMPLES
+    for profile in PROFILES.values()
+    if (profile.motor_law.library is Library.PYBRICKS) == name.startswith("pybricks_")
+]
+"""Each example under the profiles of its library."""
 
 
 def test_every_example_is_in_the_table() -> None:
@@ -45,9 +58,8 @@ def test_example_introduces_itself(name: str) -> None:
     assert path.read_text(encoding="utf-8").isascii()
 
 
-@pytest.mark.quick_cases("*-robolab")
-@pytest.mark.parametrize("profile", ["robolab", "nbev3devsim", "ev3"])
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.quick_cases("*-robolab", "*-lego-micropython")
+@pytest.mark.parametrize(("name", "profile"), RUNS)
 def test_example_finishes(name: str, profile: str, here: Command) -> None:
     done = here("run", name, "--json", "--profile", profile, "--timeout", 100)
     facts: dict[str, Any] = json.loads(done.stdout)
@@ -129,3 +141,29 @@ def test_display_shows_the_light_as_a_bar(here: Command) -> None:
     bars = [int.from_bytes(picture[middle], "big").bit_count() for picture in pictures]
     assert bars[0] == 139
     assert 2 <= bars[-1] < 12
+
+
+def test_pybricks_line_follower_stays_on_the_stick(here: Command) -> None:
+    facts = json.loads(here("run", "pybricks_line_follower", "--json").stdout)
+    assert facts["profile"] == "lego-micropython"
+    # The edge of the stick, 20 mm to the right of its middle: the left sensor follows it.
+    assert facts["x_mm"] == pytest.approx(1718, abs=10)
+    assert facts["heading_deg"] == pytest.approx(-360, abs=5)
+
+
+def test_pybricks_missions_end_where_they_began(here: Command) -> None:
+    facts = json.loads(here("run", "pybricks_mission", "--json").stdout)
+    assert (facts["x_mm"], facts["y_mm"]) == (pytest.approx(400, abs=15), pytest.approx(600, abs=15))
+    assert facts["heading_deg"] == pytest.approx(-360, abs=2)
+    corner = here("run", "pybricks_mission", "--press", "right@1")
+    assert corner.stdout == "Gyro: 0\n"
+
+
+def test_pybricks_data_log_has_a_row_for_each_sample_but_the_last(tmp_path: Path, here: Command) -> None:
+    printed = here("run", "pybricks_data_log").stdout.splitlines()
+    header, *rows = (tmp_path / "greys.csv").read_text().splitlines()
+    assert header == "time_ms, light"
+    assert [f"Colour: {row.split(', ')[1]}" for row in rows] == printed[:-1]
+    values = [int(row.split(", ")[1]) for row in rows]
+    flat = [value for value, after in pairwise(values) if value == after]
+    assert list(dict.fromkeys(flat)) == [100, 86, 82, 50]

@@ -50,6 +50,13 @@ async def test_it_is_told_and_the_dialog_lists_its_ports(claw: Path) -> None:
         assert entries.highlighted_option.id == "*program"
 
 
+async def test_what_the_brick_would_refuse_is_told(claw: Path) -> None:
+    claw.write_text("from pybricks.tools import wait\nprint(f'{1}')\n")
+    async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: any("claw.py:2: the brick's Python would refuse" in one for one in notices(app)))
+
+
 async def test_another_robot_is_chosen_and_the_program_s_again(claw: Path) -> None:
     async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)

@@ -150,13 +150,18 @@ def test_text_is_printed_in_a_terminal_if_asked_for(here: Command, started: list
 
 
 BAD = {
-    "no lesson": (("first-rum",), "no such lesson 'first-rum' (did you mean first-run?"),
+    "no lesson": (("first-rum",), "no such lesson 'first-rum' (did you mean first-run"),
     "a misspelt command": (("statu",), "did you mean status?"),
     "no folder": (("list", "--folder", "none"), "--folder: there is no folder none"),
     "no lessons in it": (("list", "--folder", "."), "no lessons in ."),
     "new exists": (("new", "there.md"), "there.md: exists already"),
     "new is no Markdown": (("new", "there.txt"), "is not a .md file"),
-    "no such number": (("17",), "there is no lesson 17 (1 to 16. See `tuisim learn list`)"),
+    "no such number": (("21",), "there is no lesson 21 (1 to 20. See `tuisim learn list`)"),
+    "no telling": (
+        ("2", "--library", "pybricks"),
+        "--library: the lesson sensor-eyes is not told for pybricks (one of first-",
+    ),
+    "a library of no lesson": (("--library", "pybricks"), "--library: needs a lesson (name one, such as 1)"),
 }
 
 
@@ -173,6 +178,21 @@ def test_lesson_by_its_number(here: Command, home: Path) -> None:
     assert here("learn", "2", "--text").stdout.startswith("What the sensors see\n")
 
 
+def test_lesson_in_the_telling_for_a_library(here: Command, home: Path) -> None:
+    told = here("learn", "1", "--library", "pybricks", "--text").stdout
+    assert told.startswith("The first run, with Pybricks\n")
+    assert here("learn", "first-run-pybricks", "--library", "pybricks", "--text").stdout == told
+    assert here("learn", "1", "--library", "ev3dev2", "--text").stdout.startswith("The first run\n")
+
+
+def test_program_of_a_telling_runs_by_the_rules_of_its_library(
+    here: Command, home: Path, started: list[AppSettings]
+) -> None:
+    assert here("learn", "14", "--library", "pybricks").returncode == 0
+    (opened,) = started
+    assert (opened.spec.profile.name, opened.spec.world.start.x_mm) == ("lego-micropython", 1219)
+
+
 def test_missing_wrong_way_is_a_warning(here: Command, tmp_path: Path) -> None:
     (tmp_path / "mine.md").write_text("\n".join(
         line for line in SKELETON.split("\n") if not line.startswith("excludes")
@@ -184,7 +204,11 @@ def test_missing_wrong_way_is_a_warning(here: Command, tmp_path: Path) -> None:
 
 def test_check_without_a_file_is_of_the_lessons_of_tuisim(here: Command) -> None:
     lines = here("learn", "check", "--no-runs", "--strict").stdout.splitlines()
-    assert (len(lines), lines[0].partition(":")[0], lines[-1].partition(":")[0]) == (16, "first-run", "pid-line")
+    assert (len(lines), lines[0].partition(":")[0], lines[-1].partition(":")[0]) == (
+        20,
+        "first-run",
+        "line-edge-pybricks",
+    )
 
 
 def test_damaged_progress(here: Command, home: Path) -> None:

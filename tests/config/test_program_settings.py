@@ -192,3 +192,22 @@ def test_sizes_and_sides_count_where_the_program_brings_its_rules(
 ) -> None:
     source = parse_program(magic + ON_USUAL_PORTS, "program.py")
     assert ("robot" in program_settings(source, above).decided.layer) is is_built
+
+
+FORMATTED = "from pybricks.tools import wait\nprint(f'{1}')\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "above", "refusal"),
+    [
+        (FORMATTED, {}, "p.py:2: the brick's Python would refuse this line (f-string)"),
+        (f"{FORMATTED}x: int = 1\n", {}, "p.py:2: the brick's Python would refuse this line (f-string), and 1 more"),
+        (FORMATTED, {"profile": "pybricks4"}, ""),
+        (FORMATTED.replace("f'", "'"), {}, ""),
+        (f"{USUAL}print(f'')\n", {}, ""),
+    ],
+)
+def test_lines_that_the_brick_refuses_are_told_of_its_programs(
+    text: str, above: Mapping[str, Any], refusal: str
+) -> None:
+    assert program_settings(parse_program(text, "p.py"), above).decided.refusal == refusal

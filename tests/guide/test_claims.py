@@ -114,7 +114,10 @@ def _cases() -> Iterator[Any]:
 def _lay_out(name: str, where: Path) -> None:
     """Write the files of a page, or the world of a lesson, its program and its model answers."""
     if lesson := LESSONS.get(name):
-        world = lesson.path.read_text(encoding="utf-8").split("+++")[1].partition("[[step]]")[0]
+        front = lesson.path.read_text(encoding="utf-8").split("+++")[1]
+        if told := re.search(r'^tells = "(.+)"$', front, re.MULTILINE):
+            front = (lesson.path.parent / told[1]).read_text(encoding="utf-8").split("+++")[1]
+        world = front.partition("[[step]]")[0]
         (where / "world.toml").write_text(re.sub(r"^(why|minutes) = .*$", "", world, flags=re.MULTILINE))
         (where / "program.py").write_text(lesson.program)
         for step in lesson.steps:

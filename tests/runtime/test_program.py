@@ -197,3 +197,23 @@ CHANCE = (
 def test_every_kind_of_chance_comes_from_the_seed(run: Run) -> None:
     assert run(CHANCE).lines == run(CHANCE).lines
     assert run(CHANCE, seed=1).lines != run(CHANCE, seed=2).lines
+
+
+BEHIND = """
+import threading, time
+
+def tick():
+    while time.time() < 1577836803:
+        time.sleep(1)
+        print('tick')
+
+threading.Thread(target=tick).start()
+time.sleep(1.5)
+print('end')
+"""
+
+
+@pytest.mark.parametrize(("profile", "ticks"), [("ev3", 3), ("lego-micropython", 1)])
+def test_a_program_of_micropython_ends_with_its_main_thread(run: Run, profile: str, ticks: int) -> None:
+    done = run(BEHIND, profile=profile, prelude="none")
+    assert (done.lines.count("tick"), done.ended.end) == (ticks, "finished"), done.errors

@@ -8,10 +8,11 @@ from typing import Any
 import click
 
 from tuisim.commands.echo import Progress, echo, echo_json, echo_lines, table, tell
-from tuisim.config.command_line import AS_JSON, Group, WordType, argument, command, option
+from tuisim.config.command_line import AS_JSON, Group, WordType, argument, choice, command, option
 from tuisim.config.folders import user_path
+from tuisim.core.profile import Library
 from tuisim.errors import ConfigError, counted
-from tuisim.lessons.catalogue import find_lesson, lesson_paths, load_all, shipped_paths
+from tuisim.lessons.catalogue import find_lesson, lesson_paths, load_all, shipped_paths, telling_of
 from tuisim.lessons.files import load_lesson
 from tuisim.lessons.markdown import plain_text
 from tuisim.lessons.progress import LessonProgress, StepState, last_opened, load_progress
@@ -32,6 +33,11 @@ def _names() -> Sequence[str]:
 @command(
     argument("word", "[LESSON]", _names, required=False),
     FOLDER,
+    choice(
+        "--library",
+        [one.value for one in Library],
+        help="Open the lesson as it is told for programs with this library.",
+    ),
     option("--text", "as_text", is_flag=True, help="Print the lesson, even on a terminal."),
     name="open",
     help="""Open a lesson in the app; without a terminal, print it.
@@ -40,15 +46,21 @@ def _names() -> Sequence[str]:
     the lesson that was opened last; without a terminal, the lessons are listed.
     """,
 )
-def open_lesson(word: str | None, folder: str | None, as_text: bool) -> int:
+def open_lesson(word: str | None, folder: str | None, library: str | None, as_text: bool) -> int:
     """Open or print a lesson."""
     from tuisim.commands.app import has_terminal, open_lesson_in_app
 
     in_app = not as_text and has_terminal()
+    if library is not None and word is None:
+        raise ConfigError("needs a lesson", "name one, such as 1", key="--library")
     if word is None and not in_app:
         return _list(folder, as_json=False)
     progress = load_progress()
-    lesson = load_lesson(find_lesson(word, folder, learn.listing)) if word else _next_lesson(load_all(folder), progress)
+    if not word:
+        lesson = _next_lesson(load_all(folder), progress)
+    else:
+        path = find_lesson(word, folder, learn.listing)
+        lesson = load_lesson(telling_of(path, Library(library), folder) if library else path)
     if not in_app:
         echo_lines(text_of(lesson, progress.get(lesson.name, LessonProgress())))
         return 0

@@ -48,6 +48,8 @@ _OPTIONS = (
            help="Run all program cells of a notebook, or of a folder's notebooks; print a table."),
     option("--json", is_flag=True, group=_REPORTS,
            help="Print one JSON object per program; program output goes to stderr."),
+    option("--strict", is_flag=True, group=_REPORTS,
+           help="Run nothing if a program for LEGO's MicroPython has a line that the brick's Python would refuse."),
     option("--break", "breaks", multiple=True, metavar="TEXT", type=COLUMN, group=_BREAKPOINTS,
            help="Set a breakpoint, reported on stderr: 12, 12 if x > 3, left_red_pc < 10, left_color changes, "
            "ultrasonic < 200, sample Colour < 50, print matches REGEX, time 3.5, stall; may be repeated."),
@@ -92,10 +94,9 @@ def run(**given: Any) -> int:
     prepared = prepare_runs(arguments.programs, arguments, config=load_config().checked().only(Section.SIMULATION))
     for said in dict.fromkeys(one.from_config for one in prepared if isinstance(one, Prepared) and one.from_config):
         echo_error(f"note: from {FILE}: {', '.join(said)}")
-    for note in dict.fromkeys(one.decided.note for one in prepared if isinstance(one, Prepared)):
-        if note:
-            echo_error(f"note: {note}")
-    check_breaks(arguments.breaks, arguments.watches, [one for one in prepared if isinstance(one, Prepared)])
+    to_run = [one for one in prepared if isinstance(one, Prepared)]
+    _tell_notes(to_run, strict=arguments.strict)
+    check_breaks(arguments.breaks, arguments.watches, to_run)
     telemetry = arguments.telemetry
     check_targets(target for target in (*arguments.export, telemetry) if target is not None)
     if telemetry is not None and len(prepared) > 1:
@@ -108,6 +109,19 @@ def run(**given: Any) -> int:
         if arguments.all and not arguments.json:
             print_results(results)
     return max(code, interrupts.exit_code)
+
+
+def _tell_notes(prepared: Sequence[Prepared], *, strict: bool) -> None:
+    """Tell what the sources of the programs decide, and what of them the brick would refuse.
+
+    Raises:
+        ConfigError: the brick would refuse a line, and `strict` makes that an error.
+    """
+    decided = [one.decided for one in prepared]
+    if strict and (refused := next(filter(None, (one.refusal for one in decided)), "")):
+        raise ConfigError(refused, "leave out --strict to run it")
+    for note in dict.fromkeys(note for one in decided for note in (one.note, one.refusal) if note):
+        echo_error(f"note: {note}")
 
 
 def check_breaks(texts: Sequence[str], watches: Sequence[str], prepared: Iterable[Prepared]) -> None:

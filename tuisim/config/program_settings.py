@@ -18,13 +18,14 @@ from tuisim.config.program_file import ProgramSource
 from tuisim.config.program_robot.course import uses_course_names
 from tuisim.config.program_robot.source import Module, data_files, library_of, read_modules
 from tuisim.config.robots import RobotChoice
-from tuisim.core.profile import PROFILES, Library, ProfileSpec
+from tuisim.core.profile import PROFILES, Library, MotorLaw, ProfileSpec
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import ProfileError
 from tuisim.source import Program
 
 if TYPE_CHECKING:
     from tuisim.config.program_robot.assembly import BuiltRobot
+    from tuisim.config.program_robot.brick_syntax import RefusedLine
 
 BRICK_PROFILE = "ev3"
 """The profile of programs that are for a real brick."""
@@ -45,6 +46,8 @@ class SourceFacts:
     """Whether it uses names that only the course has."""
     robot: BuiltRobot | None = None
     """The robot that it needs; None if the default one does."""
+    refused: tuple[RefusedLine, ...] = ()
+    """Its lines that LEGO's MicroPython refuses, if it is for that."""
 
 
 _PLACE = ("start.x_mm", "start.y_mm")
@@ -66,11 +69,21 @@ class Decided:
     """The robot that the program needs, even if another one was chosen; None for the default one."""
     free: frozenset[str] = frozenset()
     """Which of `PROGRAM_PATHS` nobody has chosen."""
+    refused: tuple[RefusedLine, ...] = ()
+    """The lines that the Python of the simulated brick would refuse."""
 
     @property
     def note(self) -> str:
         """What is decided and how to change it, in one line; empty for nothing."""
         return f"{self.said}. {self.hint}" if self.said else ""
+
+    @property
+    def refusal(self) -> str:
+        """The first line that the brick's Python would refuse, and how many follow; empty for none."""
+        if not self.refused:
+            return ""
+        first, *others = self.refused
+        return f"{first}, and {len(others)} more" if others else str(first)
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,11 +108,13 @@ def facts_of(program: Program) -> SourceFacts:
             return SourceFacts(library)
         # Most programs are the course's, and need no reading of their own.
         from tuisim.config.program_robot.assembly import build_robot
+        from tuisim.config.program_robot.brick_syntax import refused_lines
         from tuisim.config.program_robot.mentions import mentions_in
         from tuisim.config.program_robot.report import USUAL
 
         robot = build_robot(mentions_in(modules, data_files(program)), program.name, USUAL)
-        return SourceFacts(library, uses_course_names(modules, program.text), robot)
+        refused = refused_lines(modules.values()) if library is Library.PYBRICKS else ()
+        return SourceFacts(library, uses_course_names(modules, program.text), robot, refused)
     except RecursionError:
         return SourceFacts()
 
@@ -188,14 +203,16 @@ def decide(source: ProgramSource, settings: Settings, free: Collection[str], *, 
         layer["profile"] = PROFILE_OF[facts.library]
     elif facts.library and not _fits(settings, facts.library):
         if insists and settings.given.get("profile") is not None:
-            raise _misfit(source.program.name, facts.library, _profile_in(settings))
+            raise _misfit(source.program.name, facts.library, _profile(settings["profile"]))
         layer["profile"] = DEFAULT_PROFILE if for_course or facts.of_course else PROFILE_OF[facts.library]
     profile = layer.get("profile", settings["profile"])
     by_rules = profile in PROFILE_OF.values() or profile in [PROFILES[name] for name in PROFILE_OF.values()]
     if by_rules and not source.has_magic and {*_PLACE} <= {*free}:
         layer |= dict(zip(_PLACE, (FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2), strict=True))
     needed = facts.robot.choice if facts.robot else None
-    return Decided(layer, *_in_words(source.program, facts, layer), needed, frozenset(free))
+    law = _law(profile) if facts.refused else None
+    refused = facts.refused if law is MotorLaw.PYBRICKS else ()
+    return Decided(layer, *_in_words(source.program, facts, layer), needed, frozenset(free), refused)
 
 
 def _check_prelude(program: Program) -> None:
@@ -208,16 +225,21 @@ def _check_prelude(program: Program) -> None:
         )
 
 
-def _fits(settings: Settings, library: Library) -> bool:
-    """Return whether the chosen profile is for a library; also if there is no such profile, which is told later."""
+def _law(named: str | ProfileSpec) -> MotorLaw | None:
+    """Return the motor law of a profile; None if there is no such profile, which is told later."""
     try:
-        return _profile_in(settings).motor_law.library is library
+        return _profile(named).motor_law
     except ProfileError:
-        return True
+        return None
 
 
-def _profile_in(settings: Settings) -> ProfileSpec:
-    named = settings["profile"]
+def _fits(settings: Settings, library: Library) -> bool:
+    """Return whether the chosen profile is for a library; also if there is no such profile."""
+    law = _law(settings["profile"])
+    return law is None or law.library is library
+
+
+def _profile(named: str | ProfileSpec) -> ProfileSpec:
     return named if isinstance(named, ProfileSpec) else load_profile(named)
 
 

@@ -36,6 +36,11 @@ class Library(StrEnum):
     EV3DEV2 = "ev3dev2"
     PYBRICKS = "pybricks"
 
+    @property
+    def joins_threads(self) -> bool:
+        """Whether the end of a program waits for its threads, as in Python; MicroPython ends with the main thread."""
+        return self is not Library.PYBRICKS
+
 
 class MotorLaw(StrEnum):
     """How motors obey commands and move, and how the library drives them."""
@@ -98,7 +103,11 @@ class ProfileSpec(Spec):
     )
     """How motors obey commands and move."""
     max_speed_dps: float = number(
-        1, 100_000, default=1050.0, source="EV3 motor driver table: large motor without a load"
+        1,
+        100_000,
+        default=1050.0,
+        source="EV3 motor driver table: large motor without a load; "
+        "lego-micropython: the motor data of its firmware, at 8 V",
     )
     """Large motor, no load (EV3 motor driver table)."""
     reflected_max: int = whole(
@@ -130,7 +139,7 @@ class ProfileSpec(Spec):
     mode_switch_ns: int = _cost(
         default=0, later=True, source="Pybricks 2.0, `pbdevice.c`: 30 ms; ev3dev2: none, the driver answers at once"
     )
-    """Time that a sensor needs for another mode than before."""
+    """Time that a sensor needs for the first reading in another mode than before."""
     infrared_switch_ns: int = _cost(default=0, later=True, source="Pybricks 2.0, `pbdevice.c`: 1100 ms")
     """Likewise, of the infrared sensor."""
 
@@ -167,22 +176,12 @@ EV3 = ProfileSpec(
     starts_in_own_folder=True,
 )
 
-LEGO_MICROPYTHON = ProfileSpec(
+LEGO_MICROPYTHON = replace(
+    EV3,
     name="lego-micropython",
     title="LEGO's MicroPython for the EV3: Pybricks 2.0",
-    tick_hz=100,
-    color_read_ns=1 * MS,
-    color_code_read_ns=1 * MS,
-    ultrasonic_read_ns=1 * MS,
-    gyro_read_ns=1 * MS,
     motor_law=MotorLaw.PYBRICKS,
     max_speed_dps=930.0,
-    reflected_max=100,
-    ambient_percent=10,
-    halfway_heading=True,
-    solid=True,
-    mend_library=False,
-    starts_in_own_folder=True,
     mode_switch_ns=30 * MS,
     infrared_switch_ns=1100 * MS,
 )

@@ -14,7 +14,7 @@ from tuisim.core.field import Field
 from tuisim.core.profile import NS_PER_S
 from tuisim.protocol import End, Ended, Unended
 from tuisim.runs.frames import column_values, held, tick_times_s
-from tuisim.runs.records import OutputRow, Stream
+from tuisim.runs.records import SAMPLE_STREAMS, OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun, open_mat
 from tuisim.runs.samples import Sample, rows_when, samples_of
 from tuisim.runs.side_files import read_actions
@@ -102,7 +102,7 @@ class Evidence:
     @cached_property
     def rows(self) -> list[OutputRow]:
         """The rows that the program printed or read, in order, up to `MAX_ROWS`."""
-        kept = (Stream.STDOUT, Stream.STDERR, Stream.INPUT)
+        kept = (Stream.STDOUT, Stream.STDERR, Stream.INPUT, Stream.DATA)
         return list(islice((row for row in self._run.output.rows() if row.stream in kept), MAX_ROWS))
 
     @cached_property
@@ -134,7 +134,7 @@ class Evidence:
 
         if condition.source is ValueSource.COLUMN:
             return held(condition, self.column(condition.name))
-        printed = (row for row in self.rows if row.stream == Stream.STDOUT)
+        printed = (row for row in self.rows if row.stream in SAMPLE_STREAMS)
         return np.isin(np.arange(len(self.records)), [row.tick for row in rows_when(condition, printed)])
 
     @cached_property

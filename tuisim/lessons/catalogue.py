@@ -8,9 +8,11 @@ from pathlib import Path
 
 from tuisim.config.files import FILE_SUFFIXES
 from tuisim.config.folders import user_path
+from tuisim.core.profile import Library
 from tuisim.errors import ConfigError, nearest
 from tuisim.lessons.files import SUFFIX, load_lesson, name_of
 from tuisim.lessons.spec import Lesson
+from tuisim.lessons.telling import told_name
 
 VARIABLE = "TUISIM_LESSONS"
 """The environment variable that names a folder of own lessons."""
@@ -72,6 +74,21 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
     if word not in found:
         raise ConfigError(f"no such lesson {word!r}", f"{nearest(word, [*found, *others])} See `tuisim learn list`")
     return found[word]
+
+
+def telling_of(lesson: Path, library: Library, folder: Path | str | None = None) -> Path:
+    """Return the file that tells a lesson for a library.
+
+    Raises:
+        ConfigError: there is none.
+    """
+    found, name = lesson_paths(folder), name_of(lesson)
+    if library is Library.EV3DEV2 or name.endswith(told_name("", library)):
+        return lesson
+    if told_name(name, library) not in found:
+        told = [one.removesuffix(told_name("", library)) for one in found if one.endswith(told_name("", library))]
+        raise ConfigError(f"the lesson {name} is not told for {library}", f"one of {', '.join(told)}", key="--library")
+    return found[told_name(name, library)]
 
 
 def load_all(folder: Path | str | None = None) -> list[Lesson]:

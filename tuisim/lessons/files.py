@@ -3,6 +3,8 @@
 Each section `## …` of the text is a step. Blocks of code that begin with three backticks and `python program`,
 `python answer` or `python wrong` are not part of the text: the program to complete, model answers, and programs that
 must not pass. `python wrong: no sensor` also says which wrong way the program goes.
+
+With the key `tells` a file is a telling of the lesson in another file: see `tuisim.lessons.telling`.
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ from tuisim.config.worlds import WorldFile, world_from_table
 from tuisim.core.values import shown
 from tuisim.errors import ConfigError
 from tuisim.goals.files import goals_from_list, line_in_errors
+from tuisim.lessons import telling
 from tuisim.lessons.events import event_of, is_met, model_event
 from tuisim.lessons.others import others_of
 from tuisim.lessons.spec import (
@@ -116,13 +119,30 @@ def parse_lesson(text: str, path: Path) -> Lesson:
         ConfigError: it is wrong; the error names file, line and key.
     """
     lines = text.split("\n")
-    end = _end_of_front(lines, path)
-    # The line with `+++` becomes an empty one, so that the lines of the TOML keep their numbers.
-    front = "\n".join(["", *lines[1:end]])
+    front, end = _front(lines, path)
     sections = _sections(lines, end + 1, path)
     data = files.parse_toml(front, str(path), ConfigError)
     with line_in_errors(path, front):
-        return _lesson(data, sections, path)
+        return _lesson(_with_told(data, path), sections, path)
+
+
+def _front(lines: Sequence[str], path: Path) -> tuple[str, int]:
+    """Return the TOML, and the index of the line that ends it."""
+    end = _end_of_front(lines, path)
+    # The line with `+++` becomes an empty one, so that the lines of the TOML keep their numbers.
+    return "\n".join(["", *lines[1:end]]), end
+
+
+def _with_told(data: Any, path: Path) -> Any:
+    """Return the TOML of a lesson; if it is a telling, together with that of the lesson that it tells."""
+    if telling.KEY not in data:
+        return data
+    at = Location(str(path)).at(telling.KEY)
+    other = path.parent / files.convert(data[telling.KEY], str, at)
+    told = files.parse_toml(_front(_read(other).split("\n"), other)[0], str(other), ConfigError)
+    if telling.KEY in told:
+        raise at.wrong(f"{other.name} is a telling, too", "name the lesson that it tells")
+    return telling.merged(told, data)
 
 
 def _end_of_front(lines: Sequence[str], path: Path) -> int:

@@ -144,7 +144,7 @@ def face_after(face: BrickState, rows: Iterable[OutputRow]) -> BrickState:
             case Stream.MOTORS:
                 turns = tuple((position_deg, dps) for position_deg, dps in json.loads(row.text))
                 face = replace(face, turns=turns, turns_tick=row.tick)
-            case Stream.STDOUT | Stream.STDERR | Stream.INPUT | Stream.NOTE | Stream.UNKNOWN:
+            case Stream.STDOUT | Stream.STDERR | Stream.INPUT | Stream.NOTE | Stream.DATA | Stream.UNKNOWN:
                 pass
             case _:
                 assert_never(row.stream)

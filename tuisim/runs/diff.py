@@ -185,7 +185,7 @@ def _written(run: StoredRun, until: int | None) -> Iterator[OutputRow]:
 def _shown(row: OutputRow) -> str:
     """Return a row as text, also one of the brick's state."""
     match row.stream:
-        case Stream.STDOUT | Stream.STDERR | Stream.SPEECH | Stream.INPUT | Stream.NOTE:
+        case Stream.STDOUT | Stream.STDERR | Stream.SPEECH | Stream.INPUT | Stream.NOTE | Stream.DATA:
             return line_of(row)
         case Stream.LED:
             return "[lights]"

@@ -17,7 +17,7 @@ from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING, TICK_RECORD
 from tuisim.errors import LogError
 from tuisim.protocol import SetButtons, UserAction
-from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow, Stream
+from tuisim.runs.records import SAMPLE_STREAMS, TEXT_STREAMS, Mark, OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun, noise_at, program_again
 from tuisim.runs.samples import parse_sample
 from tuisim.runs.side_files import read_actions
@@ -212,7 +212,7 @@ class RowIndex:
         if row.stream == Stream.STDERR:
             if not self.marks or self.marks[-1] != (row.tick, Mark.ERROR):
                 self.marks.append((row.tick, Mark.ERROR))
-        elif row.stream == Stream.STDOUT and (sample := parse_sample(row.text)):
+        elif row.stream in SAMPLE_STREAMS and (sample := parse_sample(row.text)):
             level = self._levels.get(sample[0])
             if level is None:
                 self._levels[sample[0]] = _Level(sample[1])

@@ -68,12 +68,17 @@ class Stream(IntEnum):
     """The text screen of the brick."""
     MOTORS = 8
     """Rotation of motors that do not drive a wheel."""
+    DATA = 9
+    """A sample that the program wrote into a log file of its library, as a line that prints it."""
     UNKNOWN = 255
     """A stream of another version."""
 
 
 TEXT_STREAMS = frozenset({Stream.STDOUT, Stream.STDERR, Stream.SPEECH, Stream.INPUT})
 """Streams with readable text."""
+
+SAMPLE_STREAMS = frozenset({Stream.STDOUT, Stream.DATA})
+"""Streams in which there are samples."""
 
 _STREAMS = {stream.value: stream for stream in Stream}
 

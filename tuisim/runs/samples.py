@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tuisim.core.conditions import NUMBER, ValueCondition, ValueSource
-from tuisim.runs.records import OutputRow, Stream
+from tuisim.runs.records import SAMPLE_STREAMS, OutputRow, Stream
 
 if TYPE_CHECKING:
     from tuisim.runs.views import OutputView
@@ -67,8 +67,8 @@ def counts_of(output: OutputView) -> Counts:
     """Count printed lines and samples without creating row objects: there may be a million."""
     lines = samples = 0
     for stream, text in output.raw_rows():
-        if stream == _STDOUT:
-            lines += 1
+        if stream in SAMPLE_STREAMS:
+            lines += stream == _STDOUT
             if b":" in text and (
                 _PLAIN_SAMPLE.fullmatch(text) or parse_sample(str(text, "utf-8", "replace")) is not None
             ):
@@ -79,7 +79,7 @@ def counts_of(output: OutputView) -> Counts:
 def samples_of(rows: Iterable[OutputRow]) -> Iterator[Sample]:
     """Yield the samples among the rows that a program printed, in order."""
     for row in rows:
-        if row.stream != _STDOUT:
+        if row.stream not in SAMPLE_STREAMS:
             continue
         parsed = parse_sample(row.text)
         if parsed is not None:

@@ -124,8 +124,7 @@ class ProgramRunner:
     def connect(self, config: RunConfig) -> None:
         """Connect it with the program of a run."""
         self._config, session = config, self._session
-        has_own_folder = bool(config.program.path or config.program.module_folder)
-        self._starts_in_own_folder = config.spec.profile.starts_in_own_folder and has_own_folder
+        self._starts_in_own_folder = config.starts_in_own_folder
         # A relative path would mean another file from there.
         in_own_folder = os.path.join(config.own_folder, os.path.basename(session.program_file))
         self._file = in_own_folder if self._starts_in_own_folder else session.program_file
@@ -142,7 +141,8 @@ class ProgramRunner:
 
     def _run(self) -> ProgramOutcome:
         outcome = self._outcome(self._execute)
-        if self._session.stop_reason is None and outcome.end in (End.FINISHED, End.RAISED):
+        joins = self._config.spec.profile.motor_law.library.joins_threads
+        if joins and self._session.stop_reason is None and outcome.end in (End.FINISHED, End.RAISED):
             # As in Python, also after an error or an exit of the main thread.
             later = self._outcome(self._scheduler.join_all)
             outcome = outcome if later.end is End.FINISHED else later

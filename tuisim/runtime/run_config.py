@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from tuisim.config.folders import programs_folder
 from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.spec import RunSpec
 from tuisim.core.tree import from_plain
@@ -33,6 +34,18 @@ class RunConfig:
         """Folder of the program's own modules: that of its file, or the configured one, or the working directory."""
         program = self.program
         return program.module_folder or os.path.dirname(wallclock.absolute(program.path or program.name))
+
+    @property
+    def starts_in_own_folder(self) -> bool:
+        """Whether the program starts in its own folder. What an example writes is for the user.
+
+        Raises:
+            ConfigError: the folder of the examples does not exist.
+        """
+        program = self.program
+        if not self.spec.profile.starts_in_own_folder or not (program.path or program.module_folder):
+            return False
+        return Path(self.own_folder) != programs_folder()
 
     @property
     def debugged(self) -> bool:

@@ -133,6 +133,7 @@ class Session:
         self.free = 0
         self.flags = 0
         """Bits of `SessionFlag`."""
+        self.held_up = ""
         self.pressed: frozenset[str] = frozenset()
         """The brick's buttons that are pressed."""
         self._due = sim.due_ns(1)
@@ -285,7 +286,8 @@ class Session:
             if not changed:
                 self.now = self._limit_ns
                 limit_s = self._limit_ns / NS_PER_S
-                raise self.request_stop(End.TIME_LIMIT, f"stopped at the limit of {limit_s:g} s simulated time")
+                limit = f"stopped at the limit of {limit_s:g} s simulated time"
+                raise self.request_stop(End.TIME_LIMIT, "; ".join(filter(None, (limit, self.held_up))))
         elif self._stop_raised_at is not None and until > (last := self._stop_raised_at + CLEANUP_S * NS_PER_S):
             changed = self._run_ticks(last, on_change)
             if not changed:

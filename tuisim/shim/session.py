@@ -24,6 +24,9 @@ class DeviceSession(Protocol):
     wheel_registers: tuple[Callable[[], MotorRegisters], ...]
     """Read the registers of the left and the right wheel; set with the brick."""
 
+    held_up: str
+    """What keeps the program from going on, for the summary if a limit ends the run; empty for nothing."""
+
     pressed: frozenset[str]
     """The pressed buttons of the brick, by their names in the library."""
 

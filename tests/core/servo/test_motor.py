@@ -51,9 +51,9 @@ class Robot:
                 settings = motor.control.settings
                 rate = chance.randrange(-1600, 1601)
                 if chance.random() < 0.5:
-                    motor.control.run(now_us, motor.measured(now_us), rate, settings.acceleration, 700_000)
+                    motor.control.run(now_us, motor.measured, rate, settings.acceleration, 700_000)
                 else:
-                    motor.control.run(now_us, motor.measured(now_us), rate, settings.acceleration)
+                    motor.control.run(now_us, motor.measured, rate, settings.acceleration)
                 motor.follow(ending=chance.choice((Ending.COAST, Ending.BRAKE, Ending.HOLD)))
             case 5:
                 self.base.stop(now_us, None)
@@ -65,7 +65,7 @@ class Robot:
 
 
 @pytest.mark.parametrize("world", [WORLD, WALLED], ids=["free", "walled"])
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(24))
 def test_ticks_are_the_same_however_they_are_divided(world: WorldSpec, seed: int) -> None:
     records = []
     for at_once in (True, False):

@@ -8,6 +8,7 @@ from typing import Any, cast
 
 from tuisim.core.profile import PROFILES, MotorLaw
 from tuisim.core.servo.motor import ServoMotor
+from tuisim.runs.records import Stream
 from tuisim.shim.pybricks.brick import Brick, Connected
 
 TICK_NS = 10_000_000
@@ -25,8 +26,9 @@ class Lab:
     def __init__(self, law: MotorLaw, kinds: dict[str, str], stop_deg: float | None = None) -> None:
         self.motors = {port: ServoMotor(100, law, kind) for port, kind in kinds.items()}
         self.now = self.free = self.tick = 0
-        self.stop_deg = stop_deg
+        self.stop_deg, self.held_up = stop_deg, ""
         self.until_ns = 1 << 62
+        self.shown: list[tuple[str, Stream]] = []
         self.looks: list[Callable[[int], None]] = []
         self.sim: Any = SimpleNamespace(spec=SimpleNamespace(profile=PROFILES["lego-micropython"]))
         empty: Any = SimpleNamespace()
@@ -56,6 +58,10 @@ class Lab:
 
     def charge(self, _cost_ns: int) -> None:
         """Charge nothing: the recordings have no costs of calls."""
+
+    def show(self, row: str, stream: Stream) -> None:
+        """Keep what is recorded."""
+        self.shown.append((row, stream))
 
     def command(self) -> None:
         """Count nothing."""

@@ -11,14 +11,16 @@ from math import ceil
 
 from tuisim.core.servo.settings import PAUSE_MARGIN_MS, ControlSettings
 from tuisim.core.servo.trajectory import (
-    ENDLESS_US,
     MILLI,
     MS_US,
+    Measure,
     Reference,
     Segment,
     Trajectory,
     angle_move,
     divided,
+    endless_move,
+    proportional,
     standing,
     timed_move,
 )
@@ -68,7 +70,9 @@ class Controller:
 
     def milli(self, now_us: int) -> int:
         """Return where the motion is wanted to be, in thousandths of a count."""
-        return self.reference(now_us).milli - self._behind_milli
+        assert self.trajectory is not None
+        then_us = now_us - self._paused_us
+        return self.trajectory.segment(then_us).milli_at(then_us) - self._behind_milli
 
     def millis(self, times_us: range) -> list[int]:
         """Return where the motion is wanted to be at several times of one segment."""
@@ -80,7 +84,10 @@ class Controller:
 
     def rate(self, now_us: int) -> int:
         """Return the wanted rate; 0 while it is passive."""
-        return self.reference(now_us).rate if self.trajectory else 0
+        if self.trajectory is None:
+            return 0
+        then_us = now_us - self._paused_us
+        return self.trajectory.segment(then_us).rate_at(then_us)
 
     @property
     def end_us(self) -> int | None:
@@ -107,12 +114,19 @@ class Controller:
         self._begin(standing(now_us, milli), timed=False)
 
     def move_to(
-        self, now_us: int, measured: Segment, target: int, rate: int, acceleration: int, *, relative: bool = False
+        self,
+        now_us: int,
+        measured: Measure,
+        target: int,
+        rate: int,
+        acceleration: int,
+        *,
+        relative: bool = False,
     ) -> None:
         """Begin a move to a position.
 
         Args:
-            measured: Where the motion is, from which it begins if this controller is passive.
+            measured: Returns where the motion is, from which it begins if this controller is passive.
             target: Where it shall end, in counts.
             rate, acceleration: How.
             relative: Whether `target` counts from where the motion begins.
@@ -130,37 +144,46 @@ class Controller:
             found = angle_move(spliced, target, rate, acceleration, settings.speed)
         self._begin(found, timed=False)
 
-    def run(self, now_us: int, measured: Segment, rate: int, acceleration: int, time_us: int | None = None) -> None:
+    def keep_pace_with(self, other: Controller) -> None:
+        """Make the new trajectory take as long as that of another controller, in proportion to it at every time."""
+        if self.trajectory is not None and other.trajectory is not None:
+            self.trajectory = proportional(self.trajectory, other.trajectory)
+
+    def run(self, now_us: int, measured: Measure, rate: int, acceleration: int, time_us: int | None = None) -> None:
         """Begin a motion at a speed.
 
         Args:
-            measured: Where the motion is, from which it begins if this controller is passive.
+            measured: Returns where the motion is, from which it begins if this controller is passive.
             rate, acceleration: How.
             time_us: How long it takes; None if it does not end.
 
         Raises:
             ValueError: the time is negative or too long.
         """
-        settings, endless = self.settings, time_us is None
+        settings = self.settings
         acceleration = min(abs(acceleration), settings.acceleration)
-        takes_us = ENDLESS_US if time_us is None else time_us
         start, spliced = self._starts(now_us, measured)
-        found = timed_move(start, takes_us, rate, acceleration, settings.speed, endless=endless)
-        if spliced is not None and found.first.acceleration == start.acceleration:
-            takes_us += now_us - spliced.start_us
-            found = timed_move(spliced, takes_us, rate, acceleration, settings.speed, endless=endless)
+        if time_us is None:
+            found = endless_move(start, rate, acceleration, settings.speed)
+            if spliced is not None and found.first.acceleration == start.acceleration:
+                found = endless_move(spliced, rate, acceleration, settings.speed)
+        else:
+            found = timed_move(start, time_us, rate, acceleration, settings.speed)
+            if spliced is not None and found.first.acceleration == start.acceleration:
+                takes_us = time_us + now_us - spliced.start_us
+                found = timed_move(spliced, takes_us, rate, acceleration, settings.speed)
         self._begin(found, timed=True)
 
-    def _starts(self, now_us: int, measured: Segment) -> tuple[Segment, Segment | None]:
-        """Return where a new trajectory begins, and where the running segment began, if there is one."""
+    def _starts(self, now_us: int, measured: Measure) -> tuple[Segment, Segment | None]:
+        """Return where a new trajectory begins, and where the running segment began, if it changes the speed."""
         if self.trajectory is None:
-            return measured, None
+            return measured(now_us), None
         then_us = now_us - self._paused_us
-        reference, running = self.trajectory.at(then_us), self.trajectory.segment(then_us)
-        return (
-            Segment(now_us, reference.milli, reference.rate, reference.acceleration),
-            Segment(running.start_us + self._paused_us, running.milli, running.rate, running.acceleration),
-        )
+        running = self.trajectory.segment(then_us)
+        start = Segment(now_us, running.milli_at(then_us), running.rate_at(then_us), running.acceleration)
+        if not running.acceleration:
+            return start, None
+        return start, running._replace(start_us=running.start_us + self._paused_us)
 
     def _begin(self, trajectory: Trajectory, *, timed: bool) -> None:
         self.trajectory, self.timed, self.duty_limit = trajectory, timed, None

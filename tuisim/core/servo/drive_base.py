@@ -8,10 +8,10 @@ from __future__ import annotations
 from math import pi
 from typing import TYPE_CHECKING
 
-from tuisim.core.servo.control import Controller
+from tuisim.core.servo.control import Controller, Ending
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.servo.settings import FIRMWARES, ControlSettings, pair_settings
-from tuisim.core.servo.trajectory import Segment
+from tuisim.core.servo.trajectory import Measure, Segment
 
 if TYPE_CHECKING:
     from tuisim.core.profile import MotorLaw
@@ -34,9 +34,10 @@ def usual_settings(law: MotorLaw, distance: ControlSettings, heading: ControlSet
     )
 
 
-def _move_by(control: Controller, now_us: int, measured: Segment, way: int, speed: int, acceleration: int) -> None:
+def _move_by(control: Controller, now_us: int, measured: Measure, way: float, speed: int, acceleration: int) -> None:
     counts = control.settings.counts
-    control.move_to(now_us, measured, counts(way), counts(speed), counts(acceleration), relative=True)
+    target = counts(int(way)) if way == int(way) else round(way * control.settings.counts_per_unit)
+    control.move_to(now_us, measured, target, counts(speed), counts(acceleration), relative=True)
 
 
 class DriveBase:
@@ -90,25 +91,32 @@ class DriveBase:
 
     # Commands
 
-    def move(self, now_us: int, distance_mm: int, turn_deg: int) -> None:
-        """Begin to drive a distance and to turn by an angle, after which the motors hold.
+    def move(self, now_us: int, distance_mm: float, turn_deg: float, ending: Ending = Ending.HOLD) -> None:
+        """Begin to drive a distance and to turn by an angle; if both, along an arc.
+
+        Args:
+            ending: What the motors do after the move.
 
         Raises:
             ValueError: the usual speed is 0, or the move takes too long.
         """
-        total, difference = self._measured(now_us)
+        self._begin()
         speed, acceleration, turn_rate, turn_acceleration = self.usual
-        _move_by(self.distance, now_us, total, distance_mm, speed, acceleration)
-        _move_by(self.heading, now_us, difference, turn_deg, turn_rate, turn_acceleration)
-        self._take()
+        _move_by(self.distance, now_us, self._total, distance_mm, speed, acceleration)
+        _move_by(self.heading, now_us, self._difference, turn_deg, turn_rate, turn_acceleration)
+        if distance_mm and turn_deg:
+            fast, slow = sorted((self.distance, self.heading), key=lambda one: one.end_us or 0)
+            fast.keep_pace_with(slow)
+        self._take(ending)
 
     def drive(self, now_us: int, speed_mm_s: int, turn_rate_dps: int) -> None:
         """Drive on at a speed and a rate of turn."""
-        rates = self.distance.settings.counts(speed_mm_s), self.heading.settings.counts(turn_rate_dps)
-        controls = self.distance, self.heading
-        for control, measured, rate in zip(controls, self._measured(now_us), rates, strict=True):
-            control.run(now_us, measured, rate, control.settings.acceleration)
-        self._take()
+        self._begin()
+        distance, heading = self.distance, self.heading
+        ours, other = distance.settings, heading.settings
+        distance.run(now_us, self._total, ours.counts(speed_mm_s), ours.acceleration)
+        heading.run(now_us, self._difference, other.counts(turn_rate_dps), other.acceleration)
+        self._take(Ending.HOLD)
 
     def stop(self, now_us: int, duty: int | None) -> None:
         """Let go of the motors, and run them with a power; see `ServoMotor.run_freely`."""
@@ -117,25 +125,32 @@ class DriveBase:
         self.distance.release()
         self.heading.release()
 
-    def _measured(self, now_us: int) -> tuple[Segment, Segment]:
+    def _total(self, now_us: int) -> Segment:
         left, right = self.left.measured(now_us), self.right.measured(now_us)
-        return (
-            Segment(now_us, left.milli + right.milli, left.rate + right.rate, 0),
-            Segment(now_us, left.milli - right.milli, left.rate - right.rate, 0),
-        )
+        return Segment(now_us, left.milli + right.milli, left.rate + right.rate, 0)
 
-    def _take(self) -> None:
+    def _difference(self, now_us: int) -> Segment:
+        left, right = self.left.measured(now_us), self.right.measured(now_us)
+        return Segment(now_us, left.milli - right.milli, left.rate - right.rate, 0)
+
+    def _begin(self) -> None:
+        """Make the controllers passive unless they move the motors."""
+        if not self.active:
+            self.distance.release()
+            self.heading.release()
+
+    def _take(self, ending: Ending) -> None:
         self._at_us = self._behind_us = -1
         for motor in self.motors:
-            motor.follow(self)
+            motor.follow(self, ending)
 
     # As the guide of its motors
 
     @property
     def end_us(self) -> int | None:
         """When the motion ends; None if it does not."""
-        ends = [control.end_us for control in (self.distance, self.heading)]
-        return None if None in ends else max(end for end in ends if end is not None)
+        one, other = self.distance.end_us, self.heading.end_us
+        return None if one is None or other is None else max(one, other)
 
     def halves(self, now_us: int, motor: ServoMotor) -> int:
         """Return where a motor is wanted to be."""

@@ -89,9 +89,9 @@ class ServoMotor:
     """
 
     __slots__ = (
-        "_course", "_ending", "_free_dps", "_free_us", "_guide", "_hz", "_jump_deg", "_own", "_quiet", "_tick",
-        "_tick_s", "_tick_us", "blocked_ticks", "control", "duty", "kind", "law", "mode", "model", "position_deg",
-        "sign", "speed_dps",
+        "_actuation", "_course", "_ending", "_fastest_deg", "_free_dps", "_free_us", "_guide", "_hz", "_jump_deg",
+        "_own", "_quiet", "_tick", "_tick_s", "_tick_us", "blocked_ticks", "control", "duty", "kind", "law", "mode",
+        "model", "position_deg", "sign", "speed_dps",
     )  # fmt: skip
 
     def __init__(self, tick_hz: int, law: MotorLaw, kind: str) -> None:
@@ -114,6 +114,7 @@ class ServoMotor:
         """Its power while it runs freely, in hundredths of a percent; None if it coasts."""
         self._free_us, self._free_dps, self._jump_deg = 0, 0.0, 0.0
         self._tick = self._quiet = 0
+        self._limit_speed()
 
     # What the program sees
 
@@ -155,10 +156,12 @@ class ServoMotor:
 
     # Commands
 
-    def set_up(self, now_us: int, sign: int, gear_ratio: float) -> None:
-        """Begin anew, as a program does that makes a motor: it coasts, and its position is 0."""
+    def set_up(self, now_us: int, sign: int, gear_ratio: float, *, keeps_angle: bool = False) -> None:
+        """Begin anew, as a program does that makes a motor: it coasts, and its position is 0 unless it is kept."""
         self.run_freely(now_us, None)
-        self.sign, self.position_deg, self._jump_deg = sign, 0.0, 0.0
+        self.sign = sign
+        if not keeps_angle:
+            self.position_deg = self._jump_deg = 0.0
         self.control.settings = motor_settings(self.law, self.kind, gear_ratio)
 
     def follow(self, guide: Guide | None = None, ending: Ending = Ending.HOLD) -> None:
@@ -167,6 +170,10 @@ class ServoMotor:
         Args:
             ending: What it does at the end of the motion.
         """
+        if guide is not None and guide is self._guide:
+            self._ending = ending
+            self.mode, self.blocked_ticks = FOREVER if guide.end_us is None else POSITION, 0
+            return
         if self._guide is None:
             self._course = round(self.position_deg * self.sign * HALVES_PER_DEG)
         if guide is not None:
@@ -175,6 +182,13 @@ class ServoMotor:
         timed = guide is None and self.control.timed
         self.mode = FOREVER if self._guide.end_us is None else TIMED if timed else POSITION
         self.blocked_ticks, self.duty, self._jump_deg = 0, None, 0.0
+        if self.control.actuation != self._actuation:
+            self._limit_speed()
+
+    def _limit_speed(self) -> None:
+        """Take note of the highest speed that its power allows."""
+        self._actuation = self.control.actuation
+        self._fastest_deg = self.model.steady_dps(self._actuation, BATTERY_V) * self._tick_s
 
     def run_freely(self, now_us: int, duty: int | None) -> None:
         """Let go of what it follows, and run with a power.
@@ -275,13 +289,20 @@ class ServoMotor:
     def _quiet_ticks(self, tick: int) -> int:
         if self.mode == STOPPED:
             return ENDLESS
-        if self._guide is None or self._course is None:
+        guide, now_us = self._guide, tick * self._tick_us
+        if guide is None or self._course is None or not self._can_follow(guide, now_us):
             return 0
-        now_us = tick * self._tick_us
-        end_us = self._guide.segment_end_us(now_us)
+        end_us = guide.segment_end_us(now_us)
         if end_us is not None:
             return max(0, (end_us - 1) // self._tick_us - tick)
-        return 0 if self._guide.end_us is not None else ENDLESS
+        return 0 if guide.end_us is not None else ENDLESS
+
+    def _can_follow(self, guide: Guide, now_us: int) -> bool:
+        """Return whether the motor is fast enough for the next tick and for the rest of the segment."""
+        assert self._course is not None
+        next_deg = abs(guide.halves(now_us + self._tick_us, self) - self._course) / HALVES_PER_DEG
+        fastest_dps = max(abs(self.moving_dps), abs(self.aim_dps))
+        return next_deg <= self._fastest_deg and fastest_dps * self._tick_s <= self._fastest_deg
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
         """Stand for some ticks; see `Motor.glide_evenly`."""
@@ -310,20 +331,19 @@ class ServoMotor:
         if self._course is None:
             guide.fall_behind(now_us - self._tick_us, self._tick_us)
         halves = guide.halves(now_us, self)
-        fastest_deg = self.fastest_dps * self._tick_s
         if self._course is not None:
-            turned = self._deg(halves - self._course)
-            if not noise_dps and -fastest_deg <= turned <= fastest_deg:
-                self._course, self.position_deg, self.speed_dps = halves, self._deg(halves), turned * self._hz
-                end_us = guide.end_us
-                if turned == 0.0 and end_us is not None and now_us >= end_us:
+            turned = (halves - self._course) * self.sign / HALVES_PER_DEG
+            if not noise_dps and -self._fastest_deg <= turned <= self._fastest_deg:
+                self._course, self.position_deg = halves, halves * self.sign / HALVES_PER_DEG
+                self.speed_dps = turned * self._hz
+                if turned == 0.0 and (end_us := guide.end_us) is not None and now_us >= end_us:
                     self._end()
                 return turned
-        return self._catch_up(halves, fastest_deg, noise_dps)
+        return self._catch_up(halves, noise_dps)
 
-    def _catch_up(self, halves: int, fastest_deg: float, noise_dps: float) -> float:
+    def _catch_up(self, halves: int, noise_dps: float) -> float:
         """Run towards where the motor is wanted to be."""
-        wanted_deg = self._deg(halves)
+        fastest_deg, wanted_deg = self._fastest_deg, self._deg(halves)
         turned = max(-fastest_deg, min(fastest_deg, wanted_deg - self.position_deg))
         reached = turned == wanted_deg - self.position_deg and not noise_dps
         turned += noise_dps * self._tick_s if turned else 0.0
@@ -331,11 +351,6 @@ class ServoMotor:
         self.speed_dps = turned * self._hz
         self._course = halves if reached else None
         return turned
-
-    @property
-    def fastest_dps(self) -> float:
-        """The highest speed that its power allows."""
-        return abs(self.model.steady_dps(self.control.actuation, BATTERY_V))
 
     def _end(self) -> None:
         """End the motion: from now on the motor stands."""

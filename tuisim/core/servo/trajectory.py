@@ -7,8 +7,9 @@ milliseconds: the results equal those of the firmware to the last digit.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
 from math import isqrt
+from typing import NamedTuple
 
 MS_US = 1000
 """Microseconds in a millisecond."""
@@ -36,18 +37,7 @@ def rate_change(acceleration: int, time_us: int) -> int:
     return divided(acceleration * (time_us // MS_US), 1000)
 
 
-def path(rate: int, time_us: int) -> int:
-    """Return how far a rate leads, in thousandths of a count."""
-    return divided(rate * time_us, 1000)
-
-
-def path_of_acceleration(acceleration: int, time_us: int) -> int:
-    """Return how far an acceleration from standstill leads, in thousandths of a count."""
-    return divided(path(path(acceleration, time_us), time_us), 2000)
-
-
-@dataclass(frozen=True, slots=True)
-class Reference:
+class Reference(NamedTuple):
     """Where a trajectory is at one time."""
 
     milli: int
@@ -56,8 +46,7 @@ class Reference:
     acceleration: int
 
 
-@dataclass(frozen=True, slots=True)
-class Segment:
+class Segment(NamedTuple):
     """The start of one of a trajectory's parts: speeding up or down, running evenly, stopping, standing."""
 
     start_us: int
@@ -65,14 +54,18 @@ class Segment:
     rate: int
     acceleration: int
 
-    def at(self, time_us: int) -> Reference:
-        """Return the reference at a time in this segment."""
-        passed_us, acceleration = time_us - self.start_us, self.acceleration
-        milli = self.milli + path(self.rate, passed_us)
-        if not acceleration:
-            return Reference(milli, self.rate, 0)
-        milli += path_of_acceleration(acceleration, passed_us)
-        return Reference(milli, self.rate + rate_change(acceleration, passed_us), acceleration)
+    def milli_at(self, time_us: int) -> int:
+        """Return the position at a time in this segment."""
+        passed_us, rate, acceleration = time_us - self.start_us, self.rate, self.acceleration
+        # Each quotient rounds towards zero; each motor asks in every tick.
+        milli = self.milli + (rate * passed_us // 1000 if rate >= 0 else -(-rate * passed_us // 1000))
+        if acceleration > 0:
+            return milli + acceleration * passed_us // 1000 * passed_us // 2_000_000
+        return milli - -acceleration * passed_us // 1000 * passed_us // 2_000_000 if acceleration else milli
+
+    def rate_at(self, time_us: int) -> int:
+        """Return the rate at a time in this segment."""
+        return self.rate + (rate_change(self.acceleration, time_us - self.start_us) if self.acceleration else 0)
 
     def millis(self, times_us: range) -> list[int]:
         """Return the positions at several times in this segment, which `at` gives one by one."""
@@ -84,20 +77,19 @@ class Segment:
         return [milli + sign * (change * at // 1000 * at // 2_000_000) for milli, at in zip(even, steps, strict=True)]
 
 
-@dataclass(frozen=True, slots=True)
-class Trajectory:
-    """A motion: it speeds up or down, runs evenly, and stops.
+Measure = Callable[[int], Segment]
+"""Returns where a motion is at a time, as the start of a trajectory."""
 
-    Args:
-        first, even, last, end: Its segments.
-        endless: Whether it never stops; `last` and `end` then do not count.
-    """
+
+class Trajectory(NamedTuple):
+    """A motion: it speeds up or down, runs evenly, and stops."""
 
     first: Segment
     even: Segment
     last: Segment
     end: Segment
     endless: bool = False
+    """Whether it never stops; `last` and `end` then do not count."""
 
     @property
     def end_us(self) -> int:
@@ -122,7 +114,8 @@ class Trajectory:
 
     def at(self, time_us: int) -> Reference:
         """Return the reference at a time."""
-        return self.segment(time_us).at(time_us)
+        segment = self.segment(time_us)
+        return Reference(segment.milli_at(time_us), segment.rate_at(time_us), segment.acceleration)
 
 
 def standing(time_us: int, milli: int) -> Trajectory:
@@ -182,9 +175,34 @@ def angle_move(start: Segment, target: int, rate: int, acceleration: int, fastes
     )
 
 
-def timed_move(
-    start: Segment, time_us: int, rate: int, acceleration: int, fastest: int, *, endless: bool = False
-) -> Trajectory:
+def endless_move(start: Segment, rate: int, acceleration: int, fastest: int) -> Trajectory:
+    """Return the motion at a speed that does not end.
+
+    Args:
+        start: Where it begins; its acceleration does not count.
+        rate: The wanted rate.
+        acceleration: How it speeds up or down.
+        fastest: The highest rate.
+    """
+    at = start.start_us
+    limit = min(fastest, rate_change(acceleration, ENDLESS_US))
+    wanted, w0 = max(-limit, min(limit, rate)), max(-limit, min(limit, start.rate))
+    change = wanted - w0
+    if not change:
+        even = Segment(at, start.milli, wanted, 0)
+        return Trajectory(Segment(at, start.milli, wanted, _away(wanted, rate, acceleration)), even, even, even, True)
+    first = Segment(at, start.milli, w0, acceleration if change > 0 else -acceleration)
+    t1 = at + abs(change) * 1000 // acceleration * MS_US
+    even = Segment(t1, first.milli_at(t1), wanted, 0)
+    return Trajectory(first, even, even, even, True)
+
+
+def _away(wanted: int, rate: int, acceleration: int) -> int:
+    """Return the acceleration of a first segment without length: that of slowing down."""
+    return acceleration if wanted < 0 or rate < 0 else -acceleration
+
+
+def timed_move(start: Segment, time_us: int, rate: int, acceleration: int, fastest: int) -> Trajectory:
     """Return the move that takes a time, with its ramps.
 
     Args:
@@ -193,7 +211,6 @@ def timed_move(
         rate: The wanted rate.
         acceleration: How it speeds up and stops.
         fastest: The highest rate.
-        endless: Whether it never stops; `time_us` is then what the firmware assumes.
 
     Raises:
         ValueError: the time is negative, or longer than half an hour.
@@ -205,23 +222,30 @@ def timed_move(
     wanted = min(abs(rate), limit)
     w0 = max(-limit, min(limit, sign * start.rate))
     if w0 < wanted:
-        a0, ramp_us = acceleration, duration_us(wanted - w0, acceleration)
+        a0, t1, w1 = acceleration, duration_us(wanted - w0, acceleration), wanted
         room_us = time_us - duration_us(w0, acceleration)
-        t1, w1 = ramp_us, wanted
-        if not endless and ramp_us >= room_us // 2:
+        if t1 >= room_us // 2:
             t1, w1 = room_us // 2, divided(rate_change(acceleration, time_us), 2) + divided(w0, 2)
     else:
         a0, t1, w1 = -acceleration, duration_us(w0 - wanted, acceleration), wanted
     t3 = duration_us(w1, acceleration)
-    t2 = time_us - t1 - t3
-    th1 = path(w0, t1) + path_of_acceleration(a0, t1)
-    th2 = th1 + path(w1, t2)
-    th3 = th2 + path(w1, t3) + path_of_acceleration(-acceleration, t3)
     at = start.start_us
-    return Trajectory(
-        Segment(at, start.milli, sign * w0, sign * a0),
-        Segment(at + t1, start.milli + sign * th1, sign * w1, 0),
-        Segment(at + t1 + t2, start.milli + sign * th2, sign * w1, -sign * acceleration),
-        Segment(at + t1 + t2 + t3, start.milli + sign * th3, 0, 0),
-        endless,
-    )
+    first = Segment(at, start.milli, sign * w0, sign * a0)
+    even = Segment(at + t1, first.milli_at(at + t1), sign * w1, 0)
+    t2 = at + time_us - t3
+    last = Segment(t2, even.milli_at(t2), sign * w1, -sign * acceleration)
+    return Trajectory(first, even, last, Segment(t2 + t3, last.milli_at(t2 + t3), 0, 0))
+
+
+def proportional(trajectory: Trajectory, leader: Trajectory) -> Trajectory:
+    """Return a move with the ends of a trajectory and the times of a leader, in proportion to its positions."""
+    begin, whole = trajectory.first.milli, trajectory.end.milli - trajectory.first.milli
+    from_milli, way = leader.first.milli, leader.end.milli - leader.first.milli
+
+    def part(number: int) -> int:
+        return divided(number * whole, way) if way else 0
+
+    def scaled(one: Segment) -> Segment:
+        return Segment(one.start_us, begin + part(one.milli - from_milli), part(one.rate), part(one.acceleration))
+
+    return Trajectory(scaled(leader.first), scaled(leader.even), scaled(leader.last), scaled(leader.end))

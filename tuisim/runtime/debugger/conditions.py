@@ -12,7 +12,7 @@ from tuisim.core.columns import column_name
 from tuisim.core.conditions import Edge, Operator, ValueCondition, ValueSource, value_text
 from tuisim.core.profile import NS_PER_S
 from tuisim.core.sensors import columns_of, reader_of
-from tuisim.runs.records import Stream
+from tuisim.runs.records import SAMPLE_STREAMS, Stream
 from tuisim.runs.samples import value_reader
 from tuisim.runtime.debugger.value_text import evaluate_truth
 from tuisim.runtime.session import Session
@@ -122,7 +122,7 @@ class Watcher:
 
     def after_row(self, row: str, stream: Stream) -> tuple[str, str] | None:
         """Return text and value of a breakpoint that matches this printed row."""
-        if stream != Stream.STDOUT:
+        if stream not in SAMPLE_STREAMS:
             return None
         return _first((text, check(row)) for text, check in self._on_row.items())
 

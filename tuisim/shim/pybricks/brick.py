@@ -4,19 +4,38 @@ from __future__ import annotations
 
 import errno
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.shim.leds import Lights
 from tuisim.shim.power import Battery
+from tuisim.shim.pybricks.parameters import Port
 from tuisim.shim.sensors import LegoSensor
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.waits import Wait, waits_for
 
 POLL_US = 5000
 """A blocking call looks for the end of its move this often, as the firmware's does."""
+
+BLOCKED_POLL_US = 100_000
+"""Likewise while something blocks a motor, to say it when the motor is stalled."""
+
+
+Result = TypeVar("Result")
+Waiting = Generator[int, None, Result]
+"""Something that takes time: it yields the times in microseconds until which to wait."""
+
+
+class Awaited(Generic[Result]):
+    """What a task awaits in place of a blocking call."""
+
+    def __init__(self, waiting: Waiting[Result]) -> None:
+        self._waiting = waiting
+
+    def __await__(self) -> Waiting[Result]:
+        return self._waiting
 
 
 @dataclass(slots=True)
@@ -32,7 +51,9 @@ class Brick:
     hint: Callable[[str], str]
     """Returns what is on the ports of a class of devices."""
     stalled: set[str] = field(default_factory=set)
-    """The ports of motors of which it was said that they are stalled."""
+    """Of what it was said that it is stalled."""
+    in_task: bool = False
+    """Whether the program runs a task of version 4, in which nothing blocks."""
 
     @property
     def now_us(self) -> int:
@@ -50,9 +71,8 @@ class Brick:
         self.session.command()
         return self.session.now // 1000
 
-    @waits_for(Wait.MOTOR)
-    def wait_until(self, done: Callable[[int], bool], end_us: Callable[[], int | None]) -> None:
-        """Block until a move is done.
+    def until_done(self, done: Callable[[int], bool], end_us: Callable[[], int | None]) -> Waiting[None]:
+        """Wait until a move is done.
 
         Args:
             done: Whether it is, at a time.
@@ -61,15 +81,39 @@ class Brick:
         begin = now = self.now_us
         while not done(now):
             until = max(end_us() or 0, now + 1)
-            until = begin - (begin - until) // POLL_US * POLL_US
-            self.session.wait_for_motor((until - now) * 1000)
+            if any(motor.blocked_ticks for motor in self.motors.values()):
+                until = min(until, now + BLOCKED_POLL_US)
+            yield begin - (begin - until) // POLL_US * POLL_US
             now = self.now_us
 
-    def say_stalled(self, port: str, call: str) -> None:
-        """Say once that a call waits for a motor that something blocks."""
-        if port not in self.stalled:
-            self.stalled.add(port)
-            self.say(f"the motor on {port} is stalled: {call} waits until it can go on, as on the brick")
+    def finish(self, waiting: Waiting[Result]) -> Result:
+        """Do what waits: block until it is over, or, in a task of version 4, return what a task awaits."""
+        awaited: Any = Awaited(waiting)
+        return awaited if self.in_task else self.block(waiting)
+
+    @waits_for(Wait.MOTOR)
+    def block(self, waiting: Waiting[Result]) -> Result:
+        """Block until what waits is over, and return its result."""
+        while True:
+            try:
+                until_us = waiting.send(None)
+            except StopIteration as end:
+                self.session.held_up = ""
+                result: Result = end.value
+                return result
+            self.session.wait_for_motor((until_us - self.now_us) * 1000)
+
+    def say_stalled(self, what: str, call: str) -> None:
+        """Say once that a call waits because something blocks a motor.
+
+        Args:
+            what: What is blocked, with its verb, such as `the wheels are`.
+        """
+        told = f"{what} stalled: {call} waits until the way is free, as on the brick"
+        self.session.held_up = told
+        if what not in self.stalled:
+            self.stalled.add(what)
+            self.say(told)
 
     def say(self, text: str) -> None:
         """Say something to the user, in the program's error output."""
@@ -81,9 +125,11 @@ class Connected:
 
     brick: ClassVar[Brick]
 
-    def __init_subclass__(cls, **named: Any) -> None:
-        super().__init_subclass__(**named)
-        cls.__module__ = cls.__module__.replace("tuisim.shim.", "", 1)
+    port: Port | None = None
+    """Where it is connected."""
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.port or ''})"
 
 
 def invalid_argument() -> ValueError:
@@ -124,6 +170,6 @@ def whole(value: Any) -> int:
     Raises:
         TypeError: it is no number.
     """
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    if not isinstance(value, int | float):
         raise TypeError(f"can't convert {type(value).__name__} to int")
     return int(value)

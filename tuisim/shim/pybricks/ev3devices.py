@@ -8,7 +8,7 @@ from tuisim.core.sensors import SENSORS, color
 from tuisim.shim.brick import SENSOR_CLASS
 from tuisim.shim.pybricks.brick import Connected, invalid_argument, no_device, whole
 from tuisim.shim.pybricks.parameters import Button, Color, Direction, Port
-from tuisim.shim.sensors import ColorDevice, LegoSensor
+from tuisim.shim.sensors import ColorDevice, GyroDevice
 
 CODES = (
     None, Color.BLACK, Color.BLUE, Color.GREEN, Color.YELLOW, Color.RED, Color.WHITE, Color.BROWN,
@@ -31,8 +31,8 @@ CHANNELS = range(1, 5)
 class Sensor(Connected):
     """A sensor on an input port."""
 
-    KIND: ClassVar[str]
-    """One of `core.sensors.SENSORS`."""
+    KIND: ClassVar[str] = ""
+    """One of `core.sensors.SENSORS`; empty for any of them."""
 
     def __init__(self, port: Port) -> None:
         if not isinstance(port, Port):
@@ -40,20 +40,22 @@ class Sensor(Connected):
         if not port.device_port.startswith("in"):
             raise ValueError("Invalid port")
         found = self.brick.sensors.get(port.device_port)
-        if found is None or found.driver_name != SENSORS[self.KIND].driver_name:
+        if found is None or (self.KIND and found.driver_name != SENSORS[self.KIND].driver_name):
             raise no_device(self.brick.hint(SENSOR_CLASS))
-        self._sensor: LegoSensor = found
+        self.port, self._sensor = port, found
 
     def _read(self, mode: str) -> tuple[int, ...]:
-        """Return a measurement in a mode. Another mode than before costs the time that the sensor needs for it."""
-        if self._sensor.mode != mode:
-            self._switch(mode)
-        return self._sensor.measure(mode)
+        """Return a measurement in a mode; the first one in another mode than before costs the time of the change."""
+        return self._sensor.measure(mode) if self._sensor.mode == mode else self._switched(mode)
 
-    def _switch(self, mode: str) -> None:
-        profile = self.brick.session.sim.spec.profile
+    def _switched(self, mode: str) -> tuple[int, ...]:
+        """Switch the mode, and return the first measurement in it."""
+        brick, profile = self.brick, self.brick.session.sim.spec.profile
         self._sensor.set_mode(mode)
-        self.brick.session.charge(profile.infrared_switch_ns if mode.startswith("IR") else profile.mode_switch_ns)
+        brick.session.charge(profile.infrared_switch_ns if mode.startswith("IR") else profile.mode_switch_ns)
+        if isinstance(self._sensor, GyroDevice):
+            brick.session.sim.reset_gyro()
+        return self._sensor.modes[mode].measure()
 
 
 class TouchSensor(Sensor):
@@ -100,8 +102,7 @@ class UltrasonicSensor(Sensor):
     def distance(self, silent: bool = False) -> int:
         """Return the distance to the next object in mm; `silent` switches the sensor off after the measurement."""
         if silent:
-            self._switch("US-SI-CM")
-            return self._sensor.measure("US-SI-CM")[0]
+            return self._switched("US-SI-CM")[0]
         return self._read("US-DIST-CM")[0]
 
     def presence(self) -> bool:
@@ -154,10 +155,10 @@ class GyroSensor(Sensor):
         self._zero = 0
         self._zero = self._angle()
 
-    def _switch(self, mode: str) -> None:
-        super()._switch(mode)
-        self.brick.session.sim.reset_gyro()
+    def _switched(self, mode: str) -> tuple[int, ...]:
+        super()._switched(mode)
         self._zero = 0
+        return self._sensor.modes[mode].measure()
 
     def _angle(self) -> int:
         return self._read("GYRO-ANG")[0] * self._sign

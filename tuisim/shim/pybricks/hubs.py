@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from enum import Enum
 
 from tuisim.shim.leds import MAX_BRIGHTNESS
 from tuisim.shim.pybricks.brick import Connected, refused
-from tuisim.shim.pybricks.parameters import Button, Color
+from tuisim.shim.pybricks.parameters import Button
 
 BUTTON_NAMES: Mapping[str, Button] = {
     "enter": Button.CENTER,
@@ -17,11 +18,11 @@ BUTTON_NAMES: Mapping[str, Button] = {
     "backspace": Button.LEFT_UP,
 }
 """By the name of the button in the session, in the order in which `pressed` lists them."""
-LIGHTS: Mapping[Color, tuple[int, int]] = {
-    Color.RED: (MAX_BRIGHTNESS, 0),
-    Color.ORANGE: (MAX_BRIGHTNESS, MAX_BRIGHTNESS),
-    Color.YELLOW: (30, MAX_BRIGHTNESS),
-    Color.GREEN: (0, MAX_BRIGHTNESS),
+LIGHTS: Mapping[str, tuple[int, int]] = {
+    "RED": (MAX_BRIGHTNESS, 0),
+    "ORANGE": (MAX_BRIGHTNESS, MAX_BRIGHTNESS),
+    "YELLOW": (30, MAX_BRIGHTNESS),
+    "GREEN": (0, MAX_BRIGHTNESS),
 }
 """Brightness of the red and the green LED for each colour; for others the light is off."""
 
@@ -39,11 +40,11 @@ class Buttons(Connected):
 class Light(Connected):
     """The light around the buttons."""
 
-    def on(self, color: Color | None, brightness: int = 100) -> None:
+    def on(self, color: Enum | None, brightness: int = 100) -> None:
         """Turn it on in a colour."""
         if brightness != 100:
             raise refused("the light of the EV3 has one brightness")
-        self._shine(*LIGHTS.get(color, (0, 0)) if color is not None else (0, 0))
+        self._shine(*LIGHTS.get(color.name, (0, 0)) if color is not None else (0, 0))
 
     def off(self) -> None:
         """Turn it off."""
@@ -69,7 +70,7 @@ class Battery(Connected):
         return round(1000 * self.brick.battery.current_a())
 
 
-class EV3Brick:
+class EV3Brick(Connected):
     """The brick."""
 
     buttons = Buttons()

@@ -7,8 +7,21 @@ import types
 from collections.abc import Mapping
 from typing import Any
 
-from tuisim.shim.pybricks import ev3devices, hubs, motor, parameters, robotics, tools
+from tuisim.core.profile import MotorLaw
+from tuisim.shim.pybricks import (
+    ev3devices,
+    experimental,
+    hubs,
+    iodevices,
+    messaging,
+    micropython,
+    motor,
+    parameters,
+    robotics,
+    tools,
+)
 from tuisim.shim.pybricks.brick import Brick, Connected
+from tuisim.shim.pybricks.unsimulated import IO_DEVICES, NXT_DEVICES, refused_classes
 
 
 def _public(module: types.ModuleType, *names: str) -> dict[str, Any]:
@@ -20,22 +33,46 @@ MODULES: Mapping[str, Mapping[str, Any]] = {
     "pybricks.hubs": _public(hubs, "EV3Brick"),
     "pybricks.ev3devices": _public(motor, "Motor")
     | _public(ev3devices, "TouchSensor", "ColorSensor", "InfraredSensor", "UltrasonicSensor", "GyroSensor"),
+    "pybricks.experimental": _public(experimental, "run_parallel"),
+    "pybricks.iodevices": _public(motor, "DCMotor")
+    | _public(iodevices, "Ev3devSensor")
+    | refused_classes("pybricks.iodevices", IO_DEVICES),
+    "pybricks.messaging": _public(messaging, *messaging.__all__),
+    "pybricks.nxtdevices": _public(motor, "Motor") | refused_classes("pybricks.nxtdevices", NXT_DEVICES),
     "pybricks.parameters": _public(parameters, "Port", "Stop", "Direction", "Button", "Color", "Align"),
     "pybricks.robotics": _public(robotics, "DriveBase"),
     "pybricks.tools": _public(tools, "wait", "StopWatch", "DataLog") | {"print": print},
 }
-"""Names of each module."""
+"""Names of each module of version 2.0."""
+
+
+def _version_4() -> Mapping[str, Mapping[str, Any]]:
+    """Return the names of each module of version 4."""
+    from tuisim.shim.pybricks import version_4
+
+    hub = type("EV3Brick", (hubs.EV3Brick,), {"buttons": version_4.Buttons()})
+    changed = {
+        "pybricks.hubs": {"EV3Brick": hub, "ThisHub": hub},
+        "pybricks.ev3devices": _public(version_4, "Motor", "ColorSensor"),
+        "pybricks.parameters": _public(version_4, "Stop", "Color"),
+        "pybricks.robotics": _public(version_4, "DriveBase"),
+        "pybricks.tools": _public(version_4, "run_task", "multitask"),
+    }
+    return {name: {**MODULES.get(name, {}), **changed.get(name, {})} for name in {**MODULES, **changed}}
 
 
 def install(brick: Brick) -> None:
-    """Let a program import the library."""
+    """Let a program import the library, and the modules of MicroPython."""
+    micropython.install(brick.session)
     Connected.brick = brick
-    made = {name: types.ModuleType(name) for name in MODULES}
+    law = brick.session.sim.spec.profile.motor_law
+    names = _version_4() if law == MotorLaw.PYBRICKS_4 else MODULES
+    made = {name: types.ModuleType(name) for name in names}
     for name, module in made.items():
-        vars(module).update(MODULES[name])
+        vars(module).update(names[name])
         parent, _, last = name.rpartition(".")
         if parent:
             setattr(made[parent], last, module)
-        if any(other.startswith(f"{name}.") for other in MODULES):
+        if any(other.startswith(f"{name}.") for other in names):
             module.__path__ = []
     sys.modules.update(made)

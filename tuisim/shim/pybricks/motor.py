@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import errno
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from enum import Enum
+from typing import Any, ClassVar
 
 from tuisim.core.servo.control import Controller, Ending
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.servo.settings import FULL_ACTUATION
 from tuisim.core.servo.trajectory import LONGEST_US, MILLI, MS_US
 from tuisim.shim.brick import MOTOR_CLASS
-from tuisim.shim.pybricks.brick import Connected, invalid_argument, no_device, not_permitted, whole
+from tuisim.shim.pybricks.brick import Connected, Waiting, invalid_argument, no_device, not_permitted, whole
 from tuisim.shim.pybricks.parameters import Direction, Port, Stop
+from tuisim.shim.pybricks.unsimulated import LOGGER
+from tuisim.shim.unsupported.modules import refused_part
 
 PERCENT = FULL_ACTUATION // 100
 
@@ -44,24 +47,35 @@ def _port(port: Any) -> str:
     return port.device_port
 
 
+def ending_of(known: Mapping[Any, Ending], then: Any) -> Ending:
+    """Return what a motor does after a move, by the library's name for it.
+
+    Raises:
+        TypeError: it is no such name.
+    """
+    if not isinstance(then, Enum) or then not in known:
+        raise TypeError(f"a Stop is needed, not {then!r}")
+    return known[then]
+
+
 class DCMotor(Connected):
     """A motor without control of its speed."""
 
     def __init__(self, port: Port, positive_direction: Direction = Direction.CLOCKWISE) -> None:
         self._set_up(port, positive_direction, 1.0)
 
-    def _set_up(self, port: Port, direction: Direction, ratio: float) -> None:
+    def _set_up(self, port: Port, direction: Direction, ratio: float, *, keeps_angle: bool = False) -> None:
         found = self.brick.motors.get(self._port_name(port))
         if found is None:
             raise no_device(self.brick.hint(MOTOR_CLASS))
         self._motor: ServoMotor = found
-        found.set_up(self.brick.now_us, direction.sign, ratio)
+        found.set_up(self.brick.now_us, direction.sign, ratio, keeps_angle=keeps_angle)
 
     def _port_name(self, port: Port) -> str:
         name = _port(port)
         if not name.startswith("out"):
             raise ValueError("Invalid port")
-        self._name = name
+        self._name, self.port = name, port
         return name
 
     @property
@@ -95,6 +109,10 @@ class DCMotor(Connected):
 
 class Motor(DCMotor):
     """A large or medium motor."""
+
+    ENDINGS: ClassVar[Mapping[Any, Ending]] = {stop: Ending(stop.value) for stop in Stop}
+    """What it does after a move, by the library's name for it."""
+    log = refused_part("Motor", "log", LOGGER)
 
     def __init__(self, port: Port, positive_direction: Direction = Direction.CLOCKWISE, gears: Any = None) -> None:
         self._set_up(port, positive_direction, gear_ratio(gears))
@@ -130,7 +148,7 @@ class Motor(DCMotor):
         """Run at a speed in degrees per second."""
         now_us, motor = self._command(), self._motor
         settings = motor.control.settings
-        motor.control.run(now_us, motor.measured(now_us), settings.counts(whole(speed)), settings.acceleration)
+        motor.control.run(now_us, motor.measured, settings.counts(whole(speed)), settings.acceleration)
         motor.follow()
 
     def track_target(self, target_angle: float) -> None:
@@ -148,35 +166,37 @@ class Motor(DCMotor):
         if not 0 <= time_us <= LONGEST_US:
             raise invalid_argument()
         rate = settings.counts(whole(speed))
-        motor.control.run(now_us, motor.measured(now_us), rate, settings.acceleration, time_us)
-        self._begin(then, wait, "run_time()")
+        motor.control.run(now_us, motor.measured, rate, settings.acceleration, time_us)
+        return self._begin(then, wait, "run_time()")
 
     def run_angle(self, speed: float, rotation_angle: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
         """Turn by an angle in degrees."""
         speed, angle = whole(speed), whole(rotation_angle)
-        self._move(speed, angle if speed >= 0 else -angle, then, wait, "run_angle()", relative=True)
+        return self._move(speed, angle if speed >= 0 else -angle, then, wait, "run_angle()", relative=True)
 
     def run_target(self, speed: float, target_angle: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
         """Turn to an angle in degrees."""
-        self._move(whole(speed), whole(target_angle), then, wait, "run_target()", relative=False)
+        return self._move(whole(speed), whole(target_angle), then, wait, "run_target()", relative=False)
 
     def _move(self, speed: int, angle: int, then: Stop, wait: bool, call: str, *, relative: bool) -> None:
         now_us, motor = self._command(), self._motor
         settings = motor.control.settings
         try:
             motor.control.move_to(
-                now_us, motor.measured(now_us), settings.counts(angle), settings.counts(speed), settings.acceleration,
+                now_us, motor.measured, settings.counts(angle), settings.counts(speed), settings.acceleration,
                 relative=relative,
             )  # fmt: skip
         except ValueError:
             raise invalid_argument() from None
-        self._begin(then, wait, call)
+        return self._begin(then, wait, call)
 
     def _begin(self, then: Stop, wait: bool, call: str) -> None:
         motor = self._motor
-        motor.follow(ending=Ending(then.value))
+        motor.follow(ending=ending_of(self.ENDINGS, then))
         if wait:
-            self.brick.wait_until(lambda now_us: self._done(now_us, call), lambda: motor.control.end_us)
+            done = self.brick.until_done(lambda now_us: self._done(now_us, call), lambda: motor.control.end_us)
+            return self.brick.finish(done)
+        return None
 
     def _done(self, now_us: int, call: str) -> bool:
         """Return whether the motor's move is over; say it once if it cannot end."""
@@ -184,7 +204,7 @@ class Motor(DCMotor):
         if motor.guide is None:
             return True
         if motor.control.stalled:
-            self.brick.say_stalled(self._name, call)
+            self.brick.say_stalled(f"the motor on {self._name} is", call)
         return self.move_done(now_us, motor.control)
 
     def move_done(self, now_us: int, control: Controller) -> bool:
@@ -197,12 +217,17 @@ class Motor(DCMotor):
         self.run(speed)
         motor = self._motor
         motor.control.duty_limit = limit
-        self.brick.wait_until(lambda _: motor.guide is None or motor.control.stalled, lambda: None)
+        motor.follow()
+        return self.brick.finish(self._until_stalled(then))
+
+    def _until_stalled(self, then: Stop) -> Waiting[int]:
+        motor = self._motor
+        yield from self.brick.until_done(lambda _: motor.guide is None or motor.control.stalled, lambda: None)
         angle = self.angle()
-        match then:
-            case Stop.HOLD:
+        match ending_of(self.ENDINGS, then):
+            case Ending.HOLD:
                 self.hold()
-            case Stop.BRAKE:
+            case Ending.BRAKE:
                 self.brake()
             case _:
                 self.stop()

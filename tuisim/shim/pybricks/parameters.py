@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from enum import Enum
+from typing import TypeVar
+
+Members = TypeVar("Members", bound=type[Enum])
 
 
-class _Named(Enum):
-    """Members are shown as the firmware shows them."""
+def shown_by_name(members: Members) -> Members:
+    """Let the members of an enumeration be shown as the firmware shows them."""
 
-    def __repr__(self) -> str:
+    def shown(self: Enum) -> str:
         return f"{type(self).__name__}.{self.name}"
 
-    __str__ = __repr__
+    members.__repr__ = members.__str__ = shown  # type: ignore[assignment, method-assign]
+    return members
 
 
-class Port(_Named):
+@shown_by_name
+class Port(Enum):
     """The ports of the brick."""
 
     A, B, C, D = map(ord, "ABCD")
@@ -26,13 +31,15 @@ class Port(_Named):
         return f"in{self.name[1]}" if self.name.startswith("S") else f"out{self.name}"
 
 
-class Stop(_Named):
+@shown_by_name
+class Stop(Enum):
     """What a motor does after a move."""
 
     COAST, BRAKE, HOLD = range(3)
 
 
-class Direction(_Named):
+@shown_by_name
+class Direction(Enum):
     """The direction that counts as positive."""
 
     CLOCKWISE, COUNTERCLOCKWISE = range(2)
@@ -43,20 +50,23 @@ class Direction(_Named):
         return 1 if self is Direction.CLOCKWISE else -1
 
 
-class Button(_Named):
+@shown_by_name
+class Button(Enum):
     """Buttons of the brick and of the infrared remote."""
 
     LEFT_DOWN, DOWN, RIGHT_DOWN, LEFT, CENTER, RIGHT, LEFT_UP, UP, RIGHT_UP = range(1, 10)
     BEACON = 8
 
 
-class Color(_Named):
+@shown_by_name
+class Color(Enum):
     """Colours of the sensor, the light and the screen."""
 
     BLACK, BLUE, GREEN, YELLOW, RED, WHITE, BROWN, ORANGE, PURPLE = range(1, 10)
 
 
-class Align(_Named):
+@shown_by_name
+class Align(Enum):
     """Where version 1.0 shows an image."""
 
     BOTTOM_LEFT, BOTTOM, BOTTOM_RIGHT, LEFT, CENTER, RIGHT, TOP_LEFT, TOP, TOP_RIGHT = range(1, 10)

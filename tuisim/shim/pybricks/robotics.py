@@ -5,19 +5,24 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from tuisim.core.servo import drive_base
-from tuisim.core.servo.control import Controller
+from tuisim.core.servo.control import Controller, Ending
 from tuisim.core.servo.trajectory import MILLI
 from tuisim.shim.pybricks.brick import Connected, invalid_argument, not_permitted, whole
 from tuisim.shim.pybricks.motor import Control, Motor
 from tuisim.shim.pybricks.parameters import Stop
 from tuisim.shim.pybricks.tools import wait
+from tuisim.shim.pybricks.unsimulated import LOGGER
+from tuisim.shim.unsupported.modules import refused_part
 
 
 class DriveBase(Connected):
     """A robot with two driven wheels."""
 
+    SETTINGS_WHILE_ACTIVE: ClassVar[bool] = False
+
     current: ClassVar[DriveBase | None] = None
     """The newest one: it stops the one before."""
+    log = refused_part("DriveBase", "log", LOGGER)
 
     def __init__(self, left_motor: Motor, right_motor: Motor, wheel_diameter: float, axle_track: float) -> None:
         for motor in (left_motor, right_motor):
@@ -42,26 +47,30 @@ class DriveBase(Connected):
 
     def straight(self, distance: float) -> None:
         """Drive a distance in mm, and hold."""
-        self._move(whole(distance), 0, "straight()")
+        return self._move(whole(distance), 0, "straight()")
 
     def turn(self, angle: float) -> None:
         """Turn by an angle in degrees, clockwise, and hold."""
-        self._move(0, whole(angle), "turn()")
+        return self._move(0, whole(angle), "turn()")
 
-    def _move(self, distance_mm: int, angle_deg: int, call: str) -> None:
+    def _move(
+        self, distance_mm: float, angle_deg: float, call: str, ending: Ending = Ending.HOLD, *, wait: bool = True
+    ) -> None:
         base = self._base
         now_us = self._command()
         try:
-            base.move(now_us, distance_mm, angle_deg)
+            base.move(now_us, distance_mm, angle_deg, ending)
         except ValueError:
             raise invalid_argument() from None
+        if not wait:
+            return None
 
         def done(now_us: int) -> bool:
             if base.stalled:
-                self.brick.say_stalled("the wheels", call)
+                self.brick.say_stalled("the wheels are", call)
             return not base.active or base.done(now_us)
 
-        self.brick.wait_until(done, lambda: base.end_us)
+        return self.brick.finish(self.brick.until_done(done, lambda: base.end_us))
 
     def drive(self, *args: float, **named: float) -> None:
         """Drive on at a speed in mm/s and a rate of turn in degrees per second; see `_drive`."""
@@ -141,7 +150,7 @@ class DriveBase(Connected):
         given: tuple[Any, ...] = (straight_speed, straight_acceleration, turn_rate, turn_acceleration)
         if all(one is None for one in given):
             return base.usual
-        if base.active:
+        if base.active and not self.SETTINGS_WHILE_ACTIVE:
             raise not_permitted()
         distance, heading = base.distance.settings, base.heading.settings
         limits = (

@@ -2,22 +2,33 @@
 
 from __future__ import annotations
 
+import re
 import time as clock
+from collections.abc import Iterable
 from typing import Any
 
 from tuisim.core.profile import MS
-from tuisim.shim.pybricks.brick import Connected, whole
+from tuisim.runs.records import Stream
+from tuisim.shim.pybricks.brick import Connected, Waiting, whole
 from tuisim.shim.waits import Wait, waits_for
 
 
 @waits_for(Wait.SLEEP)
 def wait(time: float) -> None:
     """Wait for a time in milliseconds."""
-    time_ms = whole(time)
+    brick, time_ms = Connected.brick, whole(time)
+    if brick.in_task:
+        return brick.finish(_until(brick.now_us + time_ms * 1000))
     if time_ms > 0:
-        Connected.brick.session.spend(time_ms * MS)
+        brick.session.spend(time_ms * MS)
     else:
-        Connected.brick.session.command()
+        brick.session.command()
+    return None
+
+
+def _until(end_us: int) -> Waiting[None]:
+    while Connected.brick.now_us < end_us:
+        yield end_us
 
 
 class StopWatch(Connected):
@@ -57,11 +68,19 @@ class DataLog(Connected):
         stamp = f"{clock.strftime('_%Y_%m_%d_%H_%M_%S')}_{now_us % 1_000_000:06}" if timestamp else ""
         self.file = open(f"{name}{stamp}.{extension}", "a+" if append else "w+")  # noqa: SIM115 - the program's
         self.file.seek(0, 2)
+        self._names = [re.sub(r"\W+", "_", str(header)).strip("_") for header in headers]
         if headers and not self.file.tell():
-            self.log(*headers)
+            self._write(headers)
 
     def log(self, *values: Any) -> None:
-        """Write one row."""
+        """Write one row. Its numbers are samples of the run, too, but for a time, which each sample has."""
+        self._write(values)
+        for at, value in enumerate(values):
+            name = self._names[at] if at < len(self._names) else f"value{at + 1}"
+            if isinstance(value, int | float) and name.isidentifier() and not name.lower().startswith("time"):
+                self.brick.session.show(f"{name}: {value}", Stream.DATA)
+
+    def _write(self, values: Iterable[Any]) -> None:
         print(*values, sep=", ", file=self.file)
         self.file.flush()
 

@@ -99,8 +99,7 @@ _ERRORS = ("Error", "Exception", "Timeout")
 """Ends of the names of exceptions, which a program names in its handlers."""
 
 
-def _refused(name: str) -> NotSimulated:
-    hardware = ON_THE_BRICK.get(top := name.partition(".")[0]) or ELSEWHERE[top]
+def _refused(name: str, hardware: Hardware) -> NotSimulated:
     return NotSimulated(f"{name}: {hardware.title} is not simulated", hardware.instead)
 
 
@@ -115,36 +114,51 @@ class _Part(type):
     """A name of a module: a class, so that it can be derived from; any use raises NotSimulated."""
 
     full_name: str
+    hardware: Hardware
 
     def _use(cls, *_: object, **__: object) -> NoReturn:
-        raise _refused(cls.full_name)
+        raise _refused(cls.full_name, cls.hardware)
 
     __call__ = __getitem__ = __iter__ = __len__ = __int__ = __index__ = __float__ = __enter__ = __exit__ = _use
     __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __lt__ = __le__ = __gt__ = __ge__ = _use
     __and__ = __rand__ = __or__ = __ror__ = __xor__ = __rxor__ = __lshift__ = __rlshift__ = __invert__ = _use
 
     def __getattr__(cls, name: str) -> Any:
-        return _part(cls, cls.full_name, name)
+        return _kept_part(cls, cls.full_name, name, cls.hardware)
 
     def __repr__(cls) -> str:
         return f"<{cls.full_name}, which is not simulated>"
 
 
-def _part(place: Any, path: str, name: str) -> Any:
-    """Return a name of a module or of a part of it, and keep it there."""
+def refused_part(path: str, name: str, hardware: Hardware) -> Any:
+    """Return a name of a module, or of a part of it, that can be imported but not used."""
+    words = {"full_name": f"{path}.{name}", "hardware": hardware, "__module__": path}
+    return type(name, (OSError,), words) if name.endswith(_ERRORS) else _Part(name, (), words)
+
+
+def _kept_part(place: Any, path: str, name: str, hardware: Hardware) -> Any:
+    """Return such a name, and keep it at its place."""
     if name.startswith("__"):
         raise AttributeError(f"{path} has no attribute {name!r}")
-    words = {"full_name": f"{path}.{name}", "__module__": path}
-    made: Any = type(name, (OSError,), words) if name.endswith(_ERRORS) else _Part(name, (), words)
+    made = refused_part(path, name, hardware)
     setattr(place, name, made)
     return made
 
 
 class HardwareModule(types.ModuleType):
-    """A module, or a module in it, that can be imported but not used."""
+    """A module, or a module in it, that can be imported but not used.
+
+    Args:
+        name: Its full name.
+        hardware: What it is for.
+    """
+
+    def __init__(self, name: str, hardware: Hardware) -> None:
+        super().__init__(name, f"{hardware.title}, which is not simulated.")
+        vars(self)["_hardware"] = hardware
 
     def __getattr__(self, name: str) -> Any:
-        return _part(self, self.__name__, name)
+        return _kept_part(self, self.__name__, name, vars(self)["_hardware"])
 
 
 class OtherLibrary:
@@ -182,7 +196,7 @@ class HardwareFinder:
         if top == fullname:
             known = top in ON_THE_BRICK or top in ELSEWHERE
         else:
-            known = isinstance(sys.modules.get(top), HardwareModule)
+            known = top in ON_THE_BRICK and isinstance(sys.modules.get(top), HardwareModule)
         loader: Any = self
         return ModuleSpec(fullname, loader, origin="not simulated", is_package=True) if known else None
 
@@ -193,8 +207,8 @@ class HardwareFinder:
             NotSimulated: it is for another computer.
         """
         if (top := spec.name.partition(".")[0]) in ELSEWHERE:
-            raise refused_as(ImportError, _refused(spec.name))
-        module = HardwareModule(spec.name, f"{ON_THE_BRICK[top].title}, which is not simulated.")
+            raise refused_as(ImportError, _refused(spec.name, ELSEWHERE[top]))
+        module = HardwareModule(spec.name, ON_THE_BRICK[top])
         if spec.name == top:
             vars(module)["__all__"] = list(ON_THE_BRICK[top].names)
         return module

@@ -1,0 +1,28 @@
+#!/usr/bin/env pybricks-micropython
+"""Log the grey bands, as printed samples and in a file greys.csv (Pybricks)."""
+# %sim_magic -b Grey_bands
+
+from pybricks.hubs import EV3Brick
+from pybricks.ev3devices import Motor, TouchSensor, ColorSensor, InfraredSensor, UltrasonicSensor, GyroSensor
+from pybricks.parameters import Port, Stop, Direction, Button, Color
+from pybricks.tools import wait, StopWatch, DataLog
+from pybricks.robotics import DriveBase
+
+left_motor = Motor(Port.B)
+right_motor = Motor(Port.C)
+robot = DriveBase(left_motor, right_motor, wheel_diameter=56, axle_track=180)
+eye = ColorSensor(Port.S2)
+
+watch = StopWatch()
+data = DataLog("time_ms", "light", name="greys", timestamp=False)
+
+# Each row of the file also is a printed line: a sample, which the chart draws.
+robot.drive(150, 0)
+light = eye.reflection()
+while light > 5:
+    data.log(watch.time(), light)
+    print("Colour: " + str(light))
+    wait(50)
+    light = eye.reflection()
+robot.stop()
+print("Colour: " + str(eye.reflection()))
