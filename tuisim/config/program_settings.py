@@ -18,7 +18,7 @@ from tuisim.config.program_file import ProgramSource
 from tuisim.config.program_robot.course import uses_course_names
 from tuisim.config.program_robot.source import Module, data_files, library_of, read_modules
 from tuisim.config.robots import RobotChoice
-from tuisim.core.profile import PROFILES, Library, MotorLaw, ProfileSpec
+from tuisim.core.profile import PROFILES, PYBRICKS_4, Library, MotorLaw, ProfileSpec
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import ProfileError
 from tuisim.source import Program
@@ -31,6 +31,8 @@ BRICK_PROFILE = "ev3"
 """The profile of programs that are for a real brick."""
 PROFILE_OF: Mapping[Library, str] = {Library.EV3DEV2: BRICK_PROFILE, Library.PYBRICKS: "lego-micropython"}
 """The profile with the rules of a real brick, by the library of the program."""
+OF_BRICKS = (*PROFILE_OF.values(), PYBRICKS_4.name)
+"""All profiles with the rules of a real brick."""
 SHEBANG = "#!/usr/bin/env pybricks-micropython"
 """The first line of a program for LEGO's MicroPython."""
 _NO_PRELUDE = "none"
@@ -206,7 +208,7 @@ def decide(source: ProgramSource, settings: Settings, free: Collection[str], *, 
             raise _misfit(source.program.name, facts.library, _profile(settings["profile"]))
         layer["profile"] = DEFAULT_PROFILE if for_course or facts.of_course else PROFILE_OF[facts.library]
     profile = layer.get("profile", settings["profile"])
-    by_rules = profile in PROFILE_OF.values() or profile in [PROFILES[name] for name in PROFILE_OF.values()]
+    by_rules = profile in OF_BRICKS or profile in [PROFILES[name] for name in OF_BRICKS]
     if by_rules and not source.has_magic and {*_PLACE} <= {*free}:
         layer |= dict(zip(_PLACE, (FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2), strict=True))
     needed = facts.robot.choice if facts.robot else None

@@ -33,13 +33,13 @@ class GuidePart(StrEnum):
 CONTENTS: Mapping[GuidePart, tuple[str, ...]] = {
     GuidePart.TUTORIAL: ("first-steps", "measuring-bands"),
     GuidePart.HOW_TO: (
-        "writing-programs", "real-programs", "lessons", "stepping", "going-back", "analysing-logs", "exporting-data",
-        "pictures-and-movies", "notebooks", "in-a-browser", "working-over-ssh", "own-mats", "marking", "experiments",
-        "when-it-goes-wrong",
+        "writing-programs", "real-programs", "pybricks", "lessons", "stepping", "going-back", "analysing-logs",
+        "exporting-data", "pictures-and-movies", "notebooks", "in-a-browser", "working-over-ssh", "own-mats", "marking",
+        "experiments", "when-it-goes-wrong",
     ),
     GuidePart.REFERENCE: (
         "keys", "commands", "options", "settings", "breakpoints", "profile-rules", "data-columns", "world-files",
-        "goal-files", "the-brick", "device-files", "library-differences",
+        "goal-files", "the-brick", "device-files", "library-differences", "ev3dev2-and-pybricks",
     ),
     GuidePart.EXPLANATION: ("virtual-time", "how-sensors-see", "motion-and-drift", "the-real-robot"),
     GuidePart.PROJECT: ("contributing", "architecture", "security", "licences"),

@@ -29,6 +29,8 @@ TABLES: Mapping[str, str] = {
     "samples": "guide.code_tables:samples",
     "telemetry": "guide.code_tables:telemetry",
     "formats": "guide.code_tables:formats",
+    "pybricks-motors": "guide.pybricks_tables:motors",
+    "pybricks-drive-bases": "guide.pybricks_tables:drive_bases",
 }
 """MODULE:FUNCTION by name, imported on use: some load the app."""
 

@@ -17,6 +17,17 @@ if TYPE_CHECKING:
     from tuisim.core.profile import MotorLaw
 
 
+def base_settings(
+    left: ControlSettings, right: ControlSettings, wheel_diameter_mm: float, axle_track_mm: float
+) -> tuple[ControlSettings, ControlSettings]:
+    """Return the settings of both controllers: of the distance in mm, and of the heading in degrees."""
+    per_deg = left.counts_per_unit
+    return (
+        pair_settings(left, right, 2 * per_deg * 360 / (pi * wheel_diameter_mm)),
+        pair_settings(left, right, 2 * per_deg * axle_track_mm / wheel_diameter_mm),
+    )
+
+
 def usual_settings(law: MotorLaw, distance: ControlSettings, heading: ControlSettings) -> tuple[int, int, int, int]:
     """Return speed, acceleration, rate of turn and its acceleration of a new drive base, in mm and degrees."""
     firmware = FIRMWARES[law]
@@ -53,10 +64,10 @@ class DriveBase:
     def __init__(self, left: ServoMotor, right: ServoMotor, wheel_diameter_mm: float, axle_track_mm: float) -> None:
         self.left, self.right, self.motors = left, right, (left, right)
         ours = left.control.settings, right.control.settings
-        per_deg = left.control.settings.counts_per_unit
-        self.distance = Controller(pair_settings(*ours, 2 * per_deg * 360 / (pi * wheel_diameter_mm)))
+        distance, heading = base_settings(*ours, wheel_diameter_mm, axle_track_mm)
+        self.distance = Controller(distance)
         """Controls the sum; its units are mm."""
-        self.heading = Controller(pair_settings(*ours, 2 * per_deg * axle_track_mm / wheel_diameter_mm))
+        self.heading = Controller(heading)
         """Controls the difference; its units are degrees."""
         self.usual = usual_settings(left.law, self.distance.settings, self.heading.settings)
         """How it moves, unless the program says something else; in mm and degrees."""

@@ -1,0 +1,44 @@
+"""Reference tables of Pybricks: how the firmware sets its motors and drive bases."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tuisim.core.profile import LEGO_MICROPYTHON, PYBRICKS_4
+from tuisim.core.servo.drive_base import base_settings, usual_settings
+from tuisim.core.servo.settings import MODELS, ControlSettings, motor_settings
+from tuisim.guide.tables import Table, code
+
+_PROFILES = (LEGO_MICROPYTHON, PYBRICKS_4)
+_WHEELS = ((55.5, 104), (56, 114), (56, 180), (43.2, 120), (68.8, 150))
+"""Diameter and track of usual robots in mm; the first is that of the official driving base."""
+_MOTOR_ROWS: tuple[tuple[str, Callable[[ControlSettings], str]], ...] = (
+    ("highest speed", lambda one: f"{one.units(one.speed)} deg/s"),
+    ("acceleration and deceleration", lambda one: f"{one.units(one.acceleration)} deg/s²"),
+    (
+        "a move is done within",
+        lambda one: f"{one.units(one.position_tolerance)} deg, below {one.units(one.speed_tolerance)} deg/s",
+    ),
+    ("stalled", lambda one: f"below {one.units(one.stall_speed)} deg/s for {one.stall_time_ms} ms"),
+)
+
+
+def motors() -> Table:
+    """Return the settings of a new motor of each kind, under each profile of Pybricks."""
+    kinds = [(profile, kind) for profile in _PROFILES for kind in MODELS]
+    settings = [motor_settings(profile.motor_law, kind) for profile, kind in kinds]
+    columns = ("of a motor", *(f"{kind}, {code(profile.name)}" for profile, kind in kinds))
+    return Table(columns, [(name, *map(cell, settings)) for name, cell in _MOTOR_ROWS])
+
+
+def drive_bases() -> Table:
+    """Return how a new drive base of usual sizes moves, under each profile of Pybricks."""
+    columns = ("`wheel_diameter`, `axle_track`", *(f"`settings()`, {code(profile.name)}" for profile in _PROFILES))
+    rows = []
+    for diameter_mm, track_mm in _WHEELS:
+        usual = []
+        for profile in _PROFILES:
+            motor = motor_settings(profile.motor_law, "large")
+            usual.append(str(usual_settings(profile.motor_law, *base_settings(motor, motor, diameter_mm, track_mm))))
+        rows.append((f"{diameter_mm:g} mm, {track_mm:g} mm", *usual))
+    return Table(columns, rows)
