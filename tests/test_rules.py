@@ -50,7 +50,6 @@ TESTED_BESIDE = {
     "goals/evidence.py": "goals/test_judge_conditions.py",
     "goals/output.py": "goals/test_judge_conditions.py",
     "goals/places.py": "goals/test_judge_conditions.py",
-    "goals/readings.py": "goals/test_judge_conditions.py",
     "goals/spec.py": "goals/test_files.py",
     "lessons/spec.py": "lessons/test_files.py",
     "runtime/debugger/conditions.py": "runtime/debugger/test_debugger.py",

@@ -9,6 +9,7 @@ from textual.widgets import OptionList
 
 from tests.app.app_help import lab, notices, ready, screen_text, until
 from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.setup import next_run as plans
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.program_file import read_program
@@ -49,6 +50,13 @@ async def test_it_is_told_and_the_dialog_lists_its_ports(claw: Path) -> None:
         assert entries.highlighted_option.id == "*program"
 
 
+async def test_what_the_brick_would_refuse_is_told(claw: Path) -> None:
+    claw.write_text("from pybricks.tools import wait\nprint(f'{1}')\n")
+    async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: any("claw.py:2: the brick's Python would refuse" in one for one in notices(app)))
+
+
 async def test_another_robot_is_chosen_and_the_program_s_again(claw: Path) -> None:
     async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
@@ -77,3 +85,50 @@ async def test_opening_a_program_gives_it_its_robot(claw: Path) -> None:
         app.loader.open_file(str(claw))
         assert extra_ports(app) == ["outA"]
         assert app.run_controller.next_run.spec.profile.name == "ev3"
+
+
+DRIVES = """\
+from pybricks.ev3devices import Motor
+from pybricks.parameters import Direction, Port
+from pybricks.robotics import DriveBase
+left, right = Motor(Port.B, Direction.COUNTERCLOCKWISE), Motor(Port.C, Direction.COUNTERCLOCKWISE)
+DriveBase(left, right, 55.5, 104).straight(100)
+"""
+
+
+def stored_profile(app: LabApp) -> str:
+    """The profile of the newest run; empty without one."""
+    run = app.run_controller.run
+    return run.stored().spec.profile.name if run else ""
+
+
+async def test_programs_of_both_libraries_run_one_after_another(claw: Path) -> None:
+    (claw.parent / "drives.py").write_text(DRIVES)
+    settings, decided = Settings(), Decided(free=frozenset(PROGRAM_PATHS))
+    start = AppSettings(spec=build_run_spec(settings), settings=settings, decided=decided)
+    async with LabApp(start).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        for name, profile in (("drives", "lego-micropython"), ("claw", "ev3"), ("drives", "lego-micropython")):
+            app.loader.open_file(str(claw.parent / f"{name}.py"))
+            await until(pilot, lambda: app.loader.mat_is_ready)
+            await pilot.press("R")
+            await until(pilot, lambda profile=profile: stored_profile(app) == profile)  # type: ignore[misc]
+            await until(pilot, lambda: not app.run_controller.in_run)
+            run = app.run_controller.run
+            assert run is not None
+            assert str(run.stored().state) == "finished"
+
+
+async def test_a_chosen_profile_that_does_not_fit_the_program_is_told_when_it_is_to_run(claw: Path) -> None:
+    async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        app.loader.attempt(lambda plan: plans.with_profile(plan, "pybricks4"))
+        await until(pilot, lambda: app.loader.mat_is_ready)
+        await pilot.press("R")
+        misfit = "claw.py uses ev3dev2, and the profile pybricks4 is for pybricks"
+        await until(pilot, lambda: any(misfit in notice for notice in notices(app)))
+        assert app.run_controller.run is None
+        app.loader.attempt(lambda plan: plans.with_profile(plan, "ev3"))
+        await until(pilot, lambda: app.loader.mat_is_ready)
+        await pilot.press("R")
+        await until(pilot, lambda: stored_profile(app) == "ev3")

@@ -20,6 +20,9 @@ DRAWS = "from ev3dev2.display import Display\nDisplay().update()\n"
         ("    import ev3dev2.button as b\n", True),
         ("# from ev3dev2.button import Button\nprint('button')\n", False),
         ("from ev3dev2.motor import MoveTank\nbutton = 3\n", False),
+        ("if Button.LEFT in ev3.buttons.pressed():\n    pass\n", True),
+        ("while not any(brick.buttons()):\n    pass\n", True),
+        ("from pybricks.parameters import Button\n# ev3.buttons.pressed()\n", False),
     ],
 )
 def test_a_program_that_looks_at_the_buttons(text: str, expected: bool) -> None:

@@ -40,6 +40,26 @@ CALLS = {
         [5],
     ),
     "object made and used": ("MoveTank(OUTPUT_B, OUTPUT_C).on(1, 1)\n", "tank_drive.on", [1]),
+    "a class of Pybricks": (
+        "from pybricks.robotics import DriveBase\nrobot = DriveBase(l, r, 56, 114)\nrobot.straight(100)\n",
+        "DriveBase.straight",
+        [3],
+    ),
+    "a class of Pybricks, by its module": (
+        "from pybricks.robotics import DriveBase as Base\nrobot = Base(l, r, 56, 114)\nrobot.straight(100)\n",
+        "pybricks.robotics.DriveBase.straight",
+        [3],
+    ),
+    "a part of Pybricks' brick": (
+        "from pybricks.hubs import EV3Brick\nev3 = EV3Brick()\nev3.speaker.beep()\nwait(1)\n",
+        "EV3Brick.speaker.beep",
+        [3],
+    ),
+    "a class of that name of its own": (
+        "from mine import DriveBase\nDriveBase().straight(100)\n",
+        "pybricks.robotics.DriveBase.straight",
+        [],
+    ),
     "method alone": ("tank_drive.on_for_rotations(1, 1, 1)\n", "on_for_rotations", [1]),
     "function alone": ("print(input())\n", "input()", [1]),
     "function alone under another name": ("from time import sleep as nap\nnap(1)\n", "sleep", [2]),

@@ -66,6 +66,24 @@ def test_lines_that_read() -> None:
     assert Provenance(text, Reading.GYRO).lines() == {2}
 
 
+PAUSES = {
+    "robot.turn(90 - gyro.angle())": True,
+    "arm.run_target(100, gyro.angle())": True,
+    "motor.run(gyro.speed())": False,
+    "robot.drive(100, -2 * gyro.angle())": False,
+}
+
+
+@pytest.mark.parametrize(("text", "pauses"), PAUSES.items(), ids=PAUSES)
+def test_a_move_of_pybricks_that_blocks_also_lets_time_pass(text: str, pauses: bool) -> None:
+    assert Provenance(text, Reading.GYRO).pausing_lines() == ({1} if pauses else set())
+
+
+@pytest.mark.parametrize("text", ["print(robot.state()[0])", "print(arm.run_until_stalled(-100))"])
+def test_what_pybricks_tells_of_its_motors_is_a_reading(text: str) -> None:
+    assert Provenance(text, Reading.MOTOR).gives(1)
+
+
 def test_text_that_is_no_python() -> None:
     assert provenance_of("print(", Reading.COLOR) is None
 

@@ -199,9 +199,11 @@ class Loader:
         self.tell(decided)
 
     def tell(self, decided: Decided) -> None:
-        """Tell what the source of a program has decided, if anything."""
+        """Tell what the source of a program has decided, and what of it the brick would refuse, if anything."""
         if decided.said:
             self._app.say(f"{decided.said}. {{robot}} and {{profile}} choose others")
+        if decided.refusal:
+            self._app.say(decided.refusal)
 
     def _note_program(self, program: Program | None, said: Mapping[str, Any]) -> None:
         self._magic_settings, self._file_prelude = said, program.prelude if program else ""

@@ -30,7 +30,8 @@ _LESSON_COLUMNS = 74
 """Columns that are enough while the text of a lesson is beside the code."""
 
 
-_BUTTONS = re.compile(r"^[^#\n]*\bev3dev2(\.|\s+import\s.*\b)button\b", re.MULTILINE)
+_BUTTONS = re.compile(r"^[^#\n]*(\bev3dev2(\.|\s+import\s.*\b)button\b|\.buttons(\.pressed)?\()", re.MULTILINE)
+"""An import of ev3dev2's buttons, or a look at those of Pybricks' brick."""
 
 
 def looks_at_buttons(program: str) -> bool:

@@ -11,6 +11,7 @@ from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.timeline import Timeline
+from tuisim.config.program_settings import require_library
 from tuisim.core.end_stops import flags_at_start
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
@@ -260,11 +261,13 @@ class RunController:
             paused: Pause at the first line.
 
         Raises:
-            TuisimError: the run cannot be started.
+            TuisimError: the run cannot be started, or the chosen profile is not for the program's library.
         """
         if self.program is None or self.in_run:
             return
         program = replace(self.program, arguments=self.next_run.settings["arguments"])
+        if "profile" not in self.next_run.free:
+            require_library(program, self.next_run.spec.profile)
         options = replace(self._options, breaks=breaks, hold_at=FIRST_LINE if paused else None)
         run = start_run(program, self.next_run.spec, options)
         self.close()

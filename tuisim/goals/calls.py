@@ -16,7 +16,7 @@ from tuisim.goals.found import Occurrence
 from tuisim.goals.provenance import provenance_of
 from tuisim.goals.readings import NOUNS
 from tuisim.goals.spec import AvoidCondition, UseCondition
-from tuisim.source import PRELUDE_TEXTS
+from tuisim.source import PRELUDE_TEXTS, PYBRICKS
 
 _MAX_MEANING = 200
 """Longer meanings of names, in characters, are not followed."""
@@ -125,6 +125,10 @@ def lines_of_calls(text: str, prelude: str, wanted: str) -> list[int]:
     # `MoveTank.on` is also a method of an object of the class.
     owner, _, method = f"{meant}.{rest}".rpartition(".")
     whole |= {f"{owner}().{method}"}
+    # `DriveBase.straight` is one of the class that the program imports from Pybricks.
+    own = names.meanings.get(head, "")
+    if own.partition(".")[0] == PYBRICKS:
+        whole |= {f"{own}.{rest}", f"{own}().{rest}"}
     calls = _calls(tree, names)
     return sorted({line for meaning, said, line in calls if names.may_be(meaning, whole) or said == wanted})
 

@@ -21,7 +21,7 @@ _NAMES: Mapping[Reading, str] = {
     Reading.ULTRASONIC: "distance_centimeters distance_centimeters_continuous distance_centimeters_ping distance "
     f"distance_inches distance_inches_continuous distance_inches_ping {_ANY_SENSOR}",
     Reading.GYRO: f"angle rate angle_and_rate circle_angle speed {_ANY_SENSOR}",
-    Reading.MOTOR: "position rotations degrees speed angle distance",
+    Reading.MOTOR: "position rotations degrees speed angle distance state run_until_stalled",
 }
 READING_NAMES: Mapping[Reading, frozenset[str]] = {kind: frozenset(names.split()) for kind, names in _NAMES.items()}
 """The attributes and methods that give a reading, whatever the object is called."""
@@ -29,11 +29,11 @@ READING_NAMES: Mapping[Reading, frozenset[str]] = {kind: frozenset(names.split()
 _PRINTS = frozenset({"print", "say", "write"})
 _KEEPS = frozenset({"append", "appendleft", "extend", "insert", "add", "update", "put", "setdefault"})
 """Methods that put their arguments into the object."""
-_PAUSING = (
-    "sleep", "wait", "on_for", "run_to", "run_time", "run_angle", "run_target", "run_until", "straight", "turn",
-    "drive_time", "play", "speak", "say", "beep",
-)  # fmt: skip
-"""How the names of calls begin that let time pass."""
+_PAUSES = (
+    *("sleep", "wait", "on_for", "run_to", "run_time", "run_angle", "run_target", "drive_time"),
+    *("play", "speak", "beep"),
+)
+"""How the names begin of functions and methods that let time pass."""
 _LEAVES = (ast.Break, ast.Continue, ast.Return, ast.Raise, ast.While)
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -239,7 +239,9 @@ def _says(node: ast.AST, name: str) -> bool:
 
 def _pauses(call: ast.Call) -> bool:
     """Return whether a call lets time pass besides readings, by its name."""
-    return _called(call).startswith(_PAUSING)
+    if isinstance(call.func, ast.Attribute) and call.func.attr in ("straight", "turn", "say"):
+        return True
+    return _called(call).startswith(_PAUSES)
 
 
 def _called(call: ast.Call) -> str:

@@ -17,6 +17,7 @@ CLAW = "from ev3dev2.motor import MediumMotor\nMediumMotor('outA').on(5)\n"
 LIFT = CLAW.replace("outA", "outD")
 USUAL = "from ev3dev2.motor import LargeMotor\nLargeMotor('outB').on(5)\n"
 COURSE = "tank_drive.on(5, 5)\n"
+PYBRICKS = "from pybricks.ev3devices import Motor\nfrom pybricks.parameters import Port\nMotor(Port.A).run(100)\n"
 MAGIC = f"# %%sim_magic\n{CLAW}"
 MIDDLE, MAT = Pose(1181.0, 571.5, 0.0), Pose(157.0, 800.0, 0.0)
 
@@ -60,6 +61,16 @@ WAYS: Mapping[str, tuple[list[Step], tuple[list[str], str, str]]] = {
     "a mat chosen after": ([CLAW, mat("Loop"), LIFT], (["outD"], "Robot of p.py", "ev3")),
     "an edited robot": ([CLAW, lambda plan: plans.with_robot_edited(plan, plan.robot.spec), LIFT],
                         (["outD"], "Robot of p.py", "ev3")),
+    "one of the other library": ([CLAW, PYBRICKS], (["outA"], "Robot of p.py", "lego-micropython")),
+    "and back": ([PYBRICKS, LIFT], (["outD"], "Robot of p.py", "ev3")),
+    "and one of the course": ([PYBRICKS, COURSE], ([], "Default_Robot", "robolab")),
+    "a fitting profile chosen": ([PYBRICKS, lambda plan: plans.with_profile(plan, "pybricks4"), PYBRICKS],
+                                 (["outA"], "Robot of p.py", "pybricks4")),
+    "a profile chosen that does not fit the next one": (
+        [CLAW, lambda plan: plans.with_profile(plan, "robolab"), PYBRICKS],
+        (["outA"], "Robot of p.py", "lego-micropython"),
+    ),
+    "the other library on a mat": ([mat("Loop"), PYBRICKS], (["outA"], "Robot of p.py", "lego-micropython")),
 }  # fmt: skip
 
 

@@ -6,16 +6,35 @@ from pathlib import Path
 
 import pytest
 
+from tests.conftest import Command
 from tests.shim.conftest import RunOn
-from tuisim.shim.pybricks.micropython import OF_PYTHON, TICKS_PERIOD, WITHOUT_USE, ticks_add, ticks_diff
+from tuisim.shim.pybricks.micropython import BUILT_IN, OF_PYTHON, TICKS_PERIOD, ticks_add, ticks_diff
 
 PROFILE = "lego-micropython"
 
 
 def test_every_module_can_be_imported(run_on: RunOn) -> None:
-    names = [*OF_PYTHON, *OF_PYTHON.values(), *WITHOUT_USE, "micropython", "_thread", "threading", "math", "gc"]
+    names = [
+        *OF_PYTHON,
+        *OF_PYTHON.values(),
+        *BUILT_IN,
+        "micropython",
+        "_thread",
+        "threading",
+        "math",
+        "gc",
+        "umqtt.simple",
+    ]
     done = run_on(f"import {', '.join(names)}\nfrom utime import *\nprint(utime.sleep is sleep)", profile=PROFILE)
     assert done.lines == ["True"], done.errors
+
+
+def test_a_file_of_the_program_is_no_built_in_module(here: Command, tmp_path: Path) -> None:
+    for name in ("utime", "umqtt"):
+        (tmp_path / f"{name}.py").write_text("own = True\n")
+    text = "import pybricks, utime, umqtt\nprint(hasattr(utime, 'own'), hasattr(umqtt, 'own'))"
+    (tmp_path / "main.py").write_text(text)
+    assert here("run", "main.py").stdout == "False True\n"
 
 
 def test_they_are_not_there_for_another_library(run_on: RunOn) -> None:

@@ -123,8 +123,14 @@ def _motors(session: Session) -> list[tuple[str, Motor]]:
 
 def _motor_note(session: Session, outer: list[types.FrameType], until: str) -> str:
     every = _motors(session)
-    waited = {path for frame in outer for path in _paths(frame.f_locals.get("self"))}
-    named = [found for at, found in enumerate(every) if any(path.endswith(f"/motor{at}") for path in waited)]
+    owners = [frame.f_locals.get("self") for frame in outer]
+    waited = {path for owner in owners for path in _paths(owner)}
+    of_pybricks = [getattr(owner, "simulated", None) for owner in owners]
+    named = [
+        found
+        for at, found in enumerate(every)
+        if any(path.endswith(f"/motor{at}") for path in waited) or any(found[1] is motor for motor in of_pybricks)
+    ]
     moving = [found for found in named or every if found[1].mode]
     if not moving:
         return f"waits for a motor{until}"

@@ -19,7 +19,10 @@ def run_parallel(*functions: Callable[[], Any]) -> tuple[Any, ...]:
     def run(at: int) -> None:
         results[at] = functions[at]()
 
-    threads = [threading.Thread(target=run, args=(at,)) for at in range(len(functions))]
+    threads = [
+        threading.Thread(target=run, name=getattr(function, "__name__", None), args=(at,))
+        for at, function in enumerate(functions)
+    ]
     for thread in threads:
         thread.start()
     for thread in threads:

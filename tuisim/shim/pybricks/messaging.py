@@ -8,7 +8,11 @@ from typing import Any, ClassVar, Self
 
 from tuisim.errors import NotSimulated
 from tuisim.shim.pybricks.brick import Connected
-from tuisim.shim.waits import Wait, waits_for
+
+__all__ = [
+    "BluetoothMailboxClient", "BluetoothMailboxServer", "LogicMailbox", "Mailbox", "MailboxHandlerMixIn",
+    "NumericMailbox", "TextMailbox",
+]  # fmt: skip
 
 _ALONE = "there is one brick; a server and a client in the threads of one program can talk"
 
@@ -138,7 +142,6 @@ class MailboxHandlerMixIn(Connected):
         """Block until bytes arrive in a mailbox."""
         self._wait(mbox)
 
-    @waits_for(Wait.LOCK)
     def _wait(self, event: str) -> None:
         # Not earlier: its functions are patched first.
         import _thread

@@ -32,9 +32,10 @@ OF_PYTHON: Mapping[str, str] = {
 
 _MACHINE = Hardware("the processor of the brick", "use the modules of pybricks")
 _MEMORY = Hardware("the memory of MicroPython", "leave it out: a program has more memory here")
+_NETWORK = Hardware("a network", "leave it out: a program has no network")
 _C_CODE = Hardware("code in C, and its data in memory", "use the modules of pybricks, and struct for bytes")
 
-WITHOUT_USE: Mapping[str, Hardware] = {
+BUILT_IN: Mapping[str, Hardware] = {
     "btree": Hardware("the database btree", "use a file: open()"),
     "ffi": _C_CODE,
     "framebuf": Hardware("framebuf", "draw on EV3Brick().screen"),
@@ -42,30 +43,42 @@ WITHOUT_USE: Mapping[str, Hardware] = {
     "ucryptolib": Hardware("ucryptolib", "leave it out"),
     "uctypes": _C_CODE,
     "umachine": _MACHINE,
-    "uwebsocket": Hardware("a network", "leave it out: a program has no network"),
+    "utimeq": Hardware("utimeq", "use a list, and sort()"),
+    "uwebsocket": _NETWORK,
 }
-"""Modules that can be imported but not used, by name."""
+"""Built-in modules that can be imported but not used, by name."""
+INSTALLED: Mapping[str, Hardware] = {"umqtt": _NETWORK, "urequests": _NETWORK}
+"""Likewise, modules in files of the brick: a file of the program comes first."""
 
 
 class MicroPythonFinder:
-    """Finds MicroPython's modules; the first finder: they are built in, and files of their names are not seen."""
+    """Finds MicroPython's modules.
+
+    Args:
+        of_python: As `OF_PYTHON`.
+        refused: As `BUILT_IN`.
+    """
+
+    def __init__(self, of_python: Mapping[str, str], refused: Mapping[str, Hardware]) -> None:
+        self._of_python, self._refused = of_python, refused
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None = None, target: types.ModuleType | None = None
     ) -> ModuleSpec | None:
         """Return how to load a module; None for others."""
         loader: Any = self
-        known = fullname in OF_PYTHON or fullname in WITHOUT_USE
-        return ModuleSpec(fullname, loader, origin="MicroPython") if known else None
+        is_refused = fullname.partition(".")[0] in self._refused
+        known = fullname in self._of_python or is_refused
+        return ModuleSpec(fullname, loader, origin="MicroPython", is_package=is_refused) if known else None
 
     def create_module(self, spec: ModuleSpec) -> types.ModuleType:
         """Return the module, still empty."""
-        hardware = WITHOUT_USE.get(spec.name)
+        hardware = self._refused.get(spec.name.partition(".")[0])
         return types.ModuleType(spec.name) if hardware is None else HardwareModule(spec.name, hardware)
 
     def exec_module(self, module: types.ModuleType) -> None:
         """Fill the module with the names of Python's own one."""
-        if (source := OF_PYTHON.get(module.__name__)) is not None:
+        if (source := self._of_python.get(module.__name__)) is not None:
             names = vars(import_module(source))
             vars(module).update({name: value for name, value in names.items() if not name.startswith("__")})
             if source == "asyncio":
@@ -78,7 +91,9 @@ def install(session: DeviceSession) -> None:
         vars(import_module(name)).update(more)
     module = sys.modules["micropython"] = HardwareModule("micropython", _MEMORY)
     vars(module).update(LANGUAGE)
-    sys.meta_path.insert(0, MicroPythonFinder())
+    # What is built in comes before files of the same name.
+    sys.meta_path.insert(0, MicroPythonFinder(OF_PYTHON, BUILT_IN))
+    sys.meta_path.append(MicroPythonFinder({}, INSTALLED))
 
 
 def clock_names(session: DeviceSession) -> dict[str, Callable[..., Any]]:
@@ -102,15 +117,16 @@ def clock_names(session: DeviceSession) -> dict[str, Callable[..., Any]]:
 
         return sleep
 
+    ticks_us = counter(US)
     return {
-        "clock": lambda: counter(US)() / 1e6,
+        "clock": lambda: ticks_us() / 1e6,
         "sleep_ms": sleeper(MS),
         "sleep_us": sleeper(US),
         "ticks_add": ticks_add,
-        "ticks_cpu": counter(US),
+        "ticks_cpu": ticks_us,
         "ticks_diff": ticks_diff,
         "ticks_ms": counter(MS),
-        "ticks_us": counter(US),
+        "ticks_us": ticks_us,
     }
 
 

@@ -37,16 +37,7 @@ MODULES: Mapping[str, Mapping[str, Any]] = {
     "pybricks.iodevices": _public(motor, "DCMotor")
     | _public(iodevices, "Ev3devSensor")
     | refused_classes("pybricks.iodevices", IO_DEVICES),
-    "pybricks.messaging": _public(
-        messaging,
-        "Mailbox",
-        "LogicMailbox",
-        "NumericMailbox",
-        "TextMailbox",
-        "MailboxHandlerMixIn",
-        "BluetoothMailboxServer",
-        "BluetoothMailboxClient",
-    ),
+    "pybricks.messaging": _public(messaging, *messaging.__all__),
     "pybricks.nxtdevices": _public(motor, "Motor") | refused_classes("pybricks.nxtdevices", NXT_DEVICES),
     "pybricks.parameters": _public(parameters, "Port", "Stop", "Direction", "Button", "Color", "Align"),
     "pybricks.robotics": _public(robotics, "DriveBase"),

@@ -196,7 +196,7 @@ class HardwareFinder:
         if top == fullname:
             known = top in ON_THE_BRICK or top in ELSEWHERE
         else:
-            known = isinstance(sys.modules.get(top), HardwareModule)
+            known = top in ON_THE_BRICK and isinstance(sys.modules.get(top), HardwareModule)
         loader: Any = self
         return ModuleSpec(fullname, loader, origin="not simulated", is_package=True) if known else None
 
