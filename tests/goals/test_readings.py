@@ -1,0 +1,47 @@
+"""The readings that a program took, as its recording shows them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tests.conftest import Command
+
+# Five readings and one that changes the mode, 100 ms apart.
+PROGRAM = """\
+from pybricks.ev3devices import ColorSensor
+from pybricks.parameters import Port
+from pybricks.tools import wait
+eye = ColorSensor(Port.S2)
+eye.reflection()
+for _ in range(5):
+    light = eye.reflection()
+    print("Light: " + str(light))
+    wait(90)
+"""
+GOALS = """\
+title = "Light"
+program = "reads.py"
+background = "Grey_bands"
+start = { x_mm = 325, y_mm = 500, heading_deg = 0 }
+[[goal]]
+name = "log"
+log = { name = "Light", levels = [86.3], within = 0.5, reading = "color", as_read = true }
+[[goal]]
+name = "print"
+print = { lines = ["Light", "Light"], reading = "color" }
+[[goal]]
+name = "read"
+read = { reading = "color", times = 5 }
+[[goal]]
+name = "read_more"
+read = { reading = "color", times = 9 }
+"""
+
+
+def test_each_reading_of_a_pybricks_program_counts(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "reads.py").write_text(PROGRAM)
+    (tmp_path / "goals.toml").write_text(GOALS)
+    assert here("run", "goals.toml").returncode == 0
+    lines = here("goals", "check", "goals.toml").stdout.splitlines()
+    marks = [line.split()[:2] for line in lines if line.lstrip()[:1] in "✓✗" and line.strip()]
+    assert marks == [["✓", "log"], ["✓", "print"], ["✓", "read"], ["✗", "read_more"]], lines
