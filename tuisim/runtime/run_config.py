@@ -13,6 +13,7 @@ from tuisim.config.folders import programs_folder
 from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.spec import RunSpec
 from tuisim.core.tree import from_plain
+from tuisim.errors import ConfigError
 from tuisim.runs.run_options import RunOptions
 from tuisim.runtime import wallclock
 from tuisim.source import Program
@@ -37,15 +38,15 @@ class RunConfig:
 
     @property
     def starts_in_own_folder(self) -> bool:
-        """Whether the program starts in its own folder. What an example writes is for the user.
-
-        Raises:
-            ConfigError: the folder of the examples does not exist.
-        """
+        """Whether the program starts in its own folder. What an example writes is for the user."""
         program = self.program
         if not self.spec.profile.starts_in_own_folder or not (program.path or program.module_folder):
             return False
-        return Path(self.own_folder) != programs_folder()
+        try:
+            return Path(self.own_folder) != programs_folder()
+        except ConfigError:
+            # An isolated process does not see the examples.
+            return True
 
     @property
     def debugged(self) -> bool:
