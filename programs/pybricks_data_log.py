@@ -1,5 +1,5 @@
 #!/usr/bin/env pybricks-micropython
-"""Log the grey bands, as printed samples and in a file greys.csv (Pybricks)."""
+"""Log the grey bands: print the light, and write it into a file (Pybricks)."""
 # %sim_magic -b Grey_bands
 
 from pybricks.hubs import EV3Brick
@@ -14,13 +14,13 @@ robot = DriveBase(left_motor, right_motor, wheel_diameter=56, axle_track=180)
 eye = ColorSensor(Port.S2)
 
 watch = StopWatch()
-data = DataLog("time_ms", "light", name="greys", timestamp=False)
+data = DataLog("time_ms", "light", "way_mm", name="greys", timestamp=False)
 
-# Each row of the file also is a printed line: a sample, which the chart draws.
+# What is printed as NAME: NUMBER and what is written into the file are samples: the chart draws them.
 robot.drive(150, 0)
 light = eye.reflection()
 while light > 5:
-    data.log(watch.time(), light)
+    data.log(watch.time(), light, robot.distance())
     print("Colour: " + str(light))
     wait(50)
     light = eye.reflection()

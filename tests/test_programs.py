@@ -162,7 +162,7 @@ def test_pybricks_missions_end_where_they_began(here: Command) -> None:
 def test_pybricks_data_log_has_a_row_for_each_sample_but_the_last(tmp_path: Path, here: Command) -> None:
     printed = here("run", "pybricks_data_log").stdout.splitlines()
     header, *rows = (tmp_path / "greys.csv").read_text().splitlines()
-    assert header == "time_ms, light"
+    assert header == "time_ms, light, way_mm"
     assert [f"Colour: {row.split(', ')[1]}" for row in rows] == printed[:-1]
     values = [int(row.split(", ")[1]) for row in rows]
     flat = [value for value, after in pairwise(values) if value == after]

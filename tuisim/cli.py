@@ -112,7 +112,7 @@ ROOT = _Root(
     {name: entry.does for name, entry in COMMANDS.items()},
     lambda name: COMMANDS[name].load(),
     default="open",
-    help="""A robot lab in the terminal: runs ev3dev2 programs on a simulated EV3 robot.
+    help="""A robot lab in the terminal: runs ev3dev2 and Pybricks programs on a simulated EV3 robot.
 
     Without a command, `tuisim [WORLD.toml] [PROGRAM] [OPTIONS] [-- ARGUMENTS]` opens the app; `tuisim open --help`
     lists its options.

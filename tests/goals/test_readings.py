@@ -1,4 +1,4 @@
-"""Readings that take less than a tick: a recording shows few of them, and goals do not need them there."""
+"""The readings that a program took, as its recording shows them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tests.conftest import Command
 
-# Each turn of the loop takes 100 ms, and its reading lies within a tick.
+# Five readings and one that changes the mode, 100 ms apart.
 PROGRAM = """\
 from pybricks.ev3devices import ColorSensor
 from pybricks.parameters import Port
@@ -16,11 +16,11 @@ eye.reflection()
 for _ in range(5):
     light = eye.reflection()
     print("Light: " + str(light))
-    wait(99)
+    wait(90)
 """
 GOALS = """\
 title = "Light"
-program = "quick.py"
+program = "reads.py"
 background = "Grey_bands"
 start = { x_mm = 325, y_mm = 500, heading_deg = 0 }
 [[goal]]
@@ -38,8 +38,8 @@ read = { reading = "color", times = 9 }
 """
 
 
-def test_readings_within_a_tick_count(tmp_path: Path, here: Command) -> None:
-    (tmp_path / "quick.py").write_text(PROGRAM)
+def test_each_reading_of_a_pybricks_program_counts(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "reads.py").write_text(PROGRAM)
     (tmp_path / "goals.toml").write_text(GOALS)
     assert here("run", "goals.toml").returncode == 0
     lines = here("goals", "check", "goals.toml").stdout.splitlines()

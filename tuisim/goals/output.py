@@ -11,7 +11,7 @@ from tuisim.errors import counted
 from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.goals.found import Occurrence
 from tuisim.goals.provenance import provenance_of
-from tuisim.goals.readings import NOUNS, is_as_read, is_quick, range_words, read_ticks, within_x
+from tuisim.goals.readings import NOUNS, is_as_read, range_words, read_ticks, within_x
 from tuisim.goals.spec import (
     DialogueCondition,
     DialogueTurn,
@@ -163,7 +163,8 @@ def _range(condition: PrintCondition | LogCondition, count: int) -> Range | None
 
 def _read_between(reading: Reading, first_tick: int, end_tick: int, evidence: Evidence) -> bool:
     """Return whether the program took a reading between two lines, or one just before the first."""
-    if reading is Reading.MOTOR or is_quick(reading, evidence):
+    # Motors are read in less than a tick.
+    if reading is Reading.MOTOR:
         return True
     ticks = read_ticks(reading, evidence)
     return bool(((ticks >= first_tick) & (ticks <= end_tick)).any())

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from tuisim.core.conditions import ValueCondition, ValueSource
-from tuisim.core.profile import NS_PER_S
 from tuisim.core.sensors import named_column
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
 from tuisim.errors import ConfigError, counted
@@ -39,44 +38,25 @@ def range_words(found: Range) -> str:
     return f"x from {found[0]:g} to {found[1]:g} mm"
 
 
-def is_quick(reading: Reading, evidence: Evidence) -> bool:
-    """Return whether such a reading takes less than a tick, so that a recording does not show every one of them."""
-    profile = evidence.spec.profile
-    cost_ns = {
-        Reading.COLOR: profile.color_read_ns,
-        Reading.ULTRASONIC: profile.ultrasonic_read_ns,
-        Reading.GYRO: profile.gyro_read_ns,
-        Reading.MOTOR: profile.attribute_read_ns,
-    }[reading]
-    return cost_ns * profile.tick_hz < NS_PER_S
-
-
 def read_ticks(reading: Reading, evidence: Evidence) -> Array:
-    """Return the ticks in which the program took such a reading, in ascending order.
-
-    They are those that a line with a reading has spent. Of quick readings most are not among them; so the ticks of the
-    samples that are computed from one count, too.
-    """
+    """Return the ticks in which the program took such a reading, in ascending order: a reading takes time."""
     import numpy as np
 
     name = f"{reading} is read"
     if name not in evidence.memo:
         known = provenance_of(evidence.program.text, reading)
-        evidence.memo[name] = np.flatnonzero(_reads(known, is_quick(reading, evidence), evidence) if known else [])
+        evidence.memo[name] = np.flatnonzero(_reads(known, evidence) if known else [])
     found: Array = evidence.memo[name]
     return found
 
 
-def _reads(known: Provenance, quick: bool, evidence: Evidence) -> Array:
+def _reads(known: Provenance, evidence: Evidence) -> Array:
     """Return whether a reading was taken in each tick; where a line also pauses, in the first of its ticks."""
     import numpy as np
 
     lines = evidence.records["line"]
     came = np.concatenate(([True], lines[1:] != lines[:-1]))
     found: Array = np.isin(lines, sorted(known.lines())) & (came | ~np.isin(lines, sorted(known.pausing_lines())))
-    if quick:
-        given = [one.tick for _, one in evidence.samples if known.gives(one.line, one.name)]
-        found |= np.isin(np.arange(len(lines)), given)
     return found
 
 
