@@ -9,10 +9,12 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from tuisim.core.servo.motor import ServoMotor
+from tuisim.shim.display import Screen
 from tuisim.shim.leds import Lights
 from tuisim.shim.power import Battery
 from tuisim.shim.sensors import LegoSensor
 from tuisim.shim.session import DeviceSession
+from tuisim.shim.sound import Mixer
 from tuisim.shim.waits import Wait, waits_for
 
 POLL_US = 5000
@@ -29,10 +31,14 @@ class Brick:
     sensors: Mapping[str, LegoSensor]
     lights: Lights
     battery: Battery
+    screen: Screen
+    mixer: Mixer
     hint: Callable[[str], str]
     """Returns what is on the ports of a class of devices."""
     stalled: set[str] = field(default_factory=set)
     """The ports of motors of which it was said that they are stalled."""
+    said: set[str] = field(default_factory=set)
+    """What was said that is said once, by subject."""
 
     @property
     def now_us(self) -> int:
@@ -70,6 +76,12 @@ class Brick:
         if port not in self.stalled:
             self.stalled.add(port)
             self.say(f"the motor on {port} is stalled: {call} waits until it can go on, as on the brick")
+
+    def say_once(self, subject: str, text: str) -> None:
+        """Say something to the user, unless something was said of the subject."""
+        if subject not in self.said:
+            self.said.add(subject)
+            self.say(text)
 
     def say(self, text: str) -> None:
         """Say something to the user, in the program's error output."""
@@ -127,3 +139,14 @@ def whole(value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise TypeError(f"can't convert {type(value).__name__} to int")
     return int(value)
+
+
+def text_of(value: Any) -> str:
+    """Return a text where the firmware takes nothing else.
+
+    Raises:
+        TypeError: it is no text.
+    """
+    if not isinstance(value, str):
+        raise TypeError(f"can't convert '{type(value).__name__}' object to str implicitly")
+    return value

@@ -6,7 +6,9 @@ from collections.abc import Mapping
 
 from tuisim.shim.leds import MAX_BRIGHTNESS
 from tuisim.shim.pybricks.brick import Connected, refused
+from tuisim.shim.pybricks.image import THE_SCREEN, Image
 from tuisim.shim.pybricks.parameters import Button, Color
+from tuisim.shim.pybricks.speaker import Speaker
 
 BUTTON_NAMES: Mapping[str, Button] = {
     "enter": Button.CENTER,
@@ -75,3 +77,5 @@ class EV3Brick:
     buttons = Buttons()
     light = Light()
     battery = Battery()
+    speaker = Speaker()
+    screen = Image(THE_SCREEN)
