@@ -58,7 +58,7 @@ def test_catalogue_says_how_it_went(logged: StoredRun, store: RunStore) -> None:
 def test_run_file_is_what_others_may_read(logged: StoredRun) -> None:
     data = json.loads((logged.folder / RUN_FILE).read_bytes())
     assert list(data) == [
-        "format", "id", "number", "created", "live", "program", "spec", "field", "options", "tags", "end",
+        "format", "id", "number", "created", "live", "program", "spec", "light_law", "field", "options", "tags", "end",
     ]  # fmt: skip
     assert data["program"]["sha256"] == PROGRAM.sha256
     assert data["end"]["end"] == "finished"

@@ -29,6 +29,13 @@ def disc_pixels(diameter: int) -> int:
     return sum(map(sum, disc_mask(diameter)))
 
 
+@lru_cache(maxsize=16)
+def disc_spans(diameter: int) -> tuple[tuple[int, int, int], ...]:
+    """Return the rows of a disc: the row in its box, and the first and the end column."""
+    rows = enumerate(disc_mask(diameter))
+    return tuple((row, inside.index(True), diameter - inside[::-1].index(True)) for row, inside in rows if any(inside))
+
+
 @dataclass(frozen=True, slots=True)
 class Field:
     """A mat, ready to be read by sensors.
@@ -72,6 +79,23 @@ class Field:
             else:
                 rows.append(bytes(3 * diameter))
         return b"".join(rows)
+
+    def disc(self, diameter: int, col: int, row: int) -> bytes:
+        """Return the pixels of a disc, row by row, three bytes per pixel; black off the mat."""
+        if not (0 <= col <= self.width_px - diameter and 0 <= row <= self.height_px - diameter):
+            return in_disc(Field.box(self, diameter, col, row), diameter)
+        pixels, line, corner = self.pixels, 3 * self.width_px, 3 * (row * self.width_px + col)
+        return b"".join(
+            [pixels[corner + down * line + 3 * first : corner + down * line + 3 * end]
+             for down, first, end in disc_spans(diameter)]
+        )  # fmt: skip
+
+
+def in_disc(box: bytes, diameter: int) -> bytes:
+    """Return the pixels of the disc in a box, row by row, three bytes per pixel."""
+    return b"".join(
+        box[3 * (down * diameter + first) : 3 * (down * diameter + end)] for down, first, end in disc_spans(diameter)
+    )
 
 
 GAUSSIAN_SCALE = 1000

@@ -1,13 +1,31 @@
 """Noise that depends only on seed, tick and sensor: reading a value twice or late does not change it.
 
 The stream is SHAKE-128, the same on every machine and Python version.
+
+The light noise adds an error to each pixel under a sensor, evenly distributed and clamped to the range of a pixel. What
+a sensor reads is the mean of many pixels, so its error is drawn at once, from a normal distribution with the mean
+and the spread that the errors of these pixels have together. The pixels themselves are drawn when somebody looks at
+them, and so that their mean is the value that was read.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import accumulate
+from math import cos, log, pi, sin, sqrt
+from struct import Struct
+from typing import NamedTuple
+
+LIGHT_LAW = "drawn-mean"
+"""The name of this law of light noise, as recordings have it."""
 
 _BLOCK_TICKS = 256
+_PIXEL_MAX = 255
+_NUMBERS = 2**32
+_TURN = 2 * pi / _NUMBERS
+_EXTREMES = bytes((0, _PIXEL_MAX))
+_FOUR_NUMBERS = Struct("<4I")
+_READING_BYTES = _FOUR_NUMBERS.size
 
 
 def stream(seed: int, tick: int, channel: str, size: int) -> bytes:
@@ -19,19 +37,127 @@ def stream(seed: int, tick: int, channel: str, size: int) -> bytes:
 
 
 @lru_cache(maxsize=8)
-def _offsets(level: int) -> bytes:
-    """Rounded uniform ±level for each byte value, plus 128; +128 itself does not fit a byte."""
-    return bytes(min(255, 128 + round(level * (2 * byte / 255 - 1))) for byte in range(256))
+def _errors(level: int) -> tuple[int, ...]:
+    """Return the error of a pixel for each byte of the stream: uniform ±level, rounded."""
+    return tuple(round(level * (2 * byte / 255 - 1)) for byte in range(256))
 
 
-_CLAMP = bytes(min(255, max(0, total - 128)) for total in range(512))
+class Clamping(NamedTuple):
+    """What the errors of a level do to each value of a pixel."""
+
+    shift: tuple[float, ...]
+    """By value: how far its mean moves, because values beyond the range are clamped."""
+    variance: tuple[float, ...]
+    """By value: the variance of its error."""
+    even: bytes
+    """The values that are never clamped: their mean does not move, and their variance is `even_variance`."""
+    even_variance: float
 
 
-def disturb_pixels(pixels: bytes, level: int, seed: int, tick: int, channel: str) -> bytes:
-    """Return `pixels` with uniform ±level added to each byte, rounded and clamped to 0 … 255."""
-    offsets = stream(seed, tick, channel, len(pixels)).translate(_offsets(level))
-    clamp = _CLAMP
-    return bytes([clamp[pixel + offset] for pixel, offset in zip(pixels, offsets, strict=True)])
+@lru_cache(maxsize=8)
+def clamping(level: int) -> Clamping:
+    """Return what errors of up to ±level do to each value of a pixel."""
+    errors = sorted(_errors(level))
+    first, second = [0, *accumulate(errors)], [0, *accumulate(error * error for error in errors)]
+    shift, variance = [], []
+    count, below, above = len(errors), 0, len(errors)
+    for value in range(_PIXEL_MAX + 1):
+        # Errors from `below` to `above` stay in the range.
+        while below and errors[below - 1] >= -value:
+            below -= 1
+        while below < count and errors[below] < -value:
+            below += 1
+        while above and errors[above - 1] > _PIXEL_MAX - value:
+            above -= 1
+        under, over = below, count - above
+        total = first[above] - first[below] - under * value + over * (_PIXEL_MAX - value)
+        squares = second[above] - second[below] + under * value**2 + over * (_PIXEL_MAX - value) ** 2
+        shift.append(total / count)
+        variance.append(squares / count - (total / count) ** 2)
+    even = bytes(value for value in range(_PIXEL_MAX + 1) if level <= value <= _PIXEL_MAX - level)
+    return Clamping(tuple(shift), tuple(variance), even, second[-1] / count)
+
+
+def noisy_sums(disc: bytes, sums: tuple[int, int, int], level: int, normals: tuple[float, ...]) -> tuple[int, int, int]:
+    """Return the sums of red, green and blue of some pixels after the light noise.
+
+    Args:
+        disc: The pixels, three bytes each.
+        sums: The sums of their channels.
+        level: The largest error of a pixel.
+        normals: Three normally distributed numbers.
+    """
+    red, green, blue = disc[0::3], disc[1::3], disc[2::3]
+    shift, spread = red_shift, red_spread = _moved(red, level)
+    most = _PIXEL_MAX * len(red)
+    first = round(sums[0] + shift + spread * normals[0])
+    # Most mats are grey: what holds for one channel holds for the others.
+    shift, spread = (red_shift, red_spread) if green == red else _moved(green, level)
+    second = round(sums[1] + shift + spread * normals[1])
+    shift, spread = (red_shift, red_spread) if blue == red else _moved(blue, level)
+    third = round(sums[2] + shift + spread * normals[2])
+    return min(max(first, 0), most), min(max(second, 0), most), min(max(third, 0), most)
+
+
+def _moved(values: bytes, level: int) -> tuple[float, float]:
+    """Return how far the sum of a channel's values moves on average, and the standard deviation of its error."""
+    law, count = clamping(level), len(values)
+    if values.count(values[0]) == count:
+        return count * law.shift[values[0]], sqrt(count * law.variance[values[0]])
+    clamped = values.translate(None, law.even)
+    variance = (count - len(clamped)) * law.even_variance
+    if not clamped:
+        return 0.0, sqrt(variance)
+    # Most of those that errors can clamp are black or white.
+    dark, bright = clamped.count(0), clamped.count(_PIXEL_MAX)
+    shift = dark * law.shift[0] + bright * law.shift[_PIXEL_MAX]
+    variance += dark * law.variance[0] + bright * law.variance[_PIXEL_MAX]
+    if dark + bright < len(clamped):
+        for value in clamped.translate(None, _EXTREMES):
+            shift += law.shift[value]
+            variance += law.variance[value]
+    return shift, sqrt(variance)
+
+
+@lru_cache(maxsize=8)
+def _reading_block(seed: int, block: int, channel: str) -> bytes:
+    return stream(seed, block, f"{channel}/mean", _BLOCK_TICKS * _READING_BYTES)
+
+
+def reading_noise(seed: int, tick: int, channel: str) -> tuple[float, float, float]:
+    """Return three normally distributed numbers for what a sensor reads in one tick."""
+    block, offset = divmod(tick, _BLOCK_TICKS)
+    numbers = _FOUR_NUMBERS.unpack_from(_reading_block(seed, block, channel), offset * _READING_BYTES)
+    at, turn, other, further = numbers
+    # By Box and Muller: two numbers from one place on a disc, the third from another.
+    far, angle = sqrt(-2 * log((at + 1) / _NUMBERS)), turn * _TURN
+    return far * cos(angle), far * sin(angle), sqrt(-2 * log((other + 1) / _NUMBERS)) * cos(further * _TURN)
+
+
+def noisy_channel(pixels: bytes, total: int, level: int, random: bytes) -> bytes:
+    """Return one channel of some pixels with errors of up to ±level, whose sum is a given one.
+
+    Args:
+        pixels: The values of the channel.
+        total: Their sum after the noise, from `noisy_sums`.
+        level: The largest error of a pixel.
+        random: As many random bytes as there are pixels.
+    """
+    errors = _errors(level)
+    found = [min(max(pixel + errors[byte], 0), _PIXEL_MAX) for pixel, byte in zip(pixels, random, strict=True)]
+    missing = total - sum(found)
+    step = 1 if missing > 0 else -1
+    # Small steps everywhere, beginning where the stream says, leave the errors as they are distributed.
+    order = sorted(range(len(found)), key=random.__getitem__)
+    while missing:
+        before = missing
+        for at in order:
+            if missing and 0 <= found[at] + step <= _PIXEL_MAX and abs(found[at] + step - pixels[at]) <= level:
+                found[at] += step
+                missing -= step
+        if missing == before:
+            break
+    return bytes(found)
 
 
 @lru_cache(maxsize=8)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import islice
 
 from tuisim.core.css_colors import css_rgb
-from tuisim.core.field import Field, disc_weights
+from tuisim.core.field import Field, disc_weights, in_disc
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.spec import FIELD_HEIGHT_MM, RunSpec
 from tuisim.core.tick_record import FLAG_PEN_DOWN
@@ -49,6 +49,12 @@ class MarkedField(Field):
                 green += drawn[1] - self.pixels[at + 1]
                 blue += drawn[2] - self.pixels[at + 2]
         return red, green, blue
+
+    def disc(self, diameter: int, col: int, row: int) -> bytes:
+        """As `Field.disc`, including marks."""
+        if self._touched(diameter, col, row):
+            return in_disc(self.box(diameter, col, row), diameter)
+        return Field.disc(self, diameter, col, row)
 
     def box(self, diameter: int, col: int, row: int) -> bytes:
         """As `Field.box`, including marks."""

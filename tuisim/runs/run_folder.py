@@ -13,6 +13,7 @@ from tuisim.atomic import replacing
 from tuisim.config.mat_cache import FieldFiles, open_field, prepare
 from tuisim.config.mats import background
 from tuisim.core.field import Field
+from tuisim.core.noise import LIGHT_LAW
 from tuisim.core.profile import NS_PER_S, MotorLaw, due_ns, law_of_earlier
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tree import from_plain, to_plain
@@ -133,6 +134,7 @@ def new_run_data(
         "live": live,
         "program": {name: getattr(program, name) for name in _PROGRAM_KEYS},
         "spec": to_plain(spec),
+        "light_law": LIGHT_LAW,
         "field": None if field is None else dict(field),
         "options": dict(options or {}),
         "tags": [],
@@ -264,7 +266,7 @@ def read_run(folder: Path, document: bytes | None = None) -> StoredRun:
             end=end,
             actions=actions,
             # Both recordings may have the same note.
-            notes=tuple(filter(None, dict.fromkeys((*lost, cut, _model_note(data["spec"]["profile"]))))),
+            notes=tuple(filter(None, dict.fromkeys((*lost, cut, *_law_notes(data, spec, actions))))),
             telemetry=telemetry,
             output=output,
         )
@@ -284,6 +286,15 @@ def _lost_of(view: TelemetryView | OutputView, end: Ended | None) -> str:
     if isinstance(view, TelemetryView) and view.count <= end.tick:
         return f"{view.name} has {view.count} of {end.tick + 1} records"
     return ""
+
+
+def _law_notes(data: Mapping[str, Any], spec: RunSpec, actions: Sequence[UserAction]) -> Iterator[str]:
+    """Yield notes for a run recorded with laws that are not those of this version."""
+    yield _model_note(data["spec"]["profile"])
+    changes = [action.command for action in actions if isinstance(action.command, SetNoise)]
+    is_noisy = bool(spec.world.noise.light) or any(change.light for change in changes)
+    if is_noisy and data.get("light_law") != LIGHT_LAW:
+        yield "recorded with another law of the light noise, which is gone: a rerun gives other readings"
 
 
 def _model_note(profile: Mapping[str, Any]) -> str:

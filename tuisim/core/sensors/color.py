@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from tuisim.core.columns import Column
 from tuisim.core.field import OUTSIDE_DISC_RGB, Field, disc_pixels, disc_weights, weighted_mean
 from tuisim.core.geometry import Pose, world_point
-from tuisim.core.noise import disturb_pixels
+from tuisim.core.noise import noisy_channel, noisy_sums, reading_noise, stream
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, RunSpec
 
 if TYPE_CHECKING:
@@ -134,18 +134,38 @@ def rgb_reader(spec: ColorSensorSpec, field: Field) -> Callable[[float, float, f
     return read
 
 
+def _noisy_sums(spec: ColorSensorSpec, instant: Instant, field: Field) -> tuple[int, int, int]:
+    """Return the sums of the channels in the disc under a sensor, including noise."""
+    diameter, (col, row) = spec.diameter_mm, box_corner(instant.pose, spec)
+    normals = reading_noise(instant.seed, instant.tick, spec.name)
+    return noisy_sums(field.disc(diameter, col, row), field.disc_sums(diameter, col, row), instant.noise.light, normals)
+
+
 def _seen_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
-    pixels = field.box(spec.diameter_mm, *box_corner(instant.pose, spec))
-    if instant.noise.light:
-        return disturb_pixels(pixels, instant.noise.light, instant.seed, instant.tick, spec.name)
-    return pixels
+    """Return the pixels of the box under a sensor; the mean of those in the disc is what the sensor reads."""
+    diameter = spec.diameter_mm
+    box = field.box(diameter, *box_corner(instant.pose, spec))
+    if not instant.noise.light:
+        return box
+    seen = bytearray(box)
+    inside = [at for at, weight in enumerate(disc_weights(diameter, "mean")) if weight]
+    random = stream(instant.seed, instant.tick, spec.name, 3 * len(inside))
+    for channel, total in enumerate(_noisy_sums(spec, instant, field)):
+        clear = bytes(box[3 * at + channel] for at in inside)
+        for at, value in zip(inside, noisy_channel(clear, total, instant.noise.light, random[channel::3]), strict=True):
+            seen[3 * at + channel] = value
+    return bytes(seen)
 
 
 def reading(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
     """Return the reading of a colour sensor at an instant, including noise."""
     if not instant.noise.light:
         return clear_reading(spec, instant.pose, field)
-    return ColorReading(*weighted_mean(_seen_box(spec, instant, field), spec.diameter_mm, spec.strategy))
+    if spec.strategy != "mean":
+        return ColorReading(*weighted_mean(_seen_box(spec, instant, field), spec.diameter_mm, spec.strategy))
+    red, green, blue = _noisy_sums(spec, instant, field)
+    count = disc_pixels_of(spec.diameter_mm)
+    return ColorReading(red / count, green / count, blue / count)
 
 
 disc_pixels_of = lru_cache(maxsize=16)(disc_pixels)
