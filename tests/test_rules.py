@@ -53,7 +53,6 @@ TESTED_BESIDE = {
     "goals/spec.py": "goals/test_files.py",
     "lessons/spec.py": "lessons/test_files.py",
     "runtime/debugger/conditions.py": "runtime/debugger/test_debugger.py",
-    "runtime/debugger/wait_reason.py": "runtime/debugger/test_debugger.py",
     "shim/pybricks/brick.py": "shim/pybricks/test_reference.py",
     "shim/pybricks/ev3devices.py": "shim/pybricks/test_reference.py",
     "shim/pybricks/motor.py": "shim/pybricks/test_reference.py",
