@@ -76,6 +76,12 @@ CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float | Non
         BASE, {"above": {"seed": 1}, "in_world": True, "of_task": True}, ("lego-micropython", "Default_Robot", MAT)
     ),
     "--profile pybricks4": (PYBRICKS, {"above": {"profile": "pybricks4"}}, ("pybricks4", "Default_Robot", MIDDLE)),
+    "pybricks and the user's profile": (
+        PYBRICKS, {"below": {"profile": "robolab"}}, ("lego-micropython", "Default_Robot", MIDDLE)
+    ),
+    "pybricks and the user's fitting one": (
+        PYBRICKS, {"below": {"profile": "pybricks4"}}, ("pybricks4", "Default_Robot", MIDDLE)
+    ),
     "the older library": ("from ev3dev.ev3 import *\nm = LargeMotor('outB')\n", {}, ("ev3", "Default_Robot", MIDDLE)),
 }  # fmt: skip
 

@@ -155,14 +155,19 @@ def program_settings(
         below: What they take precedence over: the user's defaults.
         in_world: Whether a world file, goals or a lesson say where it runs: then these decide the profile.
         of_task: Whether a task with a world of its own says so: then it also decides the robot.
-        insists: As for `decide`.
+        insists: Whether what is chosen must be for the program's library; else another profile takes its place.
 
     Raises:
-        ProfileError: as `decide`.
+        ProfileError: the chosen profile is not, or the prelude is not.
     """
     layers = (below or {}, source.options, *above)
     free = free_paths(layers, above, in_world=in_world, of_task=of_task)
-    decided = decide(source, settings_of(*layers), free, insists=insists)
+    settings = settings_of(*layers)
+    if insists and (settings["preload"] or source.program.prelude) != _NO_PRELUDE:
+        _check_prelude(source.program)
+    # A default of the user is no choice for this program.
+    is_chosen = any(layer.get("profile") is not None for layer in (source.options, *above))
+    decided = decide(source, settings, free, insists=insists and is_chosen)
     return ProgramSettings(settings_of(*layers, decided.layer), decided)
 
 
@@ -191,12 +196,10 @@ def decide(source: ProgramSource, settings: Settings, free: Collection[str], *, 
         insists: Whether a chosen profile counts that is not for the program's library; else it is replaced.
 
     Raises:
-        ProfileError: the chosen profile is not for the program's library, or its prelude is not.
+        ProfileError: the chosen profile is not for the program's library.
     """
     prelude = settings["preload"] or source.program.prelude
     for_course = prelude != _NO_PRELUDE
-    if for_course and insists:
-        _check_prelude(source.program)
     facts = SourceFacts(Library.EV3DEV2) if for_course else _facts_in_run(source, free)
     layer: dict[str, Any] = {}
     if facts.robot and "robot" in free:

@@ -30,7 +30,7 @@ _PRINTS = frozenset({"print", "say", "write"})
 _KEEPS = frozenset({"append", "appendleft", "extend", "insert", "add", "update", "put", "setdefault"})
 """Methods that put their arguments into the object."""
 _PAUSES = (
-    *("sleep", "wait", "on_for", "run_to", "run_time", "run_angle", "run_target", "drive_time"),
+    *("sleep", "wait", "on_for", "run_to", "run_time", "run_angle", "run_target", "run_until", "drive_time"),
     *("play", "speak", "beep"),
 )
 """How the names begin of functions and methods that let time pass."""
@@ -239,6 +239,7 @@ def _says(node: ast.AST, name: str) -> bool:
 
 def _pauses(call: ast.Call) -> bool:
     """Return whether a call lets time pass besides readings, by its name."""
+    # As functions, these may be a program's own; `say` of the course does not wait.
     if isinstance(call.func, ast.Attribute) and call.func.attr in ("straight", "turn", "say"):
         return True
     return _called(call).startswith(_PAUSES)

@@ -309,33 +309,6 @@ def test_a_wait_for_a_motor_is_said_where_the_library_waits_in_another_way(debug
     assert "waits for motor outB" in driver.look().waiting
 
 
-PYBRICKS = """\
-from pybricks.ev3devices import Motor
-from pybricks.parameters import Port
-from pybricks.robotics import DriveBase
-from pybricks.tools import wait
-left, right = Motor(Port.B), Motor(Port.C)
-"""
-PYBRICKS_WAITS = {
-    "one of two that move": (
-        "left.run(100)\nright.run_angle(50, 500)", "waits for motor outC to reach 500°"
-    ),
-    "until it stalls": ("left.run(100)\nright.run_until_stalled(100)", "waits for motor outC to stop"),
-    "a drive base": (
-        "DriveBase(left, right, 56, 114).turn(90)", "waits for motor outB to reach 183° and motor outC to reach -183°"
-    ),
-    "sleep": ("left.run(100)\nwait(3000)", "sleeps until 3.00 s"),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("case", PYBRICKS_WAITS)
-def test_what_a_pybricks_program_waits_for_is_said(debug: Callable[..., Driver], case: str) -> None:
-    text, note = PYBRICKS_WAITS[case]
-    driver = debug(PYBRICKS + text, hold_at=(30, BEFORE_NEXT_TICK), profile="lego-micropython", prelude="none")
-    driver.paused()
-    assert driver.look(thread="MainThread").waiting == note
-
-
 HELD_THEN_STOPPED = {
     "at a line": (CALLS, {"hold_at": FIRST_LINE}),
     "at a tick": (CALLS, {"hold_at": (3, BEFORE_NEXT_TICK)}),

@@ -33,7 +33,7 @@ MAX_STEPS = 200_000
 _OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
 }  # fmt: skip
-_CONVERTED = {"str", "int", "float", "list", "tuple", "set", "sorted", "reversed", "iter"}
+_CONVERTED = {"str", "int", "float", "list", "tuple", "set", "sorted", "reversed", "iter", "const"}
 """Functions whose result is taken to be their argument."""
 
 
