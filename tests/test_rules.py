@@ -65,7 +65,6 @@ OF_NO_MODULE = {
     "shim/pybricks/test_reference.py": "what the firmware's own code did",
     "shim/pybricks/test_api.py": "the whole library, as its firmware has it",
     "guide/test_claims.py": "what the pages claim",
-    "guide/test_ev3dev2_and_pybricks.py": "the page that compares two libraries",
     "guide/test_documents.py": "what the pages run and name",
     "guide/test_readme_picture.py": "README's picture",
     "test_brick_programs.py": "programs of others, as a whole",

@@ -8,13 +8,16 @@ import os
 import stat
 import struct
 from functools import cached_property, wraps
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, display_row
 from tuisim.runs.records import Stream
 from tuisim.shim.files.entries import DeviceFile, OpenFile, refuse_ioctl
 from tuisim.shim.fonts import plain_font
 from tuisim.shim.session import DeviceSession
+
+if TYPE_CHECKING:
+    from PIL.Image import Image as Picture
 
 BITS_A_PIXEL = 32
 """As the driver reports it; the display itself is black and white."""
@@ -147,7 +150,11 @@ def picture_of(pixels: bytes) -> bytes:
     """
     from PIL import Image
 
-    grey = Image.frombytes("L", (DISPLAY_WIDTH, DISPLAY_HEIGHT), pixels[2::4])
+    return dark_pixels(Image.frombytes("L", (DISPLAY_WIDTH, DISPLAY_HEIGHT), pixels[2::4]))
+
+
+def dark_pixels(grey: Picture) -> bytes:
+    """Return the dark pixels of a grey picture, one bit per pixel, in the format of `runs.brick_state`."""
     return grey.point([WHITE if level < DARK_BELOW else 0 for level in range(256)], "1").tobytes()
 
 

@@ -45,6 +45,8 @@ _CELLS: Mapping[str, Mapping[int, int]] = {
     "term": {14: 8},
 }
 """Width of every character in pixels, by family and size; the other families are proportional."""
+_CELL = 0.6
+"""Width of every character relative to the size, in monospaced fonts of other sizes."""
 
 _LETTERS = tuple(chr(code) for code in (*range(32, 127), *range(160, 256)))
 _FINE = 6
@@ -127,6 +129,12 @@ def patch_fonts_module(module: types.ModuleType) -> None:
         return drawn(FACES[name])
 
     fonts.available, fonts.load = all_available, load_or_draw
+
+
+def sized(size_px: int, bold: bool, monospace: bool) -> ImageFont:
+    """Return an upright font of any size."""
+    cell_px = _CELLS["lut"].get(size_px, max(1, round(_CELL * size_px))) if monospace else None
+    return drawn(Face(size_px, bold, slanted=False, cell_px=cell_px))
 
 
 @cache

@@ -131,7 +131,7 @@ def install(
     }
     if session.sim.spec.profile.motor_law.library == Library.PYBRICKS:
         finish_imports(finishers, is_own)
-        _install_pybricks(session, built)
+        _install_pybricks(session, built, screen, mixer)
         return
     finishers = _of_ev3dev(session, built, terminal, mixer) | finishers
     finish_imports(finishers, is_own, dict.fromkeys(("ev3dev.core", "ev3dev.fonts"), surroundings))
@@ -164,7 +164,7 @@ def _of_ev3dev(session: DeviceSession, built: BuiltBrick, terminal: Terminal, mi
     }
 
 
-def _install_pybricks(session: DeviceSession, built: BuiltBrick) -> None:
+def _install_pybricks(session: DeviceSession, built: BuiltBrick, screen: Screen, mixer: Mixer) -> None:
     """Prepare the program's `import pybricks`."""
     # Imported on demand: other programs start faster without it.
     from tuisim.shim.pybricks import modules
@@ -174,4 +174,4 @@ def _install_pybricks(session: DeviceSession, built: BuiltBrick) -> None:
     hint = partial(ports_hint, session)
     sys.meta_path.insert(0, OtherLibrary(("ev3dev2", "ev3dev"), "choose --profile ev3"))
     sys.meta_path.append(HardwareFinder())
-    modules.install(Brick(session, motors, built.sensors, built.lights, built.battery, hint))
+    modules.install(Brick(session, motors, built.sensors, built.lights, built.battery, screen, mixer, hint))

@@ -142,9 +142,12 @@ def beep_heard(words: Sequence[str]) -> Heard:
     except ValueError as error:
         # The real program prints its usage to a stream that nobody reads, and makes no sound.
         return Heard(f"[beep refuses {' '.join(words)}: {error}]", 0, (Tone(0.0, 0.0),), refused=True)
-    if not words:
-        text = "[beep]"
-    elif len(tones) == 1:
+    return tones_heard(tones) if words else Heard("[beep]", _total_ns(tones), tuple(tones))
+
+
+def tones_heard(tones: Sequence[Tone]) -> Heard:
+    """Return the sound of successive tones."""
+    if len(tones) == 1:
         text = f"[tone {tones[0].frequency_hz:g} Hz {tones[0].length_ms / 1000:g} s]"
     elif len(tones) <= NAMED_TONES:
         pitches = ", ".join(f"{tone.frequency_hz:g}" for tone in tones)

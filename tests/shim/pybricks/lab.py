@@ -32,7 +32,7 @@ class Lab:
         self.looks: list[Callable[[int], None]] = []
         self.sim: Any = SimpleNamespace(spec=SimpleNamespace(profile=PROFILES["lego-micropython"]))
         empty: Any = SimpleNamespace()
-        Connected.brick = self.brick = Brick(cast(Any, self), self.motors, {}, empty, empty, lambda _: "")
+        Connected.brick = self.brick = Brick(cast(Any, self), self.motors, {}, empty, empty, empty, empty, lambda _: "")
 
     def spend(self, duration_ns: int) -> None:
         """Let time pass.

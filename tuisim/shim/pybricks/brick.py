@@ -9,11 +9,13 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar, Generic, TypeVar
 
 from tuisim.core.servo.motor import ServoMotor
+from tuisim.shim.display import Screen
 from tuisim.shim.leds import Lights
 from tuisim.shim.power import Battery
 from tuisim.shim.pybricks.parameters import Port
 from tuisim.shim.sensors import LegoSensor
 from tuisim.shim.session import DeviceSession
+from tuisim.shim.sound import Mixer
 from tuisim.shim.waits import Wait, waits_for
 
 POLL_US = 5000
@@ -48,10 +50,12 @@ class Brick:
     sensors: Mapping[str, LegoSensor]
     lights: Lights
     battery: Battery
+    screen: Screen
+    mixer: Mixer
     hint: Callable[[str], str]
     """Returns what is on the ports of a class of devices."""
-    stalled: set[str] = field(default_factory=set)
-    """Of what it was said that it is stalled."""
+    said: set[str] = field(default_factory=set)
+    """What was said that is said once, by subject."""
     in_task: bool = False
     """Whether the program runs a task of version 4, in which nothing blocks."""
 
@@ -111,9 +115,13 @@ class Brick:
         """
         told = f"{what} stalled: {call} waits until the way is free, as on the brick"
         self.session.held_up = told
-        if what not in self.stalled:
-            self.stalled.add(what)
-            self.say(told)
+        self.say_once(what, told)
+
+    def say_once(self, subject: str, text: str) -> None:
+        """Say something to the user, unless something was said of the subject."""
+        if subject not in self.said:
+            self.said.add(subject)
+            self.say(text)
 
     def say(self, text: str) -> None:
         """Say something to the user, in the program's error output."""
@@ -173,3 +181,14 @@ def whole(value: Any) -> int:
     if not isinstance(value, int | float):
         raise TypeError(f"can't convert {type(value).__name__} to int")
     return int(value)
+
+
+def text_of(value: Any) -> str:
+    """Return a text where the firmware takes nothing else.
+
+    Raises:
+        TypeError: it is no text.
+    """
+    if not isinstance(value, str):
+        raise TypeError(f"can't convert '{type(value).__name__}' object to str implicitly")
+    return value

@@ -7,7 +7,9 @@ from enum import Enum
 
 from tuisim.shim.leds import MAX_BRIGHTNESS
 from tuisim.shim.pybricks.brick import Connected, refused
+from tuisim.shim.pybricks.image import THE_SCREEN, Image
 from tuisim.shim.pybricks.parameters import Button
+from tuisim.shim.pybricks.speaker import Speaker
 
 BUTTON_NAMES: Mapping[str, Button] = {
     "enter": Button.CENTER,
@@ -76,3 +78,5 @@ class EV3Brick(Connected):
     buttons = Buttons()
     light = Light()
     battery = Battery()
+    speaker = Speaker()
+    screen = Image(THE_SCREEN)

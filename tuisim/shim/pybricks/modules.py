@@ -11,14 +11,19 @@ from tuisim.core.profile import MotorLaw
 from tuisim.shim.pybricks import (
     ev3devices,
     experimental,
+    font,
     hubs,
+    image,
     iodevices,
+    media,
     messaging,
     micropython,
     motor,
     parameters,
     robotics,
+    speaker,
     tools,
+    version_1,
 )
 from tuisim.shim.pybricks.brick import Brick, Connected
 from tuisim.shim.pybricks.unsimulated import IO_DEVICES, NXT_DEVICES, refused_classes
@@ -28,20 +33,24 @@ def _public(module: types.ModuleType, *names: str) -> dict[str, Any]:
     return {name: getattr(module, name) for name in names}
 
 
+FILES = _public(media, "SoundFile", "ImageFile")
 MODULES: Mapping[str, Mapping[str, Any]] = {
     "pybricks": {},
     "pybricks.hubs": _public(hubs, "EV3Brick"),
     "pybricks.ev3devices": _public(motor, "Motor")
     | _public(ev3devices, "TouchSensor", "ColorSensor", "InfraredSensor", "UltrasonicSensor", "GyroSensor"),
+    "pybricks.ev3brick": _public(version_1, "sound", "display", "light", "buttons", "battery"),
     "pybricks.experimental": _public(experimental, "run_parallel"),
     "pybricks.iodevices": _public(motor, "DCMotor")
     | _public(iodevices, "Ev3devSensor")
     | refused_classes("pybricks.iodevices", IO_DEVICES),
     "pybricks.messaging": _public(messaging, *messaging.__all__),
     "pybricks.nxtdevices": _public(motor, "Motor") | refused_classes("pybricks.nxtdevices", NXT_DEVICES),
-    "pybricks.parameters": _public(parameters, "Port", "Stop", "Direction", "Button", "Color", "Align"),
+    "pybricks.parameters": _public(parameters, "Port", "Stop", "Direction", "Button", "Color", "Align") | FILES,
     "pybricks.robotics": _public(robotics, "DriveBase"),
     "pybricks.tools": _public(tools, "wait", "StopWatch", "DataLog") | {"print": print},
+    "pybricks.media": {},
+    "pybricks.media.ev3dev": _public(image, "Image") | _public(font, "Font") | FILES,
 }
 """Names of each module of version 2.0."""
 
@@ -67,6 +76,7 @@ def install(brick: Brick) -> None:
     Connected.brick = brick
     law = brick.session.sim.spec.profile.motor_law
     names = _version_4() if law == MotorLaw.PYBRICKS_4 else MODULES
+    speaker.set_volumes(brick.mixer, speaker.START_VOLUMES)
     made = {name: types.ModuleType(name) for name in names}
     for name, module in made.items():
         vars(module).update(names[name])
