@@ -66,6 +66,7 @@ OF_NO_MODULE = {
     "shim/pybricks/test_api.py": "the whole library, as its firmware has it",
     "guide/test_claims.py": "what the pages claim",
     "guide/test_documents.py": "what the pages run and name",
+    "guide/test_ev3dev2_and_pybricks.py": "the table with the calls of both libraries",
     "guide/test_readme_picture.py": "README's picture",
     "test_brick_programs.py": "programs of others, as a whole",
     "test_hosts.py": "an enemy in every host",
