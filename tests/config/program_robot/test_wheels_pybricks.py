@@ -126,3 +126,13 @@ def test_different_gears_are_told() -> None:
 
 def test_a_pair_without_its_second_motor_is_no_pair() -> None:
     assert built("MoveTank(OUTPUT_A)") is None
+
+
+def test_motors_that_run_until_they_stall_drive_no_wheels() -> None:
+    found = built(
+        "feed, belt = Motor(Port.A), Motor(Port.D)\nfeed.run_until_stalled(120)\nbelt.run(50)\n", PYBRICKS_HEAD
+    )
+    assert found is not None
+    robot = found.choice.spec
+    assert (robot.left_port, robot.right_port) == ("outB", "outC")
+    assert [motor.port for motor in robot.extra_motors] == ["outA", "outD"]

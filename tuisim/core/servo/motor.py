@@ -146,9 +146,9 @@ class ServoMotor:
 
     def counts_per_s_at(self, now_us: int) -> int:
         """Return its speed at a time after the last tick."""
-        if self._guide is not None and self._course is not None:
-            return round(self._guide.rate(now_us, self))
-        return self.counts_per_s
+        if self._guide is None:
+            return round(self._free_dps * self.sign * COUNTS_PER_DEG)
+        return self.counts_per_s if self._course is None else round(self._guide.rate(now_us, self))
 
     def measured(self, now_us: int) -> Segment:
         """Return where a motion begins that nothing has controlled before, as the encoder shows it."""
