@@ -46,6 +46,11 @@ DRIVE_BASES: Mapping[str, tuple[str, tuple[str, str, float, float]]] = {
                 ("outA", "outD", 56, 100)),
     "a dictionary": ("m = {'a': Motor(Port.A), 'd': Motor(Port.D)}\nDriveBase(m['d'], m['a'], 56, 100)",
                      ("outD", "outA", 56, 100)),
+    "ports that only data tells": (
+        "ports = {'B': Port.B, 'C': Port.C}\nd = {}\n"
+        "DriveBase(Motor(ports[d['left']]), Motor(ports[d['right']]), 56, 100)",
+        ("outB", "outC", 56, 100),
+    ),
     "objects that hold a motor": (
         "class Side:\n    def __init__(self, port):\n        self.motor = Motor(port)\n"
         "one, other = Side(Port.D), Side(Port.A)\nDriveBase(one.motor, other.motor, 56, 100)",

@@ -87,7 +87,9 @@ def _in_order(motors: Sequence[Mention]) -> WheelMotors:
     """Return the usual two of some motors, the left one first unless a name says otherwise."""
     by_port = {one.port: one for one in motors}
     left, right = next(pair for pair in _USUAL if by_port.keys() >= set(pair))
-    if side_of(by_port[left].names) is Side.RIGHT or side_of(by_port[right].names) is Side.LEFT:
+    sides = side_of(by_port[left].names), side_of(by_port[right].names)
+    # One name for both, such as that of a list of ports, says nothing.
+    if sides[0] is not sides[1] and (sides[0] is Side.RIGHT or sides[1] is Side.LEFT):
         left, right = right, left
     rest = ", ".join(port for port in by_port if port not in (left, right))
     doubt = f"of the large motors, those on {left} and {right} are taken for the wheels, not {rest}" if rest else ""
