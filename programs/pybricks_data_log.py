@@ -7,6 +7,7 @@ from pybricks.ev3devices import Motor, TouchSensor, ColorSensor, InfraredSensor,
 from pybricks.parameters import Port, Stop, Direction, Button, Color
 from pybricks.tools import wait, StopWatch, DataLog
 from pybricks.robotics import DriveBase
+from pybricks.media.ev3dev import SoundFile, ImageFile
 
 left_motor = Motor(Port.B)
 right_motor = Motor(Port.C)

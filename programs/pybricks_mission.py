@@ -7,6 +7,7 @@ from pybricks.ev3devices import Motor, TouchSensor, ColorSensor, InfraredSensor,
 from pybricks.parameters import Port, Stop, Direction, Button, Color
 from pybricks.tools import wait, StopWatch, DataLog
 from pybricks.robotics import DriveBase
+from pybricks.media.ev3dev import SoundFile, ImageFile
 
 ev3 = EV3Brick()
 left_motor = Motor(Port.B)
@@ -53,6 +54,8 @@ def round_the_corner():
 
 def chosen_missions():
     # The left or the right button chooses a mission. After two seconds without one, both run.
+    ev3.screen.print("left: wall")
+    ev3.screen.print("right: corner")
     ev3.light.on(Color.ORANGE)
     watch = StopWatch()
     while watch.time() < 2000:
@@ -67,5 +70,6 @@ def chosen_missions():
 
 for mission in chosen_missions():
     ev3.light.on(Color.GREEN)
+    ev3.speaker.beep()
     mission()
 print("Gyro: " + str(gyro.angle()))

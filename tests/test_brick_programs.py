@@ -1,19 +1,16 @@
-"""Programs as schools, teams and beginners write them for a real brick run as they do there.
-
-`expect.txt` says in words what a brick does; it was written before the program was run here.
-"""
+"""Programs as schools, teams and beginners write them for a real brick run as they do there."""
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 import pytest
 
 from tests.conftest import ROOT, Command
+from tests.typed_programs import check_typed, names_in, run_typed
 
 FOLDER = ROOT / "tests" / "brick_programs"
-PROGRAMS = sorted(path.name for path in FOLDER.iterdir())
+PROGRAMS = names_in(FOLDER)
 EXIT_CODES = {
     "08_wro_menu": 3,
     "24_rc_tank": 3,
@@ -35,10 +32,6 @@ WITH_FILE = [name for name in PROGRAMS if (FOLDER / name / "robot.toml").exists(
     ids=[*PROGRAMS, *(f"{name} with its file" for name in WITH_FILE)],
 )
 def test_it_does_what_a_brick_does(name: str, robot: str, tmp_path: Path, here: Command) -> None:
-    folder = tmp_path / name
-    shutil.copytree(FOLDER / name, folder)
     place = ["-x", 157, "-y", 800] if name in FROM_THE_LEFT else []
-    done = here("run", folder / "main.py", *place, *(["-r", folder / robot] if robot else []), "--timeout", 90)
-    assert done.returncode == EXIT_CODES.get(name, 0), done.stderr
-    assert done.stdout == (folder / "stdout.txt").read_text(encoding="utf-8")
-    assert "tuisim/" not in done.stderr
+    file = ["-r", FOLDER / name / robot] if robot else []
+    check_typed(FOLDER / name, run_typed(FOLDER / name, here, tmp_path, *place, *file), EXIT_CODES.get(name, 0))

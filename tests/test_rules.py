@@ -73,6 +73,7 @@ OF_NO_MODULE = {
     "test_licences.py": "the packages that an install brings",
     "test_nested_json.py": "one kind of damage in each file that is read",
     "test_programs.py": "the examples",
+    "test_pybricks_programs.py": "programs of others, as a whole",
     "test_readme.py": "README and guide beside all tables",
     "test_real_programs.py": "programs of others, as a whole",
     "test_rules.py": "all files",
@@ -115,7 +116,7 @@ def source(path: Path) -> Source:
 WITH_COLORS = frozenset({"css_colors.py", "palette.py", "themes.py"})
 """The palette, and tables of colours of others."""
 
-PROGRAMS = frozenset({"brick_programs", "real_programs"})
+PROGRAMS = frozenset({"brick_programs", "pybricks_programs", "real_programs"})
 """Folders with programs as other people write them."""
 
 

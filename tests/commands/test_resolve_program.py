@@ -136,3 +136,26 @@ def test_the_api_builds_the_robot_and_says_so(folder: Path, monkeypatch: pytest.
     assert (run.state, run.output) == ("finished", "Claw: 45\n")
     assert run.note.startswith("claw.py runs on a robot built from it: wheels on outA")
     assert tuisim.simulate("print(1)\nprint(2)\n").note == ""
+
+
+LEGO = """\
+from pybricks.ev3devices import Motor
+from pybricks.parameters import Port
+Motor(Port.A, gears=[12, 36]).run_angle(300, 90)
+"""
+
+
+@pytest.mark.parametrize("command", ["run", "batch"])
+def test_a_task_with_a_profile_for_another_library_is_refused(folder: Path, here: Command, command: str) -> None:
+    (folder / "lego.py").write_text(LEGO)
+    (folder / "goals.toml").write_text("profile = 'ev3'\n" + GOALS)
+    done = here(command, "goals.toml", "lego.py")
+    told = "tuisim: profile: lego.py uses pybricks, and the profile ev3 is for ev3dev2 (choose lego-micropython"
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith(told)
+
+
+def test_the_robot_of_a_pybricks_program_is_printed_as_a_file(folder: Path, here: Command) -> None:
+    (folder / "lego.py").write_text(LEGO)
+    table = tomllib.loads(here("robots", "--from", "lego.py").stdout)
+    assert table == {"base": "Default_Robot", "name": "Robot of lego.py", "motors": {"outA": "medium"}}

@@ -1,4 +1,4 @@
-"""Patches the library's modules when the program imports them."""
+"""Prepares what a program finds when it runs: the brick's files, and its library."""
 
 from __future__ import annotations
 
@@ -7,32 +7,22 @@ import sys
 import types
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from functools import partial
 from types import MappingProxyType
 
 from tuisim.core.profile import Library
-from tuisim.core.servo.motor import ServoMotor
-from tuisim.shim.brick import BuiltBrick, build_brick, ports_hint
-from tuisim.shim.buttons import DEVICE_PATHS, ButtonsFile, patch_button_module
-from tuisim.shim.console import Terminal, patch_console_module
-from tuisim.shim.display import DisplayFile, Screen, draw_with_the_bricks_font
-from tuisim.shim.evdev.devices import evdev_modules
+from tuisim.shim.brick import build_brick
+from tuisim.shim.buttons import DEVICE_PATHS, ButtonsFile
+from tuisim.shim.console import Terminal
+from tuisim.shim.display import DisplayFile, Screen
 from tuisim.shim.files.entries import TextFile
 from tuisim.shim.files.open_files import OpenFiles
 from tuisim.shim.files.patches import FilePatches
 from tuisim.shim.files.tree import DeviceTree
-from tuisim.shim.fonts import patch_fonts_module, quiet_pillow
-from tuisim.shim.leds import patch_led_module
-from tuisim.shim.library import connect, patch_motor_module, patch_sensor_module
-from tuisim.shim.older_library import MissingLibrary, finish_core, surroundings
-from tuisim.shim.robolab import glue_module, patch_lego_module
+from tuisim.shim.fonts import quiet_pillow
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.shell.commands import Shell
 from tuisim.shim.shell.processes import Replace, System, finish_asyncio
-from tuisim.shim.sound import Mixer, patch_sound_module
-from tuisim.shim.unsupported.modules import HardwareFinder, OtherLibrary
-from tuisim.shim.unsupported.parts import OTHER_BOARDS, PROCESSES, REFUSED, refuse_board, refuse_classes
-from tuisim.source import PYBRICKS
+from tuisim.shim.sound import Mixer
 
 Finish = Callable[[types.ModuleType], None]
 Around = Callable[[], AbstractContextManager[None]]
@@ -129,49 +119,14 @@ def install(
         "asyncio.base_events": finish_asyncio,
         **more_finishers,
     }
+    # Imported on demand: a program uses one library.
     if session.sim.spec.profile.motor_law.library == Library.PYBRICKS:
+        from tuisim.shim.pybricks import modules as pybricks
+
         finish_imports(finishers, is_own)
-        _install_pybricks(session, built, screen, mixer)
-        return
-    finishers = _of_ev3dev(session, built, terminal, mixer) | finishers
-    finish_imports(finishers, is_own, dict.fromkeys(("ev3dev.core", "ev3dev.fonts"), surroundings))
-    sys.meta_path.insert(0, OtherLibrary((PYBRICKS,), "choose --profile lego-micropython"))
-    sys.meta_path.append(MissingLibrary())
-    sys.meta_path.append(HardwareFinder())
-    connect(built.files, partial(ports_hint, session))
-    sys.modules["ev3dev2_glue"] = glue_module(session)
-    sys.modules.update(evdev_modules(session))
+        pybricks.install(session, built, screen, mixer)
+    else:
+        from tuisim.shim.ev3dev import modules as ev3dev
 
-
-def _of_ev3dev(session: DeviceSession, built: BuiltBrick, terminal: Terminal, mixer: Mixer) -> dict[str, Finish]:
-    """Return what to do with the modules of `ev3dev2` and `ev3dev`."""
-    brick, colors = built.files, built.colors
-    return {
-        "ev3dev.core": lambda module: finish_core(session, module, partial(ports_hint, session)),
-        "ev3dev.fonts": patch_fonts_module,
-        **dict.fromkeys(OTHER_BOARDS, refuse_board),
-        "ev3dev2.button": lambda module: patch_button_module(session, module),
-        "ev3dev2.console": lambda module: patch_console_module(module, terminal),
-        "ev3dev2.display": lambda module: draw_with_the_bricks_font(vars(module)["Display"]),
-        "ev3dev2.fonts": patch_fonts_module,
-        "ev3dev2.led": lambda module: patch_led_module(session, module),
-        "ev3dev2.motor": lambda module: patch_motor_module(session, module, brick),
-        "ev3dev2.sensor": lambda module: patch_sensor_module(session, module, brick),
-        "ev3dev2.sensor.lego": lambda module: patch_lego_module(session, module, brick, colors),
-        "ev3dev2.sound": lambda module: patch_sound_module(session, module, mixer),
-        **dict.fromkeys(REFUSED, refuse_classes),
-        **PROCESSES,
-    }
-
-
-def _install_pybricks(session: DeviceSession, built: BuiltBrick, screen: Screen, mixer: Mixer) -> None:
-    """Prepare the program's `import pybricks`."""
-    # Imported on demand: other programs start faster without it.
-    from tuisim.shim.pybricks import modules
-    from tuisim.shim.pybricks.brick import Brick
-
-    motors = {port: motor for port, motor in built.motors.items() if isinstance(motor, ServoMotor)}
-    hint = partial(ports_hint, session)
-    sys.meta_path.insert(0, OtherLibrary(("ev3dev2", "ev3dev"), "choose --profile ev3"))
-    sys.meta_path.append(HardwareFinder())
-    modules.install(Brick(session, motors, built.sensors, built.lights, built.battery, screen, mixer, hint))
+        finish_imports(ev3dev.finishers(session, built, terminal, mixer) | finishers, is_own, ev3dev.AROUND)
+        ev3dev.install(session, built)

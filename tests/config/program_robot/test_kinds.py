@@ -22,6 +22,8 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "a large one": ("large_motor = Motor(Port.A)", "A large motor"),
     "three tools": ("gripper = Motor(Port.A)\nelbow = Motor(Port.B)\nbase = Motor(Port.C)",
                     "A large motor, B large motor, C large motor"),
+    "two tools on the ports of wheels": ("belt_motor = Motor(Port.D)\nfeed_motor = Motor(Port.A)",
+                                         "A medium motor, D medium motor"),
     "a motor without control": ("from pybricks.iodevices import DCMotor\nDCMotor(Port.A)", "A medium motor"),
 }  # fmt: skip
 

@@ -18,8 +18,9 @@ from tuisim.source import Program
         "with open(os.path.join(HERE, 'ports.json')) as file:\n    ports = json.load(file)",
         "ports = json.loads(Path('ports.json').read_text())",
         "ports = json.load((Path(__file__).parent / 'ports.json').open())",
+        "import ujson\nports = ujson.load(open('ports.json'))",
     ],
-    ids=["open", "text", "path"],
+    ids=["open", "text", "path", "micropython"],
 )
 def test_a_file_of_values_beside_the_program_is_read(tmp_path: Path, text: str) -> None:
     (tmp_path / "ports.json").write_text('{"arm": ["outD"]}')

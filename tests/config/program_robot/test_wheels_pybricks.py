@@ -46,6 +46,11 @@ DRIVE_BASES: Mapping[str, tuple[str, tuple[str, str, float, float]]] = {
                 ("outA", "outD", 56, 100)),
     "a dictionary": ("m = {'a': Motor(Port.A), 'd': Motor(Port.D)}\nDriveBase(m['d'], m['a'], 56, 100)",
                      ("outD", "outA", 56, 100)),
+    "ports that only data tells": (
+        "ports = {'B': Port.B, 'C': Port.C}\nd = {}\n"
+        "DriveBase(Motor(ports[d['left']]), Motor(ports[d['right']]), 56, 100)",
+        ("outB", "outC", 56, 100),
+    ),
     "objects that hold a motor": (
         "class Side:\n    def __init__(self, port):\n        self.motor = Motor(port)\n"
         "one, other = Side(Port.D), Side(Port.A)\nDriveBase(one.motor, other.motor, 56, 100)",
@@ -126,3 +131,13 @@ def test_different_gears_are_told() -> None:
 
 def test_a_pair_without_its_second_motor_is_no_pair() -> None:
     assert built("MoveTank(OUTPUT_A)") is None
+
+
+def test_motors_that_run_until_they_stall_drive_no_wheels() -> None:
+    found = built(
+        "feed, belt = Motor(Port.A), Motor(Port.D)\nfeed.run_until_stalled(120)\nbelt.run(50)\n", PYBRICKS_HEAD
+    )
+    assert found is not None
+    robot = found.choice.spec
+    assert (robot.left_port, robot.right_port) == ("outB", "outC")
+    assert [motor.port for motor in robot.extra_motors] == ["outA", "outD"]

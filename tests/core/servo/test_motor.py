@@ -80,3 +80,12 @@ def test_ticks_are_the_same_however_they_are_divided(world: WorldSpec, seed: int
                     robot.sim.tick_once()
         records.append(robot.sink.records())
     assert records[0] == records[1]
+
+
+def test_a_motor_that_held_stands_when_it_is_let_go() -> None:
+    robot = Robot(WORLD)
+    robot.base.drive(robot.now_us, 300, 0)
+    robot.sim.advance(100)
+    robot.base.move(robot.now_us, 0, 0)
+    robot.base.stop(robot.now_us, None)
+    assert robot.base.rates_at(robot.now_us) == (0, 0)

@@ -104,9 +104,20 @@ def test_its_own_names_work(run_on: RunOn, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "use",
-    ["micropython.mem_info()", "gc.mem_free()", "uctypes.UINT32 | 4", "ffi.open('libc')", "machine.Pin(1)"],
+    ["micropython.qstr_info()", "uctypes.UINT32 | 4", "ffi.open('libc')", "machine.Pin(1)"],
 )
 def test_what_has_no_sense_says_so_when_it_is_used(run_on: RunOn, use: str) -> None:
     done = run_on(f"import {use.partition('.')[0]}\n{use}", profile=PROFILE)
     name = use.partition("(")[0].partition(" ")[0]
     assert done.ended.summary.startswith(f"NotSimulated: {name}: ")
+
+
+def test_names_and_sizes_that_python_does_not_allow_are_taken(run_on: RunOn) -> None:
+    text = """\
+from ucollections import namedtuple
+import _thread, gc
+Action = namedtuple('Action ', ['drive_speed', 'steering'])
+print(Action(1, 2).steering, namedtuple('My Robot', 'class x')(3, 4).x, _thread.stack_size(8192))
+print(gc.mem_free() > gc.mem_alloc() > 0)
+"""
+    assert run_on(text, profile=PROFILE).lines == ["2 4 0", "True"]

@@ -119,7 +119,7 @@ class _Builder:
         motors = (one for one in self.mentions.devices if one.kind.is_motor)
         kinds = with_tools(self._kinds([*self._of_pairs(), *motors]), self.mentions)
         where = {one.port: one.where for one in (*self.mentions.devices, *self._of_pairs()) if one.port}
-        wheels = wheels_of(self.mentions, kinds, self.usual)
+        wheels = wheels_of(self.mentions, kinds, self.usual, self.mechanics.driven_to_stops)
         left, right = (kinds.get(port, DeviceKind.LARGE) for port in (wheels.left, wheels.right))
         changes: dict[str, Any] = {"left_port": wheels.left, "right_port": wheels.right}
         changes |= {"left_motor": _motor_kind(left), "right_motor": _motor_kind(right)}

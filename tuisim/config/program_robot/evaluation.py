@@ -35,6 +35,8 @@ _OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = {
 }  # fmt: skip
 _CONVERTED = {"str", "int", "float", "list", "tuple", "set", "sorted", "reversed", "iter", "const"}
 """Functions whose result is taken to be their argument."""
+_JSON = ("json", "ujson")
+"""The modules that read data, in Python and in MicroPython."""
 
 
 @dataclass(slots=True)
@@ -345,7 +347,7 @@ class Evaluation:
         """Yield the result of a method of Python's own types."""
         if name in ("parse_args", "parse_known_args"):
             yield Options()
-        elif name in ("load", "loads") and node.args and isinstance(base, ast.Name) and base.id == "json":
+        elif name in ("load", "loads") and node.args and isinstance(base, ast.Name) and base.id in _JSON:
             for file in self.values(node.args[0], scope):
                 if isinstance(file, File) and (inside := self.files.values_in(file.name)) is not None:
                     yield from self.values(inside, scope.top)

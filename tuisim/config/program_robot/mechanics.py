@@ -50,6 +50,8 @@ class Mechanics:
     """The farthest that the program turns a motor, from where it stands or from its end stop."""
     endless: set[str] = field(default_factory=set)
     """The motors that the program turns by an angle that is not known."""
+    driven_to_stops: set[str] = field(default_factory=set)
+    """The motors of which a call ends when an end stop stops them: they drive no wheel."""
     closed: set[str] = field(default_factory=set)
     """The motors that the program drives against an end stop in both directions."""
 
@@ -151,6 +153,7 @@ class _MechanicsReader:
         if name in self.moves.ending:
             self._note_reach(call, name, self._motors(base, scope), scope)
         elif name in self.moves.stalling:
+            self.found.driven_to_stops.update(self._motors(base, scope))
             self._stall(base, scope, call, [speed > 0 for speed in self._speeds(call, scope) if speed])
         elif name == "stalled":
             match base:

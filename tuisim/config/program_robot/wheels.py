@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from tuisim.config.program_robot.library import DeviceKind
@@ -28,16 +28,18 @@ class WheelMotors:
     """Which other reading there is, in words; empty for none."""
 
 
-def wheels_of(mentions: Mentions, kinds: Mapping[str, DeviceKind], usual: RobotSpec) -> WheelMotors:
+def wheels_of(
+    mentions: Mentions, kinds: Mapping[str, DeviceKind], usual: RobotSpec, tools: Collection[str] = ()
+) -> WheelMotors:
     """Return the motors that drive the wheels; none if every port is taken by a motor that does something else.
 
     Args:
         kinds: The motors that the program names, by port.
         usual: The robot whose wheels stay where nothing says otherwise.
+        tools: Ports of motors that drive no wheel, unless the program drives them as a pair.
     """
-    return (
-        _of_pairs(mentions.pairs) or _of_single(mentions.devices, kinds) or _left_over(mentions.devices, kinds, usual)
-    )
+    devices = mentions.devices
+    return _of_pairs(mentions.pairs) or _of_single(devices, kinds, tools) or _left_over(devices, kinds, usual, tools)
 
 
 def _of_pairs(pairs: Sequence[Pair]) -> WheelMotors | None:
@@ -50,11 +52,13 @@ def _of_pairs(pairs: Sequence[Pair]) -> WheelMotors | None:
     return WheelMotors(chosen.left, chosen.right, chosen.where, chosen, doubt)
 
 
-def _of_single(devices: Sequence[Mention], kinds: Mapping[str, DeviceKind]) -> WheelMotors | None:
+def _of_single(
+    devices: Sequence[Mention], kinds: Mapping[str, DeviceKind], tools: Collection[str]
+) -> WheelMotors | None:
     """Return two motors that are made one by one, and that names, a class or their number show to be the wheels."""
     by_port: dict[str, Mention] = {}
     for device in devices:
-        if device.kind.is_motor and device.port:
+        if device.kind.is_motor and device.port and device.port not in tools:
             by_port.setdefault(device.port, device)
     large = [one for port, one in by_port.items() if kinds[port] is not DeviceKind.MEDIUM]
     wheels = [one for one in large if not means_tool(one.names)]
@@ -83,19 +87,23 @@ def _in_order(motors: Sequence[Mention]) -> WheelMotors:
     """Return the usual two of some motors, the left one first unless a name says otherwise."""
     by_port = {one.port: one for one in motors}
     left, right = next(pair for pair in _USUAL if by_port.keys() >= set(pair))
-    if side_of(by_port[left].names) is Side.RIGHT or side_of(by_port[right].names) is Side.LEFT:
+    sides = side_of(by_port[left].names), side_of(by_port[right].names)
+    # One name for both, such as that of a list of ports, says nothing.
+    if sides[0] is not sides[1] and (sides[0] is Side.RIGHT or sides[1] is Side.LEFT):
         left, right = right, left
     rest = ", ".join(port for port in by_port if port not in (left, right))
     doubt = f"of the large motors, those on {left} and {right} are taken for the wheels, not {rest}" if rest else ""
     return WheelMotors(left, right, by_port[left].where, doubt=doubt)
 
 
-def _left_over(devices: Sequence[Mention], kinds: Mapping[str, DeviceKind], usual: RobotSpec) -> WheelMotors:
+def _left_over(
+    devices: Sequence[Mention], kinds: Mapping[str, DeviceKind], usual: RobotSpec, other_tools: Collection[str]
+) -> WheelMotors:
     """Return the usual wheels, on other ports if the program needs theirs."""
     ports = (usual.left_port, usual.right_port)
-    if all(port in ports and kind is not DeviceKind.MEDIUM for port, kind in kinds.items()):
+    if not other_tools and all(port in ports and kind is not DeviceKind.MEDIUM for port, kind in kinds.items()):
         return WheelMotors(*ports)
-    tools = {one.port for one in devices if one.kind.is_motor and means_tool(one.names)}
+    tools = {one.port for one in devices if one.kind.is_motor and means_tool(one.names)} | {*other_tools}
     stay = [port for port in ports if kinds.get(port, DeviceKind.LARGE) is not DeviceKind.MEDIUM and port not in tools]
     free = [*stay, *(port for port in OUTPUT_PORTS if port not in kinds and port not in stay)]
     if len(free) >= 2:

@@ -37,7 +37,7 @@ _TOOL_WORDS = (
     "arm arms claw grip gripper grabber grab hand lift lifter lever crane fork forklift tool attachment attach head "
     "neck turret tilt shoot shooter cannon greifer kran hub pince bras garra tail flag hook catapult elbow wrist "
     "base elevator steer steering lenkung medium extra top legs turntable carriage roller rollers conveyor chute "
-    "feeder pen x y z"
+    "feed feeder belt pen x y z"
 )
 _TOOLS = frozenset(_TOOL_WORDS.split())
 

@@ -187,12 +187,12 @@ class DriveBase:
         ends = [end for control in (self.distance, self.heading) if (end := control.segment_end_us(now_us)) is not None]
         return min(ends, default=None)
 
-    def fall_behind(self, now_us: int, passed_us: int) -> None:
+    def fall_behind(self, now_us: int, passed_us: int, _motor: ServoMotor) -> None:
         """Take note that a motor is not where it is wanted to be; the second of two calls for a time does nothing."""
         if now_us == self._behind_us:
             return
         self._behind_us, self._at_us = now_us, -1
         millis, rates = (one.milli for one in self.motors), (one.counts_per_s for one in self.motors)
         (left, right), (left_rate, right_rate) = millis, rates
-        self.distance.fall_behind(now_us, passed_us, left + right, left_rate + right_rate)
-        self.heading.fall_behind(now_us, passed_us, left - right, left_rate - right_rate)
+        self.distance.lag(now_us, passed_us, left + right, left_rate + right_rate)
+        self.heading.lag(now_us, passed_us, left - right, left_rate - right_rate)

@@ -41,42 +41,8 @@ class Guide(Protocol):
     def segment_end_us(self, now_us: int) -> int | None:
         """Return when the current segment of the motion ends; None if it does not."""
 
-    def fall_behind(self, now_us: int, passed_us: int) -> None:
-        """Take note that a motor is not where it is wanted to be."""
-
-
-class OwnGuide:
-    """A motor's own controller as its guide."""
-
-    __slots__ = ("_control", "_motor")
-
-    def __init__(self, motor: ServoMotor) -> None:
-        self._motor, self._control = motor, motor.control
-
-    @property
-    def end_us(self) -> int | None:
-        """When the motion ends; None if it does not."""
-        return self._control.end_us
-
-    def halves(self, now_us: int, _motor: ServoMotor) -> int:
-        """Return where the motor is wanted to be."""
-        return 2 * self._control.milli(now_us)
-
-    def many_halves(self, times_us: range, _motor: ServoMotor) -> list[int]:
-        """Return where the motor is wanted to be at several times of one segment."""
-        return [2 * milli for milli in self._control.millis(times_us)]
-
-    def rate(self, now_us: int, _motor: ServoMotor) -> float:
-        """Return the wanted rate, in counts per second."""
-        return self._control.rate(now_us)
-
-    def segment_end_us(self, now_us: int) -> int | None:
-        """Return when the current segment of the motion ends; None if it does not."""
-        return self._control.segment_end_us(now_us)
-
-    def fall_behind(self, now_us: int, passed_us: int) -> None:
-        """Take note that the motor is not where it is wanted to be."""
-        self._control.fall_behind(now_us, passed_us, self._motor.milli, self._motor.counts_per_s)
+    def fall_behind(self, now_us: int, passed_us: int, motor: ServoMotor) -> None:
+        """Take note that a motor is not where it is wanted to be, for a time since the last call."""
 
 
 class ServoMotor:
@@ -90,7 +56,7 @@ class ServoMotor:
 
     __slots__ = (
         "_actuation", "_course", "_ending", "_fastest_deg", "_free_dps", "_free_us", "_guide", "_hz", "_jump_deg",
-        "_own", "_quiet", "_tick", "_tick_s", "_tick_us", "blocked_ticks", "control", "duty", "kind", "law", "mode",
+        "_quiet", "_tick", "_tick_s", "_tick_us", "blocked_ticks", "control", "duty", "kind", "law", "mode",
         "model", "position_deg", "sign", "speed_dps",
     )  # fmt: skip
 
@@ -105,7 +71,6 @@ class ServoMotor:
         """-1 if the program counts against the motor's own direction."""
         self.control = Controller(motor_settings(law, kind))
         """The motor's own controller."""
-        self._own = OwnGuide(self)
         self._guide: Guide | None = None
         self._ending = Ending.HOLD
         self._course: int | None = 0
@@ -126,7 +91,7 @@ class ServoMotor:
     @property
     def follows_itself(self) -> bool:
         """Whether it follows its own controller."""
-        return self._guide is self._own
+        return self._guide is self.control
 
     @property
     def milli(self) -> int:
@@ -146,9 +111,9 @@ class ServoMotor:
 
     def counts_per_s_at(self, now_us: int) -> int:
         """Return its speed at a time after the last tick."""
-        if self._guide is not None and self._course is not None:
-            return round(self._guide.rate(now_us, self))
-        return self.counts_per_s
+        if self._guide is None:
+            return round(self._free_dps * self.sign * COUNTS_PER_DEG)
+        return self.counts_per_s if self._course is None else round(self._guide.rate(now_us, self))
 
     def measured(self, now_us: int) -> Segment:
         """Return where a motion begins that nothing has controlled before, as the encoder shows it."""
@@ -178,7 +143,7 @@ class ServoMotor:
             self._course = round(self.position_deg * self.sign * HALVES_PER_DEG)
         if guide is not None:
             self.control.release()
-        self._guide, self._ending = guide or self._own, ending
+        self._guide, self._ending = guide or self.control, ending
         timed = guide is None and self.control.timed
         self.mode = FOREVER if self._guide.end_us is None else TIMED if timed else POSITION
         self.blocked_ticks, self.duty, self._jump_deg = 0, None, 0.0
@@ -329,7 +294,7 @@ class ServoMotor:
         if guide is None:
             return self._run_on(now_us)
         if self._course is None:
-            guide.fall_behind(now_us - self._tick_us, self._tick_us)
+            guide.fall_behind(now_us - self._tick_us, self._tick_us, self)
         halves = guide.halves(now_us, self)
         if self._course is not None:
             turned = (halves - self._course) * self.sign / HALVES_PER_DEG

@@ -6,6 +6,7 @@ import struct
 from collections.abc import Callable
 from typing import Any, ClassVar, Self
 
+from tuisim.core.profile import MS
 from tuisim.errors import NotSimulated
 from tuisim.shim.pybricks.brick import Connected
 
@@ -15,6 +16,12 @@ __all__ = [
 ]  # fmt: skip
 
 _ALONE = "there is one brick; a server and a client in the threads of one program can talk"
+
+
+CLIENT_WITHIN_MS, POLL_MS = 5000, 10
+"""A server gives up if no thread of the program makes a client within this time; it looks this often."""
+CONNECT_MS, SEND_MS = 500, 10
+"""What a connection and a message take, estimates: the library says nothing of it."""
 
 
 class Mailbox(Connected):
@@ -130,6 +137,7 @@ class MailboxHandlerMixIn(Connected):
         peers = [peer for name, peer in self._peers if brick in (None, name)]
         if brick is not None and not peers:
             raise ValueError(f'no paired devices matching "{brick}"')
+        self.brick.session.spend(SEND_MS * MS)
         for peer in peers:
             peer.receive(mbox, payload)
 
@@ -191,10 +199,16 @@ class BluetoothMailboxServer(MailboxHandlerMixIn):
         Raises:
             NotSimulated: the program has no client: another brick would have to connect.
         """
+        session = self.brick.session
+        until_ns = session.now + CLIENT_WITHIN_MS * MS
         while len(self._peers) < count:
-            if not BluetoothMailboxClient.exists:
+            if BluetoothMailboxClient.exists:
+                self._wait(_CONNECTION)
+            elif session.now >= until_ns:
                 raise NotSimulated("BluetoothMailboxServer.wait_for_connection: no other brick is simulated", _ALONE)
-            self._wait(_CONNECTION)
+            else:
+                # Another thread of the program may be about to make the client.
+                session.spend(POLL_MS * MS)
 
     def server_close(self) -> None:
         """Accept no more clients."""
@@ -227,6 +241,7 @@ class BluetoothMailboxClient(MailboxHandlerMixIn):
         server = BluetoothMailboxServer.newest
         if server is None:
             raise NotSimulated(f"BluetoothMailboxClient.connect: {brick!r} is not simulated", _ALONE)
+        self.brick.session.spend(CONNECT_MS * MS)
         self.join(brick, server)
         server.join(brick, self)
 

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import operator
+import re
 import sys
 import types
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import wraps
 from importlib import import_module
 from importlib.machinery import ModuleSpec
 from typing import Any
 
 from tuisim.core.profile import MS
 from tuisim.shim.session import DeviceSession
-from tuisim.shim.unsupported.modules import Hardware, HardwareModule, refused_part
+from tuisim.shim.unsupported.modules import Hardware, HardwareModule
 from tuisim.shim.waits import Wait, waits_for
 
 TICKS_PERIOD = 1 << 30
@@ -89,6 +91,12 @@ def install(session: DeviceSession) -> None:
     """Let a program import MicroPython's modules, and add their names to those of Python's modules that it has."""
     for name, more in (("time", clock_names(session)), ("gc", GARBAGE), ("os", FILES), ("sys", ERRORS)):
         vars(import_module(name)).update(more)
+    for name, function, lenient in (
+        ("collections", "namedtuple", _lenient_named_tuple),
+        ("_thread", "stack_size", _any_size),
+    ):
+        names = vars(import_module(name))
+        names[function] = lenient(names[function])
     module = sys.modules["micropython"] = HardwareModule("micropython", _MEMORY)
     vars(module).update(LANGUAGE)
     # What is built in comes before files of the same name.
@@ -153,12 +161,40 @@ def _opt_level(level: int | None = None) -> int | None:
     return 0 if level is None else None
 
 
+def _lenient_named_tuple(real: Callable[..., type]) -> Callable[..., type]:
+    """Return `namedtuple` as it is in MicroPython, too: names that Python does not allow are changed."""
+
+    @wraps(real)
+    def namedtuple(typename: str, field_names: Any, **named: Any) -> type:
+        try:
+            return real(typename, field_names, **named)
+        except ValueError:
+            fitting = re.sub(r"\W", "_", typename.strip())
+            return real(fitting if fitting.isidentifier() else f"_{fitting}", field_names, rename=True, **named)
+
+    return namedtuple
+
+
+def _any_size(real: Callable[..., int]) -> Callable[..., int]:
+    """Return `stack_size` that takes sizes that Python does not allow: they have no effect."""
+
+    @wraps(real)
+    def stack_size(size: int = 0) -> int:
+        try:
+            return real(size)
+        except ValueError:
+            return 0
+
+    return stack_size
+
+
 LANGUAGE: Mapping[str, Any] = {
     "alloc_emergency_exception_buf": _without_effect,
     "const": _unchanged,
     "heap_lock": _without_effect,
     "heap_unlock": _without_effect,
     "kbd_intr": _without_effect,
+    "mem_info": _without_effect,
     "native": _unchanged,
     "opt_level": _opt_level,
     "schedule": lambda function, argument: function(argument),
@@ -166,8 +202,12 @@ LANGUAGE: Mapping[str, Any] = {
 }
 """The names of `micropython` that can be used; others tell of its memory."""
 
+FREE_BYTES, USED_BYTES = 48_000_000, 200_000
+"""What a program is told of its memory, an estimate: the brick has 64 MB."""
+
 GARBAGE: Mapping[str, Any] = {
-    **{name: refused_part("gc", name, _MEMORY) for name in ("mem_alloc", "mem_free")},
+    "mem_alloc": lambda: USED_BYTES,
+    "mem_free": lambda: FREE_BYTES,
     "threshold": _without_effect,
 }
 """What `gc` has in MicroPython only."""

@@ -5,9 +5,13 @@ from __future__ import annotations
 import sys
 import types
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 from tuisim.core.profile import MotorLaw
+from tuisim.core.servo.motor import ServoMotor
+from tuisim.shim.brick import BuiltBrick, ports_hint
+from tuisim.shim.display import Screen
 from tuisim.shim.pybricks import (
     ev3devices,
     experimental,
@@ -27,6 +31,9 @@ from tuisim.shim.pybricks import (
 )
 from tuisim.shim.pybricks.brick import Brick, Connected
 from tuisim.shim.pybricks.unsimulated import IO_DEVICES, NXT_DEVICES, refused_classes
+from tuisim.shim.session import DeviceSession
+from tuisim.shim.sound import Mixer
+from tuisim.shim.unsupported.modules import HardwareFinder, OtherLibrary
 
 
 def _public(module: types.ModuleType, *names: str) -> dict[str, Any]:
@@ -70,11 +77,16 @@ def _version_4() -> Mapping[str, Mapping[str, Any]]:
     return {name: {**MODULES.get(name, {}), **changed.get(name, {})} for name in {**MODULES, **changed}}
 
 
-def install(brick: Brick) -> None:
+def install(session: DeviceSession, built: BuiltBrick, screen: Screen, mixer: Mixer) -> None:
     """Let a program import the library, and the modules of MicroPython."""
-    micropython.install(brick.session)
+    sys.meta_path.insert(0, OtherLibrary(("ev3dev2", "ev3dev"), "choose --profile ev3"))
+    sys.meta_path.append(HardwareFinder())
+    micropython.install(session)
+    motors = {port: motor for port, motor in built.motors.items() if isinstance(motor, ServoMotor)}
+    hint = partial(ports_hint, session)
+    brick = Brick(session, motors, built.sensors, built.lights, built.battery, screen, mixer, hint)
     Connected.brick = brick
-    law = brick.session.sim.spec.profile.motor_law
+    law = session.sim.spec.profile.motor_law
     names = _version_4() if law == MotorLaw.PYBRICKS_4 else MODULES
     speaker.set_volumes(brick.mixer, speaker.START_VOLUMES)
     made = {name: types.ModuleType(name) for name in names}

@@ -262,16 +262,16 @@ class Control(Connected):
             raise invalid_argument()
         self._control.settings = replace(self._control.settings, **changes)
 
-    def _set(self, given: dict[str, tuple[str, Any, int]]) -> None:
+    def _set(self, *given: tuple[str, Any, int]) -> None:
         """Change what is given.
 
         Args:
-            given: By parameter: the setting, the value or None, and what to multiply it by; 0 for counts per unit.
+            given: The name of a setting, the value or None, and what to multiply it by; 0 for counts per unit.
         """
         counts = self._control.settings.counts
         found = {
             setting: counts(whole(value)) if times == 0 else whole(value) * times
-            for setting, value, times in given.values()
+            for setting, value, times in given
             if value is not None
         }
         self._change(**found)
@@ -286,13 +286,7 @@ class Control(Connected):
             return units(settings.speed), units(settings.acceleration), settings.actuation // PERCENT
         if any(value is not None and whole(value) < 1 for value in (speed, acceleration, actuation)):
             raise invalid_argument()
-        self._set(
-            {
-                "speed": ("speed", speed, 0),
-                "acceleration": ("acceleration", acceleration, 0),
-                "actuation": ("actuation", actuation, PERCENT),
-            }
-        )
+        self._set(("speed", speed, 0), ("acceleration", acceleration, 0), ("actuation", actuation, PERCENT))
         return None
 
     def pid(
@@ -313,15 +307,9 @@ class Control(Connected):
                 settings.feed_forward // PERCENT,
             )  # fmt: skip
         self._set(
-            {
-                "kp": ("kp", kp, 1),
-                "ki": ("ki", ki, 1),
-                "kd": ("kd", kd, 1),
-                "integral_range": ("integral_range", integral_range, 0),
-                "integral_rate": ("integral_rate", integral_rate, 0),
-                "feed_forward": ("feed_forward", feed_forward, PERCENT),
-            }
-        )
+            ("kp", kp, 1), ("ki", ki, 1), ("kd", kd, 1), ("integral_range", integral_range, 0),
+            ("integral_rate", integral_rate, 0), ("feed_forward", feed_forward, PERCENT),
+        )  # fmt: skip
         return None
 
     def target_tolerances(self, speed: float | None = None, position: float | None = None) -> tuple[int, int] | None:
@@ -329,7 +317,7 @@ class Control(Connected):
         settings = self._control.settings
         if speed is None and position is None:
             return settings.units(settings.speed_tolerance), settings.units(settings.position_tolerance)
-        self._set({"speed": ("speed_tolerance", speed, 0), "position": ("position_tolerance", position, 0)})
+        self._set(("speed_tolerance", speed, 0), ("position_tolerance", position, 0))
         return None
 
     def stall_tolerances(self, speed: float | None = None, time: float | None = None) -> tuple[int, int] | None:
@@ -337,7 +325,7 @@ class Control(Connected):
         settings = self._control.settings
         if speed is None and time is None:
             return settings.units(settings.stall_speed), settings.stall_time_ms
-        self._set({"speed": ("stall_speed", speed, 0), "time": ("stall_time_ms", time, 1)})
+        self._set(("stall_speed", speed, 0), ("stall_time_ms", time, 1))
         return None
 
     def trajectory(self) -> tuple[int, ...] | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.shim.conftest import RunOn
-from tuisim.shim.browser_library import round_half_up
+from tuisim.shim.ev3dev.browser_library import round_half_up
 
 MOTOR = "from ev3dev2.motor import *\nm, t = LargeMotor('outB'), MoveTank('outB', 'outC')\n"
 

@@ -9,7 +9,7 @@ import pytest
 from tests.shim.checking import Table, Tables, cases, check
 from tests.shim.conftest import RunOn
 from tests.shim.table_older import BRICK, COLOR, MOTORS, SENSORS
-from tuisim.shim.older_library import MissingLibrary, surroundings
+from tuisim.shim.ev3dev.older_library import MissingLibrary, surroundings
 
 TABLES: Tables = {
     "motors": (MOTORS, "eyes", "empty"),

@@ -13,8 +13,8 @@ from functools import wraps
 from typing import Any
 
 from tuisim.core.profile import MS, MotorLaw
-from tuisim.shim.browser_library import speak_as_browser
 from tuisim.shim.device_files import DeviceFiles, free_of_charge
+from tuisim.shim.ev3dev.browser_library import speak_as_browser
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.unsupported.devices import other_sensors_note, refused_device
 from tuisim.shim.waits import Wait, waits_for
