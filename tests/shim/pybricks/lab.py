@@ -9,7 +9,9 @@ from typing import Any, cast
 from tuisim.core.profile import PROFILES, MotorLaw
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.runs.records import Stream
+from tuisim.shim.display import Screen
 from tuisim.shim.pybricks.brick import Brick, Connected
+from tuisim.shim.sound import Mixer
 
 TICK_NS = 10_000_000
 
@@ -32,7 +34,10 @@ class Lab:
         self.looks: list[Callable[[int], None]] = []
         self.sim: Any = SimpleNamespace(spec=SimpleNamespace(profile=PROFILES["lego-micropython"]))
         empty: Any = SimpleNamespace()
-        Connected.brick = self.brick = Brick(cast(Any, self), self.motors, {}, empty, empty, empty, empty, lambda _: "")
+        self.mixer, self.sounds = Mixer(), list[tuple[str, int, str]]()
+        Connected.brick = self.brick = Brick(
+            cast(Any, self), self.motors, {}, empty, empty, Screen(cast(Any, self)), self.mixer, lambda _: ""
+        )
 
     def spend(self, duration_ns: int) -> None:
         """Let time pass.
@@ -62,6 +67,11 @@ class Lab:
     def show(self, row: str, stream: Stream) -> None:
         """Keep what is recorded."""
         self.shown.append((row, stream))
+
+    def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:
+        """Keep a sound with its time in ms, and wait."""
+        self.sounds.append((text, self.now // 1_000_000, tones))
+        self.spend(wait_ns)
 
     def command(self) -> None:
         """Count nothing."""
