@@ -128,6 +128,12 @@ class Brick:
         print(f"tuisim: {text}", file=sys.__stderr__)
 
 
+ONLY_IN_4 = frozenset(
+    {"arc", "brake", "calibrate", "close", "curve", "done", "hold", "load", "model", "move_by", "stalled", "system"}
+)
+"""Attributes that some class has in version 4 of the library only."""
+
+
 class Connected:
     """A class of the library: its objects are parts of the brick."""
 
@@ -138,6 +144,11 @@ class Connected:
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.port or ''})"
+
+    def __getattr__(self, name: str) -> Any:
+        known = name in ONLY_IN_4
+        hint = ": it is of Pybricks 4, which --profile pybricks4 chooses" if known else ""
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}{hint}", name=name, obj=self)
 
 
 def invalid_argument() -> ValueError:
