@@ -1,4 +1,8 @@
-"""Programs for Pybricks, as school teams and beginners write them, run without any option as they do on a brick."""
+"""Programs for Pybricks, as school teams and beginners write them, run without any option as they do on a brick.
+
+What is in the table and in `stdout.txt` was recorded here, and then judged by the firmware's limits and ramps, as
+`expect.txt` tells. How far a robot rolls after `stop()` follows from the model of the motors alone.
+"""
 
 from __future__ import annotations
 
