@@ -82,7 +82,7 @@ CASES: Mapping[str, Case] = {
     "42_gyro_square": Case((1307, 430, 0)),
     "43_line_follow_p": Case((1183, 390, -178), code=3, given="--timeout 20"),
     "44_pid_line_two": Case((1427, 336, -77)),
-    "45_wall_follow": Case((2279, 394, -56), code=3, given="--timeout 30"),
+    "45_wall_follow": Case((2237, 257, 17), code=3, given="--timeout 30"),
     "46_gripper_arm": Case(),
     "47_color_sort": Case(),
     "48_threads": Case((1181, 571, 180)),
