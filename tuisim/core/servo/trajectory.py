@@ -174,12 +174,11 @@ def endless_move(start: Segment, rate: int, acceleration: int, fastest: int) -> 
     limit = min(fastest, acceleration * ENDLESS_S)
     wanted, w0 = max(-limit, min(limit, rate)), max(-limit, min(limit, start.rate))
     change = wanted - w0
+    speeds_up = change > 0 or (not change and rate < 0)
+    first = Segment(at, start.milli, w0, acceleration if speeds_up else -acceleration)
     if not change:
-        even = Segment(at, start.milli, wanted, 0)
-        return Trajectory(
-            even._replace(acceleration=acceleration if rate < 0 else -acceleration), even, even, even, True
-        )
-    first = Segment(at, start.milli, w0, acceleration if change > 0 else -acceleration)
+        even = first._replace(acceleration=0)
+        return Trajectory(first, even, even, even, True)
     t1 = at + abs(change) * 1000 // acceleration * MS_US
     even = Segment(t1, first.milli_at(t1), wanted, 0)
     return Trajectory(first, even, even, even, True)
