@@ -1,4 +1,7 @@
-"""Programs as schools, teams and beginners write them for a real brick run as they do there."""
+"""Programs as schools, teams and beginners write them for a real brick run as they do there.
+
+`expect.txt` was written before the program was run here.
+"""
 
 from __future__ import annotations
 

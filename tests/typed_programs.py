@@ -1,7 +1,7 @@
 """Collections of programs that run as people typed them.
 
-Each program is a folder: `main.py` with what it needs, `expect.txt`, which says in words what a brick does and was
-written before the program was run here, and `stdout.txt` with the lines that it prints.
+Each program is a folder: `main.py` with what it needs, `expect.txt`, which says in words what a brick does, and
+`stdout.txt` with the lines that it prints.
 """
 
 from __future__ import annotations

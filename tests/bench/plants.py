@@ -37,6 +37,18 @@ def burn(solids, pose):
 Solids._boxes_near = burn
 """
 """Makes every obstacle near the robot cost so many turns of a loop."""
+FOLLOWING = """
+from tuisim.core.servo.control import Controller
+milli = Controller.milli
+
+def burn(control, now_us):
+    for _ in range({turns}):
+        pass
+    return milli(control, now_us)
+
+Controller.milli = burn
+"""
+"""Makes every look at a trajectory cost so many turns of a loop."""
 ANSWERS = """
 from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel

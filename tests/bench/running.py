@@ -39,6 +39,30 @@ while True:
 """
 """With the edge of a broad line between the sensors, nothing in the loop but reading and steering."""
 
+TWIN = """\
+from {imports}
+while True:
+    turn = (left.{reading} + right.{reading}) / 100 - 1
+    {drive}
+"""
+TWINS = {
+    "ev3": TWIN.format(
+        imports="ev3dev2.motor import MoveTank\nfrom ev3dev2.sensor.lego import ColorSensor\n"
+        "base, left, right = MoveTank('outB', 'outC'), ColorSensor('in2'), ColorSensor('in3')",
+        reading="reflected_light_intensity",
+        drive="base.on(20 + 20 * turn, 20 - 20 * turn)",
+    ),
+    "lego-micropython": TWIN.format(
+        imports="pybricks.ev3devices import ColorSensor, Motor\nfrom pybricks.parameters import Port\n"
+        "from pybricks.robotics import DriveBase\n"
+        "base = DriveBase(Motor(Port.B), Motor(Port.C), 56, 180)\n"
+        "left, right = ColorSensor(Port.S2), ColorSensor(Port.S3)",
+        reading="reflection()",
+        drive="base.drive(100, 65 * turn)",
+    ),
+}
+"""The line follower for each library, by the profile."""
+
 MOVES = """\
 while True:
     tank_drive.on_for_rotations(50, 50, 1)
@@ -73,17 +97,17 @@ def started_by_itself() -> AbstractContextManager[object]:
     return patch.object(process, "_fork", lambda *_: None)
 
 
-def run_cpu_s(text: str, spec: RunSpec, options: RunOptions) -> float:
+def run_cpu_s(text: str, spec: RunSpec, options: RunOptions, prelude: str = "preloaded") -> float:
     """Run a program to its end, or to the limit of simulated time; return the CPU seconds of its process."""
     with started_by_itself():
         before = children_cpu_s()
-        handle = start_run(Program("bench.py", text, "preloaded"), spec, options, unpacked_store())
+        handle = start_run(Program("bench.py", text, prelude), spec, options, unpacked_store())
         ended = handle.wait()
     assert ended is not None and ended.end in ("time_limit", "finished"), ended
     return measured(children_cpu_s() - before, "CPU time of a run")
 
 
-def simulating_cpu_s(text: str, spec: RunSpec, options: RunOptions) -> float:
+def simulating_cpu_s(text: str, spec: RunSpec, options: RunOptions, prelude: str = "preloaded") -> float:
     """Return the CPU seconds that a run takes beyond those of an empty program, which runs first."""
-    started_s = run_cpu_s(EMPTY, spec, RunOptions())
-    return measured(run_cpu_s(text, spec, options) - started_s, "CPU time beyond the start of a run")
+    started_s = run_cpu_s(EMPTY, spec, RunOptions(), prelude)
+    return measured(run_cpu_s(text, spec, options, prelude) - started_s, "CPU time beyond the start of a run")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from tests.bench.figures import Figure
 from tests.bench.references import tick_cpu_s, tick_speed
-from tests.bench.running import LINE, LOG, MOVES, simulating_cpu_s, spec_of
+from tests.bench.running import LINE, LOG, MOVES, TWINS, simulating_cpu_s, spec_of
 from tests.bench.sampling import Effort, in_turns
 from tuisim.core.profile import PROFILES
 from tuisim.runs.handle import RunOptions
@@ -62,3 +62,18 @@ def speed(
     speeds_a_tick = limit_s / samples.ratio
     ratio = tick_speed(speeds_a_tick, 1.0, PROFILES[profile].tick_hz)
     return Figure(name, limit_s / samples.value, UNIT, goal, ratio=ratio)
+
+
+TWIN_S = 1000.0
+"""Simulated time of a program of which there is one for each library."""
+
+
+def libraries(effort: Effort) -> Iterator[Figure]:
+    """Yield how fast a program for Pybricks is beside the same one for ev3dev2."""
+    options = RunOptions(time_limit_s=TWIN_S * effort.simulated)
+
+    def cpu_s(profile: str) -> float:
+        return simulating_cpu_s(TWINS[profile], spec_of(LOADS["line follower"].mat, profile), options, "none")
+
+    samples = in_turns(lambda: cpu_s("ev3"), lambda: cpu_s("lego-micropython"), effort)
+    yield Figure("speed, line follower, Pybricks / ev3dev2", samples.ratio, "x", 1.0)

@@ -15,7 +15,19 @@ import pytest
 from tests.bench import back, batches, frames, listing, recording, run_key, stops, variables
 from tests.bench.__main__ import BENCHES
 from tests.bench.figures import Figure
-from tests.bench.plants import ANSWERS, CROWDED, DRAWN, LARGE, RECORDED, SLOW, WALKS, here, in_commands, in_runs
+from tests.bench.plants import (
+    ANSWERS,
+    CROWDED,
+    DRAWN,
+    FOLLOWING,
+    LARGE,
+    RECORDED,
+    SLOW,
+    WALKS,
+    here,
+    in_commands,
+    in_runs,
+)
 from tests.bench.references import usual
 from tests.bench.sampling import Effort
 from tuisim.config.preferences import keep
@@ -82,6 +94,10 @@ def test_slow_stops_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stops, "PATIENCE_S", 60.0)
     monkeypatch.setattr(handle, "STUCK_AFTER_S", 20 * handle.STUCK_AFTER_S)
     assert_worse(before, figures_of("stop", in_runs(ANSWERS.format(turns=15_000_000))))
+
+
+def test_slow_trajectories_are_seen() -> None:
+    assert_each_worse("libraries", in_runs(FOLLOWING.format(turns=1500)))
 
 
 def test_slow_obstacles_are_seen() -> None:

@@ -89,3 +89,16 @@ def test_a_motor_that_held_stands_when_it_is_let_go() -> None:
     robot.base.move(robot.now_us, 0, 0)
     robot.base.stop(robot.now_us, None)
     assert robot.base.rates_at(robot.now_us) == (0, 0)
+
+
+def test_a_robot_at_a_wall_drives_back() -> None:
+    robot = Robot(WALLED)
+    robot.base.drive(robot.now_us, 200, 0)
+    while not robot.motors[0].blocked_ticks:
+        robot.sim.tick_once()
+    at_mm = robot.sim.drive.x_mm
+    # The move turns round: the way out of the motion before leads into the wall.
+    robot.base.move(robot.now_us, -100, 0)
+    robot.sim.advance(300)
+    assert robot.sim.drive.x_mm == pytest.approx(at_mm - 100, abs=10)
+    assert robot.base.done(robot.now_us)

@@ -86,8 +86,7 @@ class Experiment:
             if control.trajectory is None:
                 found.append(None)
                 continue
-            reference = control.reference(now_ms * 1000)
-            found.append((divided(reference.milli, MILLI), reference.rate))
+            found.append((divided(control.milli(now_ms * 1000), MILLI), control.rate(now_ms * 1000)))
         self.seen.append((now_ms, found))
 
     def run(self) -> Experiment:

@@ -14,7 +14,6 @@ from tuisim.core.servo.trajectory import (
     MILLI,
     MS_US,
     Measure,
-    Reference,
     Segment,
     Trajectory,
     angle_move,
@@ -40,12 +39,26 @@ class Ending(IntEnum):
 
 
 class Controller:
-    """Follows one trajectory, or none."""
+    """Follows one trajectory, or none.
 
-    __slots__ = ("_behind_milli", "_paused_us", "_stalled_us", "duty_limit", "settings", "timed", "trajectory")
+    Args:
+        slips: Whether a move after something held the motion back begins where the motion is, not where it would be:
+            the wheels of a real robot that pushes a wall slip, and count on.
+    """
 
-    def __init__(self, settings: ControlSettings) -> None:
-        self.settings = settings
+    __slots__ = (
+        "_behind_milli",
+        "_paused_us",
+        "_slips",
+        "_stalled_us",
+        "duty_limit",
+        "settings",
+        "timed",
+        "trajectory",
+    )
+
+    def __init__(self, settings: ControlSettings, *, slips: bool = False) -> None:
+        self.settings, self._slips = settings, slips
         self.trajectory: Trajectory | None = None
         """None while it is passive."""
         self.timed = False
@@ -65,11 +78,6 @@ class Controller:
         return self.settings.actuation if self.duty_limit is None else self.duty_limit
 
     # The reference
-
-    def reference(self, now_us: int) -> Reference:
-        """Return where the trajectory is, without what the motion is behind."""
-        assert self.trajectory is not None
-        return self.trajectory.at(now_us - self._paused_us)
 
     def milli(self, now_us: int) -> int:
         """Return where the motion is wanted to be, in thousandths of a count."""
@@ -171,6 +179,8 @@ class Controller:
         Raises:
             ValueError: the time is negative or too long.
         """
+        if time_us is None and self._runs_at(now_us, rate):
+            return
         settings = self.settings
         acceleration = min(abs(acceleration), settings.acceleration)
         start, spliced = self._starts(now_us, measured)
@@ -185,9 +195,18 @@ class Controller:
                 found = timed_move(spliced, takes_us, rate, acceleration, settings.speed)
         self._begin(found, timed=True)
 
+    def _runs_at(self, now_us: int, rate: int) -> bool:
+        """Return whether a motion at a rate has reached it, so that the same command changes nothing."""
+        if not self.timed or self.trajectory is None or self._paused_us or self._behind_milli or self._stalled_us:
+            return False
+        even = self.trajectory.even
+        # After whole milliseconds there is no rounding that a new trajectory would begin with.
+        passed_us = now_us - even.start_us
+        return self.trajectory.endless and even.rate == rate and passed_us >= 0 and not passed_us % MS_US
+
     def _starts(self, now_us: int, measured: Measure) -> tuple[Segment, Segment | None]:
         """Return where a new trajectory begins, and where the running segment began, if it changes the speed."""
-        if self.trajectory is None:
+        if self.trajectory is None or (self._slips and self._behind_milli):
             return measured(now_us), None
         then_us = now_us - self._paused_us
         running = self.trajectory.segment(then_us)
@@ -213,7 +232,8 @@ class Controller:
             passed_us: Time since the last call, or since the motion was last where it was wanted.
             milli, rate: Where the motion is, and how fast.
         """
-        settings = self.settings
+        settings, trajectory = self.settings, self.trajectory
+        assert trajectory is not None
         error = abs(self.milli(now_us) - milli)
         power = settings.kp * error // MILLI
         limit = self.actuation - settings.feed_forward + settings.kp * abs(rate) * PAUSE_MARGIN_MS // 1000
@@ -222,6 +242,11 @@ class Controller:
             return
         if self.timed:
             self._behind_milli += self.milli(now_us) - self.milli(now_us - passed_us)
+        elif self._slips and self.rate(now_us) * (trajectory.end.milli - milli) < 0:
+            # Something blocks the way out of the motion before: the move begins where it is.
+            here, target = Segment(now_us, milli, 0, 0), divided(trajectory.end.milli, MILLI)
+            acceleration = abs(trajectory.last.acceleration)
+            self._begin(angle_move(here, target, trajectory.even.rate, acceleration, settings.speed), timed=False)
         else:
             self._paused_us += passed_us
         self._stalled_us = self._stalled_us + passed_us if abs(rate) < settings.stall_speed else 0

@@ -8,6 +8,7 @@ from __future__ import annotations
 from math import pi
 from typing import TYPE_CHECKING
 
+from tuisim.core.motors import FOREVER
 from tuisim.core.servo.control import Controller, Ending
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.servo.settings import FIRMWARES, ControlSettings, pair_settings
@@ -65,9 +66,9 @@ class DriveBase:
         self.left, self.right, self.motors = left, right, (left, right)
         ours = left.control.settings, right.control.settings
         distance, heading = base_settings(*ours, wheel_diameter_mm, axle_track_mm)
-        self.distance = Controller(distance)
+        self.distance = Controller(distance, slips=True)
         """Controls the sum; its units are mm."""
-        self.heading = Controller(heading)
+        self.heading = Controller(heading, slips=True)
         """Controls the difference; its units are degrees."""
         self.usual = usual_settings(left.law, self.distance.settings, self.heading.settings)
         """How it moves, unless the program says something else; in mm and degrees."""
@@ -122,12 +123,15 @@ class DriveBase:
 
     def drive(self, now_us: int, speed_mm_s: int, turn_rate_dps: int) -> None:
         """Drive on at a speed and a rate of turn."""
+        runs = self.active and all(motor.mode == FOREVER and not motor.blocked_ticks for motor in self.motors)
         self._begin()
         distance, heading = self.distance, self.heading
         ours, other = distance.settings, heading.settings
         distance.run(now_us, self._total, ours.counts(speed_mm_s), ours.acceleration)
         heading.run(now_us, self._difference, other.counts(turn_rate_dps), other.acceleration)
-        self._take(Ending.HOLD)
+        self._at_us = -1
+        if not runs:
+            self._take(Ending.HOLD)
 
     def stop(self, now_us: int, duty: int | None) -> None:
         """Let go of the motors, and run them with a power; see `ServoMotor.run_freely`."""

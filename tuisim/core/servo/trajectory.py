@@ -17,7 +17,7 @@ MILLI = 1000
 """Thousandths of a count in a count."""
 LONGEST_US = 1_800_000_000
 """No move takes longer than this: half an hour."""
-ENDLESS_US = 60_000_000
+ENDLESS_S = 60
 """What the firmware assumes an endless move to take. It has no effect on the motion."""
 
 
@@ -35,15 +35,6 @@ def duration_us(change: int, rate: int) -> int:
 def rate_change(acceleration: int, time_us: int) -> int:
     """Return how much an acceleration changes a rate."""
     return divided(acceleration * (time_us // MS_US), 1000)
-
-
-class Reference(NamedTuple):
-    """Where a trajectory is at one time."""
-
-    milli: int
-    """Position in thousandths of a count."""
-    rate: int
-    acceleration: int
 
 
 class Segment(NamedTuple):
@@ -111,11 +102,6 @@ class Trajectory(NamedTuple):
         if self.endless or time_us > self.end.start_us:
             return None
         return self.last.start_us if time_us < self.last.start_us else self.end.start_us
-
-    def at(self, time_us: int) -> Reference:
-        """Return the reference at a time."""
-        segment = self.segment(time_us)
-        return Reference(segment.milli_at(time_us), segment.rate_at(time_us), segment.acceleration)
 
 
 def standing(time_us: int, milli: int) -> Trajectory:
@@ -185,21 +171,17 @@ def endless_move(start: Segment, rate: int, acceleration: int, fastest: int) -> 
         fastest: The highest rate.
     """
     at = start.start_us
-    limit = min(fastest, rate_change(acceleration, ENDLESS_US))
+    limit = min(fastest, acceleration * ENDLESS_S)
     wanted, w0 = max(-limit, min(limit, rate)), max(-limit, min(limit, start.rate))
     change = wanted - w0
+    speeds_up = change > 0 or (not change and rate < 0)
+    first = Segment(at, start.milli, w0, acceleration if speeds_up else -acceleration)
     if not change:
-        even = Segment(at, start.milli, wanted, 0)
-        return Trajectory(Segment(at, start.milli, wanted, _away(wanted, rate, acceleration)), even, even, even, True)
-    first = Segment(at, start.milli, w0, acceleration if change > 0 else -acceleration)
+        even = first._replace(acceleration=0)
+        return Trajectory(first, even, even, even, True)
     t1 = at + abs(change) * 1000 // acceleration * MS_US
     even = Segment(t1, first.milli_at(t1), wanted, 0)
     return Trajectory(first, even, even, even, True)
-
-
-def _away(wanted: int, rate: int, acceleration: int) -> int:
-    """Return the acceleration of a first segment without length: that of slowing down."""
-    return acceleration if wanted < 0 or rate < 0 else -acceleration
 
 
 def timed_move(start: Segment, time_us: int, rate: int, acceleration: int, fastest: int) -> Trajectory:

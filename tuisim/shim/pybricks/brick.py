@@ -118,14 +118,10 @@ class Brick:
         self.say_once(what, told)
 
     def say_once(self, subject: str, text: str) -> None:
-        """Say something to the user, unless something was said of the subject."""
+        """Say something to the user, in the program's error output, unless something was said of the subject."""
         if subject not in self.said:
             self.said.add(subject)
-            self.say(text)
-
-    def say(self, text: str) -> None:
-        """Say something to the user, in the program's error output."""
-        print(f"tuisim: {text}", file=sys.__stderr__)
+            print(f"tuisim: {text}", file=sys.__stderr__)
 
 
 ONLY_IN_4 = frozenset(
@@ -161,22 +157,26 @@ def refused(text: str) -> RuntimeError:
     return NotImplementedError(text)  # as on the brick
 
 
-def not_permitted() -> OSError:
+FirmwareError: Any = type("OSError", (OSError,), {"__module__": "builtins"})
+"""An OSError that is shown as on the brick: Python makes others of some numbers."""
+
+
+def not_permitted() -> Any:
     """Return the firmware's error about a command that must not be given now."""
-    return OSError(
+    return FirmwareError(
         errno.EPERM,
         "EPERM:\n\nThis operation is not permitted now: the motor is in use by a drive base, or a move is under way."
         "\n--> Call stop() first.",
     )
 
 
-def no_device(hint: str) -> OSError:
+def no_device(hint: str) -> Any:
     """Return the firmware's error about a port without the device.
 
     Args:
         hint: What is on the ports.
     """
-    return OSError(
+    return FirmwareError(
         errno.ENODEV,
         f"ENODEV:\n\nA sensor or motor is not connected to the specified port.\n--> Check the port of the program, "
         f"and the robot.\n--> {hint}",

@@ -6,6 +6,7 @@ import operator
 import re
 import sys
 import types
+from collections import namedtuple
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import wraps
 from importlib import import_module
@@ -91,12 +92,9 @@ def install(session: DeviceSession) -> None:
     """Let a program import MicroPython's modules, and add their names to those of Python's modules that it has."""
     for name, more in (("time", clock_names(session)), ("gc", GARBAGE), ("os", FILES), ("sys", ERRORS)):
         vars(import_module(name)).update(more)
-    for name, function, lenient in (
-        ("collections", "namedtuple", _lenient_named_tuple),
-        ("_thread", "stack_size", _any_size),
-    ):
+    for name, function, fitted in (("collections", "namedtuple", _named_tuple), ("_thread", "stack_size", lambda _: 0)):
         names = vars(import_module(name))
-        names[function] = lenient(names[function])
+        names[function] = _lenient(names[function], fitted)
     module = sys.modules["micropython"] = HardwareModule("micropython", _MEMORY)
     vars(module).update(LANGUAGE)
     # What is built in comes before files of the same name.
@@ -161,31 +159,22 @@ def _opt_level(level: int | None = None) -> int | None:
     return 0 if level is None else None
 
 
-def _lenient_named_tuple(real: Callable[..., type]) -> Callable[..., type]:
-    """Return `namedtuple` as it is in MicroPython, too: names that Python does not allow are changed."""
+def _lenient(real: Callable[..., Any], fitted: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function that also takes what only MicroPython's own takes: it is then fitted to Python's."""
 
     @wraps(real)
-    def namedtuple(typename: str, field_names: Any, **named: Any) -> type:
+    def function(*given: Any, **named: Any) -> Any:
         try:
-            return real(typename, field_names, **named)
+            return real(*given, **named)
         except ValueError:
-            fitting = re.sub(r"\W", "_", typename.strip())
-            return real(fitting if fitting.isidentifier() else f"_{fitting}", field_names, rename=True, **named)
+            return fitted(*given, **named)
 
-    return namedtuple
+    return function
 
 
-def _any_size(real: Callable[..., int]) -> Callable[..., int]:
-    """Return `stack_size` that takes sizes that Python does not allow: they have no effect."""
-
-    @wraps(real)
-    def stack_size(size: int = 0) -> int:
-        try:
-            return real(size)
-        except ValueError:
-            return 0
-
-    return stack_size
+def _named_tuple(name: str, fields: Any, **named: Any) -> type:
+    """Return a named tuple whose names Python does not allow: they are changed."""
+    return namedtuple("_" + re.sub(r"\W", "_", name.strip()), fields, rename=True, **named)
 
 
 LANGUAGE: Mapping[str, Any] = {

@@ -250,31 +250,26 @@ class Control(Connected):
         """Counts per unit."""
         return self._control.settings.counts_per_unit
 
-    def _change(self, **changes: int) -> None:
-        """Change settings, in counts.
+    def _set(self, *given: tuple[str, Any, int]) -> None:
+        """Change what is given.
+
+        Args:
+            given: The name of a setting, the value or None, and what to multiply it by; 0 for counts per unit.
 
         Raises:
             OSError: a move is under way, or the motor holds.
         """
         if self._control.trajectory is not None:
             raise not_permitted()
-        if any(value < 0 for value in changes.values()):
-            raise invalid_argument()
-        self._control.settings = replace(self._control.settings, **changes)
-
-    def _set(self, *given: tuple[str, Any, int]) -> None:
-        """Change what is given.
-
-        Args:
-            given: The name of a setting, the value or None, and what to multiply it by; 0 for counts per unit.
-        """
-        counts = self._control.settings.counts
-        found = {
-            setting: counts(whole(value)) if times == 0 else whole(value) * times
+        settings = self._control.settings
+        changes = {
+            setting: settings.counts(whole(value)) if times == 0 else whole(value) * times
             for setting, value, times in given
             if value is not None
         }
-        self._change(**found)
+        if any(value < 0 for value in changes.values()):
+            raise invalid_argument()
+        self._control.settings = replace(settings, **changes)
 
     def limits(
         self, speed: float | None = None, acceleration: float | None = None, actuation: float | None = None

@@ -72,18 +72,23 @@ class DriveBase(Connected):
 
         return self.brick.finish(self.brick.until_done(done, lambda: base.end_us))
 
-    def drive(self, *args: float, **named: float) -> None:
-        """Drive on at a speed in mm/s and a rate of turn in degrees per second; see `_drive`."""
-        if "drive_speed" in named:
-            named["speed"] = named.pop("drive_speed")
-        self._drive(*args, **named)
+    def drive(
+        self, speed: float | None = None, turn_rate: float | None = None, *, drive_speed: float | None = None
+    ) -> None:
+        """Drive on at a speed in mm/s and a rate of turn in degrees per second.
 
-    def _drive(self, speed: float, turn_rate: float) -> None:
-        self._base.drive(self._command(), whole(speed), whole(turn_rate))
+        Args:
+            speed, turn_rate: Both are needed.
+            drive_speed: The speed, under the name that the handbook gives it.
+        """
+        speed = drive_speed if speed is None else speed
+        if speed is None or turn_rate is None:
+            raise TypeError("drive() needs a speed and a turn_rate")
+        self._base.drive(self.brick.command(), whole(speed), whole(turn_rate))
 
     def drive_time(self, speed: float, steering: float, time: float) -> None:
         """Drive for a time in milliseconds, and coast; from version 1.0."""
-        self._drive(speed, steering)
+        self.drive(speed, steering)
         wait(time)
         self.stop()
 

@@ -135,7 +135,7 @@ class DriveBase(robotics.DriveBase):
         begin = base.millis_at(self._command())[0 if by_way else 1]
         control, way = (base.distance, distance_mm) if by_way else (base.heading, angle_deg)
         target = abs(way) * control.settings.counts_per_unit * MILLI
-        self._drive(speed, turn_rate)
+        self.drive(speed, turn_rate)
         if not wait:
             return None
 

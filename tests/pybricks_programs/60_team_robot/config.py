@@ -1,0 +1,4 @@
+TEAM = "Brick Busters 4821"
+WHEEL = 81.6
+TRACK = 128
+SPEED = 180
