@@ -41,7 +41,7 @@ LEAST = 3.0
 """So much worse is a figure with what is planted, at least: it makes the work more than ten times slower."""
 NOTHING = "\x1b[m"
 """A sequence that changes nothing on the screen."""
-RATES = ("/ CPU s", "/ s", "frames")
+RATES = ("/ CPU s", "/ s", "frames", "as fast")
 """What the units of figures end with of which more is better."""
 
 
