@@ -24,7 +24,7 @@ from tests.bench.references import usual
 from tests.bench.run_key import run_key
 from tests.bench.running import EMPTY, begin
 from tests.bench.sampling import QUICK, THOROUGH, Effort, MeasuringError
-from tests.bench.speed import LOADS, libraries, speeds
+from tests.bench.speed import LOADS, libraries, noise, speeds
 from tests.bench.starts import first_line, first_paint, help_text, imports
 from tests.bench.stops import stop_latency
 from tests.bench.variables import variables
@@ -34,6 +34,7 @@ from tuisim.runs.handle import RunOptions
 
 BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "speed": speeds,
+    "noise": noise,
     "libraries": libraries,
     "crowded": crowded,
     "first-line": first_line,

@@ -37,6 +37,18 @@ def burn(solids, pose):
 Solids._boxes_near = burn
 """
 """Makes every obstacle near the robot cost so many turns of a loop."""
+NOISY = """
+from tuisim.core import noise
+moved = noise._moved
+
+def burn(values, level):
+    for _ in range({turns}):
+        pass
+    return moved(values, level)
+
+noise._moved = burn
+"""
+"""Makes every channel of a noisy reading cost so many turns of a loop."""
 FOLLOWING = """
 from tuisim.core.servo.control import Controller
 milli = Controller.milli

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import AbstractContextManager
+from types import MappingProxyType
 from unittest.mock import patch
 
 from tests.bench.processes import children_cpu_s
@@ -77,9 +79,11 @@ def unpacked_store() -> RunStore:
     return RunStore(RunStore().home)
 
 
-def spec_of(mat: str = "Grey_bands", profile: str = "robolab") -> RunSpec:
-    """Return what a program is run with."""
-    return build_run_spec(Settings({"background": mat, "profile": profile}))
+def spec_of(
+    mat: str = "Grey_bands", profile: str = "robolab", values: Mapping[str, int] = MappingProxyType({})
+) -> RunSpec:
+    """Return what a program is run with; further values by their path."""
+    return build_run_spec(Settings({"background": mat, "profile": profile, **values}))
 
 
 def begin(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 from tests.bench.figures import Figure
 from tests.bench.references import tick_cpu_s, tick_speed
@@ -77,3 +78,21 @@ def libraries(effort: Effort) -> Iterator[Figure]:
 
     samples = in_turns(lambda: cpu_s("ev3"), lambda: cpu_s("lego-micropython"), effort)
     yield Figure("speed, line follower, Pybricks / ev3dev2", samples.ratio, "x as fast", 1.0)
+
+
+NOISE: Mapping[str, int] = {"noise.light": 10, "noise.motor": 50}
+MOST_WITH_NOISE: Mapping[str, float] = {"log": 2.5, "line follower": 3.0}
+"""By load: how many times as much CPU it takes with noise."""
+
+
+def noise(effort: Effort) -> Iterator[Figure]:
+    """Yield what noise costs."""
+    for name, most in MOST_WITH_NOISE.items():
+        load = LOADS[name]
+        options = RunOptions(time_limit_s=load.simulated_s * effort.simulated)
+
+        def cpu_s(values: Mapping[str, int], load: Load = load, options: RunOptions = options) -> float:
+            return simulating_cpu_s(load.text, spec_of(load.mat, values=values), options)
+
+        samples = in_turns(partial(cpu_s, NOISE), partial(cpu_s, {}), effort)
+        yield Figure(f"noise, {name}", samples.ratio, "x", most=most)

@@ -21,6 +21,7 @@ from tests.bench.plants import (
     DRAWN,
     FOLLOWING,
     LARGE,
+    NOISY,
     RECORDED,
     SLOW,
     WALKS,
@@ -94,6 +95,10 @@ def test_slow_stops_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stops, "PATIENCE_S", 60.0)
     monkeypatch.setattr(handle, "STUCK_AFTER_S", 20 * handle.STUCK_AFTER_S)
     assert_worse(before, figures_of("stop", in_runs(ANSWERS.format(turns=15_000_000))))
+
+
+def test_slow_noise_is_seen() -> None:
+    assert_each_worse("noise", in_runs(NOISY.format(turns=3000)))
 
 
 def test_slow_trajectories_are_seen() -> None:

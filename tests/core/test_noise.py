@@ -35,7 +35,7 @@ def drawn(disc: bytes, level: int, count: int) -> Iterator[tuple[float, ...]]:
     """Mean channels as they are read."""
     sums = sum(disc[0::3]), sum(disc[1::3]), sum(disc[2::3])
     for tick in range(count):
-        yield tuple(one / COUNT for one in noisy_sums(disc, sums, level, reading_noise(7, tick, "left")))
+        yield tuple(one / COUNT for one in noisy_sums(lambda: disc, COUNT, sums, level, reading_noise(7, tick, "left")))
 
 
 def of_pixels(disc: bytes, level: int, count: int) -> Iterator[tuple[float, ...]]:
@@ -100,7 +100,7 @@ def test_pixels_have_the_mean_that_is_read(kind: str) -> None:
     channel = disc[0::3]
     sums = sum(channel), sum(channel), sum(channel)
     for tick in range(60):
-        total = noisy_sums(disc, sums, level, reading_noise(3, tick, "right"))[0]
+        total = noisy_sums(lambda: disc, COUNT, sums, level, reading_noise(3, tick, "right"))[0]
         pixels = noisy_channel(channel, total, level, stream(3, tick, "right", COUNT))
         assert sum(pixels) == total
         assert all(abs(pixel - clear) <= level for pixel, clear in zip(pixels, channel, strict=True))

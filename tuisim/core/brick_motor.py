@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left
+from collections.abc import Sequence
 from itertools import accumulate, repeat
 from operator import neg
 
@@ -160,6 +161,24 @@ class BrickMotor:
             return Glide([0.0] * ticks, [self.position_deg] * ticks)
         sign, tick_s = self.sign, self._tick_s
         turns = [speed * sign * tick_s for speed in self._speeds_ahead(ticks)]
+        counts = list(accumulate(turns, initial=self.position_deg))
+        self.position_deg = counts[-1]
+        return Glide(turns, counts[1:])
+
+    def glide_noisily(self, ticks: int, noise_dps: Sequence[float]) -> Glide:
+        """Run quiet ticks with noise added to the speed in each; for moves that do not end at a position."""
+        if self.mode == STOPPED:
+            return Glide([0.0] * ticks, [self.position_deg] * ticks)
+        sign, tick_s, limit, steady = self.sign, self._tick_s, self._limit_dps, self.speed_dps
+        # The products of `step` and `_disturbed`, without a call per tick.
+        if steady == self.target_dps:
+            noisy: Sequence[float] = [round(steady + noise) for noise in noise_dps] if steady else [0] * ticks
+        else:
+            speeds = zip(self._speeds_ahead(ticks), noise_dps, strict=True)
+            noisy = [round(speed + noise) if speed else 0 for speed, noise in speeds]
+        if max(noisy) > limit or min(noisy) < -limit:
+            noisy = [max(-limit, min(limit, one)) for one in noisy]
+        turns = [one * sign * tick_s for one in noisy]
         counts = list(accumulate(turns, initial=self.position_deg))
         self.position_deg = counts[-1]
         return Glide(turns, counts[1:])

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, assert_never
 from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.collision import Solids
-from tuisim.core.drive import BrickDrive, BrowserDrive, Drive, Records, mm_per_degree
+from tuisim.core.drive import BrickDrive, BrowserDrive, Drive, Glide, Records, mm_per_degree
 from tuisim.core.end_stops import flags_at_start
-from tuisim.core.motors import Motor, MotorState, top_speed_dps
-from tuisim.core.noise import wheel_noise
+from tuisim.core.motors import POSITION, Motor, MotorState, top_speed_dps
+from tuisim.core.noise import wheel_noise, wheel_noises
 from tuisim.core.profile import MotorLaw
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING, TICK_RECORD, Buffer, TickSink
@@ -149,7 +149,7 @@ class Motion:
 
     def _quiet_ticks(self, most: int) -> int:
         """Return for how many ticks, at most `most`, nothing but ramps and motion happens."""
-        if self.noise.motor:
+        if self.noise.motor and not self._glides_with_noise():
             return 0
         return min(
             most,
@@ -157,6 +157,13 @@ class Motion:
             self.right.quiet_ticks(self.tick),
             self._clear_ticks(most),
         )
+
+    def _glides_with_noise(self) -> bool:
+        """Return whether motors with noise can run several ticks at once: nothing blocks them, and none has a goal."""
+        left, right = self.left, self.right
+        if self._solids is not None or left.mode == POSITION or right.mode == POSITION:
+            return False
+        return isinstance(left, BrickMotor) and isinstance(right, BrickMotor)
 
     def tick_once(self) -> None:
         """Run one tick in full: the reference for the loops below."""
@@ -168,7 +175,8 @@ class Motion:
         before, aside_mm = None, None
         if self._solids is not None and self._solids.remaining_mm(self._pose()) < self._longest_mm:
             before = left.state(), right.state()
-        left_noise, right_noise = self._noise_dps(tick) if self.noise.motor else (0.0, 0.0)
+        noise = self.noise.motor
+        left_noise, right_noise = wheel_noise(self.spec.seed, tick, noise) if noise else (0.0, 0.0)
         left_mode, right_mode = left.mode, right.mode
         left_deg, right_deg = left.step(tick, left_noise), right.step(tick, right_noise)
         if left.mode != left_mode or right.mode != right_mode:
@@ -187,10 +195,6 @@ class Motion:
             self._left_dps, self._right_dps, drive.gyro_zero_deg, flags, self.actions & 0xFFFF,
         )  # fmt: skip
         self._sink.publish(count + 1)
-
-    def _noise_dps(self, tick: int) -> tuple[float, float]:
-        left, right = wheel_noise(self.spec.seed, tick)
-        return left * self.noise.motor, right * self.noise.motor
 
     def _clear_ticks(self, most: int) -> int:
         """Return for how many ticks, at most `most`, no collision is possible without a new command."""
@@ -276,7 +280,8 @@ class Motion:
     def _glide(self, ticks: int) -> None:
         """Run ticks in which only ramps and motion happen."""
         while ticks:
-            ramping = min(ticks, max(self.left.ramping_ticks, self.right.ramping_ticks))
+            noise = self.noise.motor
+            ramping = ticks if noise else min(ticks, max(self.left.ramping_ticks, self.right.ramping_ticks))
             part = ramping or ticks
             if part <= FEW_TICKS:
                 for _ in range(part):
@@ -290,7 +295,7 @@ class Motion:
             offsets, ticks_ahead = range(at, at + 64 * part, 64), range(self.tick + 1, self.tick + 1 + part)
             records = Records(buffer, offsets, ticks_ahead, self.line, flags, actions, hz)
             if ramping:
-                left, right = self.left.glide(part), self.right.glide(part)
+                left, right = self._glides(part) if noise else (self.left.glide(part), self.right.glide(part))
                 self.drive.glide(records, left, right)
                 left_deg, right_deg = left.rolls_deg[-1], right.rolls_deg[-1]
             else:
@@ -302,3 +307,9 @@ class Motion:
             self.tick += part
             sink.publish(sink.count + part)
             ticks -= part
+
+    def _glides(self, ticks: int) -> tuple[Glide, Glide]:
+        """Run the motors with noise."""
+        assert isinstance(self.left, BrickMotor) and isinstance(self.right, BrickMotor)
+        left, right = wheel_noises(self.spec.seed, self.tick + 1, ticks, self.noise.motor)
+        return self.left.glide_noisily(ticks, left), self.right.glide_noisily(ticks, right)

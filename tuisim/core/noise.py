@@ -10,11 +10,12 @@ them, and so that their mean is the value that was read.
 
 from __future__ import annotations
 
-from functools import lru_cache
+from collections.abc import Callable
+from functools import cache, lru_cache
 from itertools import accumulate
 from math import cos, log, pi, sin, sqrt
 from struct import Struct
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 LIGHT_LAW = "drawn-mean"
 """The name of this law of light noise, as recordings have it."""
@@ -26,14 +27,26 @@ _TURN = 2 * pi / _NUMBERS
 _EXTREMES = bytes((0, _PIXEL_MAX))
 _FOUR_NUMBERS = Struct("<4I")
 _READING_BYTES = _FOUR_NUMBERS.size
+_WHEEL_NUMBERS = Struct(f"<{2 * _BLOCK_TICKS}I")
+
+
+@cache
+def _shake_128() -> Any:
+    # Imported on first use: a program without noise starts faster.
+    from hashlib import shake_128
+
+    return shake_128
+
+
+def prepare() -> None:
+    """Load what noise needs, so that it need not be loaded when the first random bytes are drawn."""
+    _shake_128()
 
 
 def stream(seed: int, tick: int, channel: str, size: int) -> bytes:
     """Return `size` random bytes for one seed, tick and channel."""
-    # Imported on first use: a program without noise starts faster.
-    from hashlib import shake_128
-
-    return shake_128(f"{seed}/{tick}/{channel}".encode()).digest(size)
+    random: bytes = _shake_128()(f"{seed}/{tick}/{channel}".encode()).digest(size)
+    return random
 
 
 @lru_cache(maxsize=8)
@@ -78,18 +91,25 @@ def clamping(level: int) -> Clamping:
     return Clamping(tuple(shift), tuple(variance), even, second[-1] / count)
 
 
-def noisy_sums(disc: bytes, sums: tuple[int, int, int], level: int, normals: tuple[float, ...]) -> tuple[int, int, int]:
+def noisy_sums(
+    disc: Callable[[], bytes], count: int, sums: tuple[int, int, int], level: int, normals: tuple[float, ...]
+) -> tuple[int, int, int]:
     """Return the sums of red, green and blue of some pixels after the light noise.
 
     Args:
-        disc: The pixels, three bytes each.
+        disc: Returns the pixels, three bytes each; not called if all are white, or all black.
+        count: Their number.
         sums: The sums of their channels.
         level: The largest error of a pixel.
         normals: Three normally distributed numbers.
     """
-    red, green, blue = disc[0::3], disc[1::3], disc[2::3]
+    most = _PIXEL_MAX * count
+    if sums == (0, 0, 0) or sums == (most, most, most):
+        red = green = blue = b"\xff" * count if sums[0] else bytes(count)
+    else:
+        pixels = disc()
+        red, green, blue = pixels[0::3], pixels[1::3], pixels[2::3]
     shift, spread = red_shift, red_spread = _moved(red, level)
-    most = _PIXEL_MAX * len(red)
     first = round(sums[0] + shift + spread * normals[0])
     # Most mats are grey: what holds for one channel holds for the others.
     shift, spread = (red_shift, red_spread) if green == red else _moved(green, level)
@@ -161,15 +181,25 @@ def noisy_channel(pixels: bytes, total: int, level: int, random: bytes) -> bytes
 
 
 @lru_cache(maxsize=8)
-def _wheel_block(seed: int, block: int) -> tuple[float, ...]:
-    raw = stream(seed, block, "wheels", _BLOCK_TICKS * 8)
-    return tuple(
-        int.from_bytes(raw[at : at + 4], "little") / 2147483647.5 - 1.0 for at in range(0, _BLOCK_TICKS * 8, 4)
-    )
+def _wheel_block(seed: int, block: int, most_dps: int) -> tuple[list[float], list[float]]:
+    numbers = _WHEEL_NUMBERS.unpack(stream(seed, block, "wheels", _WHEEL_NUMBERS.size))
+    noises = [(number / 2147483647.5 - 1.0) * most_dps for number in numbers]
+    return noises[0::2], noises[1::2]
 
 
-def wheel_noise(seed: int, tick: int) -> tuple[float, float]:
-    """Return two uniform numbers in -1 … 1, for the left and right wheel in one tick."""
+def wheel_noises(seed: int, tick: int, count: int, most_dps: int) -> tuple[list[float], list[float]]:
+    """Return the noise of the left and the right wheel in several ticks: uniform, up to ±`most_dps`."""
     block, offset = divmod(tick, _BLOCK_TICKS)
-    numbers = _wheel_block(seed, block)
-    return numbers[2 * offset], numbers[2 * offset + 1]
+    left, right = _wheel_block(seed, block, most_dps)
+    left, right = left[offset : offset + count], right[offset : offset + count]
+    while len(left) < count:
+        block, missing = block + 1, count - len(left)
+        more = _wheel_block(seed, block, most_dps)
+        left, right = left + more[0][:missing], right + more[1][:missing]
+    return left, right
+
+
+def wheel_noise(seed: int, tick: int, most_dps: int) -> tuple[float, float]:
+    """Return the noise of the left and the right wheel in one tick: uniform, up to ±`most_dps`."""
+    left, right = _wheel_block(seed, tick // _BLOCK_TICKS, most_dps)
+    return left[tick % _BLOCK_TICKS], right[tick % _BLOCK_TICKS]

@@ -21,6 +21,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from tuisim.core import noise
 from tuisim.runtime.child import Child
 from tuisim.runtime.run_config import read_config
 
@@ -33,7 +34,7 @@ _NEEDED_LATER = (
     "tuisim.runtime.scheduler", "tuisim.shim.install",
 )  # fmt: skip
 """What a child imports after it has begun."""
-_ONLY_HERE = ("_socket", "tuisim.runtime.warm")
+_ONLY_HERE = ("_socket", "hashlib", "_hashlib", "_blake2", "_sha3", "tuisim.runtime.warm")
 """Modules that other children have not imported."""
 
 
@@ -48,6 +49,7 @@ def serve(socket_fd: int) -> Child | None:
     """
     for name in _NEEDED_LATER:
         import_module(name)
+    noise.prepare()
     command = sys.orig_argv[: sys.orig_argv.index("--warm")]
     prepared = None
     while True:

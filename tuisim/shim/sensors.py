@@ -142,6 +142,8 @@ class ColorDevice(LegoSensor):
         super().__init__(session, spec.port, SENSORS["color"].driver_name, modes, "COL-REFLECT")
         self._spec = spec
         self._clear = color.rgb_reader(spec, session.field)
+        self._noisy = color.noisy_rgb_reader(spec, session.field)
+        self._in_full = bool(session.sim.spec.world.pen_marks)
         self._seen = (0, 0, 0)
         self._seen_tick, self._seen_actions = -1, -1
 
@@ -150,10 +152,13 @@ class ColorDevice(LegoSensor):
         sim = self._session.sim
         if sim.tick != self._seen_tick or sim.actions != self._seen_actions:
             self._seen_tick, self._seen_actions = sim.tick, sim.actions
-            if sim.noise.light or sim.spec.world.pen_marks:
+            light, drive = sim.noise.light, sim.drive
+            if self._in_full or (light and self._spec.strategy != "mean"):
                 self._seen = color.reading(self._spec, sim.instant(), self._session.field).rgb
+            elif light:
+                place = drive.x_mm, drive.y_mm, drive.heading_deg
+                self._seen = self._noisy(*place, light, sim.spec.seed, sim.tick)
             else:
-                drive = sim.drive
                 self._seen = self._clear(drive.x_mm, drive.y_mm, drive.heading_deg)
         return self._seen
 

@@ -134,11 +134,38 @@ def rgb_reader(spec: ColorSensorSpec, field: Field) -> Callable[[float, float, f
     return read
 
 
+def noisy_rgb_reader(
+    spec: ColorSensorSpec, field: Field
+) -> Callable[[float, float, float, int, int, int], tuple[int, int, int]]:
+    """Return a function that gives a sensor's channels with noise, truncated to integers.
+
+    It takes the robot's x and y in mm, its heading in degrees, and the level, seed and tick of the noise, and agrees
+    with `reading(...).rgb`; as `rgb_reader`, it is called in every turn of a control loop.
+    """
+    diameter, right_mm, forward_mm, name = spec.diameter_mm, spec.x_mm, spec.y_mm, spec.name
+    radius, count = diameter / 2, disc_pixels_of(diameter)
+    disc_sums, disc = field.disc_sums, field.disc
+
+    def read(x_mm: float, y_mm: float, heading_deg: float, level: int, seed: int, tick: int) -> tuple[int, int, int]:
+        turn = radians(heading_deg - 90.0)
+        across, up = cos(turn), sin(turn)
+        col = int(x_mm + across * right_mm - up * forward_mm - radius)
+        row = int(FIELD_HEIGHT_MM - (y_mm + up * right_mm + across * forward_mm) - radius)
+        sums, normals = disc_sums(diameter, col, row), reading_noise(seed, tick, name)
+        red, green, blue = noisy_sums(lambda: disc(diameter, col, row), count, sums, level, normals)
+        return red // count, green // count, blue // count
+
+    return read
+
+
 def _noisy_sums(spec: ColorSensorSpec, instant: Instant, field: Field) -> tuple[int, int, int]:
     """Return the sums of the channels in the disc under a sensor, including noise."""
     diameter, (col, row) = spec.diameter_mm, box_corner(instant.pose, spec)
     normals = reading_noise(instant.seed, instant.tick, spec.name)
-    return noisy_sums(field.disc(diameter, col, row), field.disc_sums(diameter, col, row), instant.noise.light, normals)
+    return noisy_sums(
+        lambda: field.disc(diameter, col, row), disc_pixels_of(diameter), field.disc_sums(diameter, col, row),
+        instant.noise.light, normals,
+    )  # fmt: skip
 
 
 def _seen_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
