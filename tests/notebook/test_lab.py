@@ -161,7 +161,8 @@ def test_the_charts_hold_the_data(done: Done) -> None:
 def test_a_lesson_that_is_repeated_comes_out_the_same(done: Done) -> None:
     noisy = levels(done["noisy"])
     assert ast.literal_eval(result(done["noisy frame"])) == noisy
-    assert len(set(noisy)) > 5
+    # Without noise most of them are.
+    assert noisy and not set(noisy) & set(PLATEAUS)
     # In any other kernel one cell says what the course's own says in that of tuisim.
     again = execute({**CELLS, "load": "%load_ext tuisim\n%matplotlib inline"})
     assert {name: cell.outputs for name, cell in again.items()} == {name: cell.outputs for name, cell in done.items()}

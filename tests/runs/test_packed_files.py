@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.core.motors import commanded
+from tests.core.motors import COMMANDED, commanded
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.simulation import Simulation
@@ -94,7 +94,7 @@ def _recorded(folder: Path, way: str, profile: str = "robolab", noise: int = 0) 
 
 @pytest.mark.quick_cases("*-robolab-*")
 @pytest.mark.parametrize("noise", [0, 50], ids=["quiet", "noisy"])
-@pytest.mark.parametrize("profile", PROFILES)
+@pytest.mark.parametrize("profile", COMMANDED)
 @pytest.mark.parametrize("way", WAYS)
 def test_every_bit_comes_back(tmp_path: Path, way: str, profile: str, noise: int) -> None:
     folder = tmp_path / "run"
