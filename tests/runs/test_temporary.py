@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import os
+import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Barrier
 
 import pytest
 
@@ -34,6 +37,26 @@ def test_a_home_is_held_and_goes_with_its_block() -> None:
         assert is_held(folder)
         (folder / "file").write_text("x")
     assert not folder.exists()
+
+
+def test_threads_create_homes_at_the_same_time(place: Path) -> None:
+    count = 8
+    ready = Barrier(count)
+
+    def create_and_remove(_: int) -> None:
+        ready.wait()
+        for _ in range(50):
+            with temporary_home() as folder:
+                assert is_held(folder)
+
+    before_s = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(count) as threads:
+            list(threads.map(create_and_remove, range(count)))
+    finally:
+        sys.setswitchinterval(before_s)
+    assert list(place.iterdir()) == []
 
 
 def test_a_batch_deletes_what_a_killed_one_left_a_day_ago(place: Path) -> None:

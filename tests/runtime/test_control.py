@@ -38,9 +38,10 @@ def test_a_program_whose_turn_does_not_come_is_not_taken_for_stuck(
 ) -> None:
     run = start("print('A: 1')\n" + GOES_ON, live=True)
     until(run, lambda: run.output.length > 0)
-    # So busy a machine that the program has waited far longer at each look, while any time at all is too long.
+    # So busy a machine that the program does nothing but wait, far longer at each look; any time at all is too long.
     waits_s, killed = count(1e6, 1e3), list[int]()
     monkeypatch.setattr(fair_clock, "waited_s", lambda pid: next(waits_s))
+    monkeypatch.setattr(fair_clock, "computed_s", lambda pid: 0.0)
     monkeypatch.setattr(handle, "STUCK_AFTER_S", 0.0)
     monkeypatch.setattr(handle, "end_group", killed.append)
     run.stop()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
+import threading
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -59,16 +60,19 @@ def owned_folder(prefix: str = PREFIX, parent: Path | None = None) -> Path:
         LogError: it cannot be created.
     """
     folder = _new_folder(parent or Path(tempfile.gettempdir()), prefix)
-    for old in [old for old in _LOCKS if not old.exists()]:
-        os.close(_LOCKS.pop(old))
-    # Where it cannot be locked, nothing shows that it is used: it is never removed by others either.
-    with suppress(OSError):
-        _LOCKS[folder] = hold(folder)
+    with _held_lock:
+        for old in [old for old in _held if not old.exists()]:
+            os.close(_held.pop(old))
+        # Where it cannot be locked, nothing shows that it is used: it is never removed by others either.
+        with suppress(OSError):
+            _held[folder] = hold(folder)
     return folder
 
 
-_LOCKS: dict[Path, int] = {}
+_held: dict[Path, int] = {}
 """The locks of the folders of this process."""
+_held_lock = threading.Lock()
+"""Held while they are changed: threads of an app try programs at the same time."""
 
 
 @contextmanager

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -84,7 +86,7 @@ def test_the_editor_has_the_terminal_and_the_file_is_loaded_again(
 ) -> None:
     (tmp_path / "editor.py").write_text(EDITOR)
     (tmp_path / "prog.py").write_text("print('A: 1')\n")
-    monkeypatch.setenv("VISUAL", f"python3 {tmp_path / 'editor.py'}")
+    monkeypatch.setenv("VISUAL", shlex.join([sys.executable, str(tmp_path / "editor.py")]))
     terminal = open_terminal()
     terminal.start(["prog.py"], 120, 40)
     terminal.until(lambda text: "d edit" in text.splitlines()[-1])
