@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+import pytest
+
 from tests.runs.test_recorded_run import stored
-from tuisim.runs.diff import diff_runs, recording_in_words, setup_in_words
+from tuisim.core.tick_record import TICK_FIELDS
+from tuisim.runs.diff import diff_runs, parted_at_s, recording_in_words, setup_in_words
 
 
 def test_the_difference_of_two_runs_is_told() -> None:
@@ -16,3 +20,21 @@ def test_the_difference_of_two_runs_is_told() -> None:
     assert setup["settings, seed"] == "1 | 2"
     assert "--- prog.py" in [line for label, line in setup_in_words(found) if not label]
     assert list(recording_in_words(diff_runs(one, one))) == [("bit-identical", "recording, output, settings")]
+
+
+@pytest.mark.parametrize(
+    ("field", "step", "at_s"),
+    [("x_mm", 0.3, 0.4), ("heading_deg", -0.3, 0.4), ("heading_deg", 36.0, 0.1), ("y_mm", 0.01, None)],
+)
+def test_robots_part_by_distance_or_heading(field: str, step: float, at_s: float | None) -> None:
+    one = np.zeros(11, np.dtype(list(TICK_FIELDS)))
+    two = one.copy()
+    two[field] += step * np.arange(11)
+    assert parted_at_s(one, two, (10, 10)) == at_s
+
+
+def test_a_full_turn_is_no_parting() -> None:
+    one = np.zeros(3, np.dtype(list(TICK_FIELDS)))
+    two = one.copy()
+    two["heading_deg"] += 360.0
+    assert parted_at_s(one, two, (10, 10)) is None

@@ -82,3 +82,12 @@ def test_the_ghost_is_drawn_below_the_robot() -> None:
 
     assert at(both, 500, 500) != (255, 255, 255)
     assert at(both, 1000, 500) == at(alone, 1000, 500)
+
+
+def test_an_earlier_robot_is_drawn_below_all_others() -> None:
+    alone = painter().paint(VIEW, SceneState(ROBOT, HERE, ghost=replace(HERE, x_mm=1500.0)))
+    scene = SceneState(ROBOT, HERE, ghost=replace(HERE, x_mm=1500.0), earlier=replace(HERE, x_mm=500.0))
+    both = painter().paint(VIEW, scene)
+
+    assert at(both, 500, 500) != (255, 255, 255)
+    assert (at(both, 1000, 500), at(both, 1500, 500)) == (at(alone, 1000, 500), at(alone, 1500, 500))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
+from tuisim.app.earlier_run import is_comparable, pose_at
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import RunPhase, Snapshot
@@ -107,6 +108,9 @@ class RunController:
         self._served: tuple[Mat, RunSpec, bool] | None = None
         """Whether a mat serves a run, as last asked."""
         self.timeline = Timeline()
+        self.earlier: Recording | None = None
+        """The run before, or one that was compared with the run in view: it is drawn beside it."""
+        self.shows_earlier = True
         self.pressed: frozenset[str] = frozenset()
         """The brick's buttons that the user holds down."""
         self._branch: Branch | None = None
@@ -197,7 +201,14 @@ class RunController:
             past=past,
             now_tick=now_tick,
             now_pose=newest.pose if newest and past else None,
+            earlier_pose=self._earlier_pose(instant) if record else None,
         )
+
+    def _earlier_pose(self, instant: Instant) -> Pose | None:
+        if self.earlier is None or not self.shows_earlier:
+            return None
+        pose = pose_at(self.earlier, instant.tick / self.timeline.tick_hz)
+        return None if pose == instant.pose else pose
 
     def _at_rest(self, pose: Pose) -> Instant:
         spec = self.next_run.spec
@@ -269,10 +280,10 @@ class RunController:
         if "profile" not in self.next_run.free:
             require_library(program, self.next_run.spec.profile)
         options = replace(self._options, breaks=breaks, hold_at=FIRST_LINE if paused else None)
-        run = start_run(program, self.next_run.spec, options)
+        run, before = start_run(program, self.next_run.spec, options), self.timeline.recording
         self.close()
         self.run, self._end = run, None
-        self._show_recording(Recording(self.run))
+        self._show_recording(Recording(self.run), before)
 
     def prepare_next(self) -> None:
         """Prepare a process for the next run, which moves the robot sooner; a run in another world needs its own."""
@@ -294,11 +305,12 @@ class RunController:
         options = replace(self._options, answers=branch.of.answers, actions=branch.script(), hold_at=hold_at)
         run = start_run(branch.runs, branch.of.spec, options)
         RunStore().tag(run.run_id, branch.tags)
+        before = self.timeline.recording
         self.close()
         self.run, self._end = run, None
         # The noise of the current run is that of the next one, as if chosen now.
         self.next_run = plans.with_noise(self.next_run, noise)
-        self._show_recording(Recording(run, branch.of.answers))
+        self._show_recording(Recording(run, branch.of.answers), before)
         self._branch = branch
 
     def _branch_arrived(self, paused: protocol.Paused | None = None) -> Branch | None:
@@ -325,10 +337,16 @@ class RunController:
         self._end = run.state
         self._show_recording(Recording(run))
 
-    def _show_recording(self, recording: Recording) -> None:
+    def show_earlier(self, earlier: Recording | None) -> None:
+        """Draw an earlier run beside the one in view, if it drove on the same mat; None for none."""
+        later = self.timeline.recording
+        self.earlier = earlier if earlier and later and is_comparable(earlier, later) else None
+
+    def _show_recording(self, recording: Recording, earlier: Recording | None = None) -> None:
         # What is drawn of a frame is of one instant.
         recording.hold()
         self.timeline.switch_to(recording)
+        self.show_earlier(earlier)
         self._pending.forget()
         self.pressed = frozenset()
         self._moved = False

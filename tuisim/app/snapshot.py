@@ -78,6 +78,8 @@ class Snapshot:
     """The newest tick of the run."""
     now_pose: Pose | None = None
     """The current pose of the robot, while another instant is viewed."""
+    earlier_pose: Pose | None = None
+    """The pose of the robot of an earlier run at the same time; None if none is shown, or if it is the same."""
 
     @cached_property
     def time_s(self) -> float:

@@ -18,9 +18,13 @@ from tuisim.source import source_lines
 if TYPE_CHECKING:
     import numpy as np
 
+    _Series = np.ndarray[Any, Any]
+
 DIFF_LINES = 20
 """Maximum number of lines of the unified diff of two programs."""
 EXCEEDED_MM = (1.0, 10.0, 100.0)
+PARTED_MM, PARTED_DEG = 1.0, 1.0
+"""Robots that are farther apart have parted."""
 TABLE_ROWS = 10
 
 
@@ -146,15 +150,7 @@ def divergence(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tu
     """
     import numpy as np
 
-    end_s = min((len(one) - 1) / tick_hz[0], (len(two) - 1) / tick_hz[1])
-    times = np.arange(int(end_s * tick_hz[0] + 1e-9) + 1) / tick_hz[0]
-    theirs = np.arange(len(two)) / tick_hz[1]
-    apart = []
-    for name in ("x_mm", "y_mm", "heading_deg"):
-        other = two[name][: len(times)] if tick_hz[0] == tick_hz[1] else np.interp(times, theirs, two[name])
-        apart.append(other - one[name][: len(times)])
-    distance = np.hypot(apart[0], apart[1])
-    turned = (apart[2] + 180.0) % 360.0 - 180.0
+    times, distance, turned = _apart(one, two, tick_hz)
     top = int(distance.argmax())
     exceeded = []
     for limit in EXCEEDED_MM:
@@ -165,6 +161,30 @@ def divergence(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tu
     return Divergence(
         float(distance[top]), float(times[top]), float(distance[-1]), float(times[-1]), tuple(exceeded), table
     )
+
+
+def parted_at_s(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]) -> float | None:
+    """Return the time at which the robots were first over 1 mm or 1 degree apart; arguments as of `divergence`.
+
+    None if they never were: one run may still have ended before the other.
+    """
+    times, distance, turned = _apart(one, two, tick_hz)
+    is_apart = (distance > PARTED_MM) | (abs(turned) > PARTED_DEG)
+    return float(times[is_apart.argmax()]) if is_apart.any() else None
+
+
+def _apart(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]) -> tuple[_Series, ...]:
+    """Return times in s, distances in mm and differences of heading in degrees; arguments as of `divergence`."""
+    import numpy as np
+
+    end_s = min((len(one) - 1) / tick_hz[0], (len(two) - 1) / tick_hz[1])
+    times = np.arange(int(end_s * tick_hz[0] + 1e-9) + 1) / tick_hz[0]
+    theirs = np.arange(len(two)) / tick_hz[1]
+    apart = []
+    for name in ("x_mm", "y_mm", "heading_deg"):
+        other = two[name][: len(times)] if tick_hz[0] == tick_hz[1] else np.interp(times, theirs, two[name])
+        apart.append(other - one[name][: len(times)])
+    return times, np.hypot(apart[0], apart[1]), (apart[2] + 180.0) % 360.0 - 180.0
 
 
 def _first_line(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: int) -> TickDifference | None:

@@ -1,4 +1,4 @@
-"""The world from above: mat, obstacles, pen trace, rays, robot and ghost in one picture."""
+"""The world from above: mat, obstacles, pen trace, rays, robots in one picture."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, BeaconSpec, Obstac
 from tuisim.scene.mat import MatPictures
 from tuisim.scene.mono_robot import draw_mono_robot
 from tuisim.scene.pen import PenTrace, trace_pixels, visible_on
-from tuisim.scene.robot import CLEARED, COLORED, GHOST, GREY, GREY_GHOST, MONO, draw_robot
+from tuisim.scene.robot import CLEARED, COLORED, EARLIER, GHOST, GREY, GREY_GHOST, MONO, draw_robot
 from tuisim.scene.view import Viewport
 from tuisim.terminal.pixels import Pixels
 
-_GHOST_OPACITY = 0.75
+_GHOST_OPACITY, _EARLIER_OPACITY = 0.75, 0.6
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +35,8 @@ class SceneState:
     """Pose of the robot when `rays` were cast; None for `pose`."""
     ghost: Pose | None = None
     """Pose of a second, translucent robot."""
+    earlier: Pose | None = None
+    """Pose of the robot of an earlier run, below both."""
     marked: int | None = None
     """Index of the selected obstacle."""
     pressed: tuple[bool, ...] = ()
@@ -96,10 +98,10 @@ class ScenePainter:
             ultrasonic = scene.robot.ultrasonic
             x_mm, y_mm = world_point(scene.rays_from or scene.pose, ultrasonic.x_mm, ultrasonic.y_mm)
             draw_rays(picture, view, x_mm, y_mm, scene.rays, self._grey, is_solid=self._has_frame)
-        if scene.ghost is not None:
-            draw_robot(
-                picture, view, scene.ghost, outline, self._ghost_colors, _GHOST_OPACITY, detail_cols=self._detail_cols
-            )
+        below = ((scene.earlier, EARLIER, _EARLIER_OPACITY), (scene.ghost, self._ghost_colors, _GHOST_OPACITY))
+        for pose, colors, opacity in below:
+            if pose is not None:
+                draw_robot(picture, view, pose, outline, colors, opacity, detail_cols=self._detail_cols)
         draw = draw_mono_robot if self._mono else draw_robot
         if scene.has_robot:
             draw(

@@ -74,6 +74,9 @@ GHOST = RobotColors(edge=(255, 255, 255), body=(175, 0, 175), wheel=(95, 0, 95),
 """For a robot at an earlier pose."""
 GREY_GHOST = RobotColors(body=(158, 158, 158), wheel=(88, 88, 88), sensor=(88, 88, 88), marker=(0, 0, 0))
 
+EARLIER = RobotColors(body=(108, 108, 108), wheel=(68, 68, 68), sensor=(148, 148, 148), marker=(218, 218, 218))
+"""For the robot of an earlier run."""
+
 
 def drawn_reach_mm(outline: RobotOutline) -> float:
     """Return the radius about a robot's pose of a circle that holds everything that is drawn of it."""

@@ -18,12 +18,12 @@ from tuisim.config.folders import programs_folder
 from tuisim.config.obstacles import save_obstacles as write
 from tuisim.config.preferences import keep, preference
 from tuisim.errors import TuisimError
+from tuisim.runs.recorded_run import Recording
 from tuisim.runs.store import RunStore
 
 if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext
     from tuisim.runs.diff import RunDiff
-    from tuisim.runs.recorded_run import Recording
 
 
 def clear_log(context: ActionContext) -> None:
@@ -186,16 +186,16 @@ def compare(context: ActionContext) -> None:
     context.app.push_screen(RunChooser(recording), chosen)
 
 
-def _diff(run_id: str, other_id: str) -> tuple[str, RunDiff]:
-    """Return the name of the other run, and the differences. Reads both runs."""
+def _diff(run_id: str, other_id: str) -> tuple[Recording, RunDiff]:
+    """Return the other run and the differences. Reads both runs."""
     from tuisim.runs.diff import diff_runs
 
     store = RunStore()
     other = store.load_run(other_id)
-    return f"run {other.number}", diff_runs(store.load_run(run_id), other)
+    return Recording(other), diff_runs(store.load_run(run_id), other)
 
 
-def _show(context: ActionContext, recording: Recording, compared: tuple[str, RunDiff]) -> None:
+def _show(context: ActionContext, recording: Recording, compared: tuple[Recording, RunDiff]) -> None:
     from tuisim.app.dialogs.runs import Differences
 
     other, diff = compared
@@ -204,7 +204,9 @@ def _show(context: ActionContext, recording: Recording, compared: tuple[str, Run
         if there and diff.tick and context.runs.timeline.recording is recording:
             to_tick(context, diff.tick.tick)
 
-    context.app.push_screen(Differences(recording.name.capitalize(), other, diff), go)
+    if context.runs.timeline.recording is recording:
+        context.runs.show_earlier(other)
+    context.app.push_screen(Differences(recording.name.capitalize(), other.name, diff), go)
 
 
 def analyse(context: ActionContext) -> None:

@@ -163,6 +163,7 @@ def _travels() -> list[LabAction]:
         Action("next-sample", "right_parenthesis", "Next sample", TIME, next_sample, on),
         Action("go-to", "g", "Go to a time, tick, line, sample or print", TIME, go.ask_where, back, "go to"),
         Action("branch", "y", "Branch from this instant", TIME, go.propose_branch, _can_branch, "branch"),
+        Action("parting", "exclamation_mark", "Where this run left the earlier one", TIME, go.to_parting, back),
         Action("start-of-run", "home", "Start of the run", TIME, partial(go.to_tick, tick=0), back),
     ]
 
@@ -209,6 +210,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("save-robot", "ctrl+r", "Save the robot to a file", FILES, files.save_robot),
         Action("save-obstacles", "ctrl+o", "Save the obstacles to a file", FILES, files.save_obstacles),
         Action("zoom", "v", "Zoom the world", ROBOT, robot.zoom, footer="zoom"),
+        Action("earlier", "minus", "Show or hide the earlier run's robot", ROBOT, robot.earlier),
         Action("rays", "U", "Show or hide the ultrasonic rays", ROBOT, robot.rays, footer="rays"),
         Action("pixels", "number_sign", "Characters or pixels", APP, app.switch_pixels, _can_draw_pixels, "cells"),
         Action("clear", "C", "Clear the pen trace", ROBOT, robot.clear_trace, footer="clear"),

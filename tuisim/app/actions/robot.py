@@ -124,6 +124,16 @@ def world_panel(context: ActionContext) -> World | None:
     return None
 
 
+def earlier(context: ActionContext) -> None:
+    """Show or hide the robot of the earlier run."""
+    runs = context.runs
+    runs.shows_earlier = not runs.shows_earlier
+    if runs.earlier is None:
+        when = "From the next run on, the run before is" if runs.shows_earlier else "Earlier runs are not"
+        context.app.say(f"{when} drawn beside a run")
+    context.app.draw(force=True)
+
+
 def rays(context: ActionContext) -> None:
     """Switch the ultrasonic rays on or off."""
     if world := world_panel(context):

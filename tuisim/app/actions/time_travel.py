@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
+from tuisim.app import background
 from tuisim.app.branch import Branch, action_words
+from tuisim.app.earlier_run import left_at_s
 from tuisim.app.setup.mat import mat_key
 from tuisim.app.snapshot import RunPhase
 from tuisim.app.timeline import find, forms
@@ -133,6 +136,26 @@ def to_sample(context: ActionContext, words: str) -> None:
         to_tick(context, find(words, context.runs.timeline))
     except TuisimError as error:
         context.app.say(error.message)
+
+
+def to_parting(context: ActionContext) -> None:
+    """Go to the instant at which the run left the earlier one, which is drawn beside it."""
+    later, earlier = context.runs.timeline.recording, context.runs.earlier
+    if later is None or earlier is None:
+        context.app.say("There is no earlier run on this mat: run the program twice, or choose a run with {compare}")
+        return
+
+    def go(time_s: float | None) -> None:
+        if context.runs.timeline.recording is not later:
+            return
+        if time_s is None:
+            context.app.say(f"The robot has driven as in {earlier.name}")
+        else:
+            to_time(context, time_s)
+
+    background.run(
+        context.panels, partial(left_at_s, later, earlier), go, context.app.complain, group="diff", exclusive=True
+    )
 
 
 def propose_branch(context: ActionContext, then: protocol.Message | None = None, restart: bool = False) -> None:

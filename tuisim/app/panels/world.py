@@ -267,7 +267,7 @@ class WorldView(PixelView):
         pressed = tuple(snapshot.further.get(f"{touch.name}_pressed", 0.0) > 0 for touch in spec.robot.touch_sensors)
         scene = SceneState(
             spec.robot, pose, boxes, ghost=snapshot.now_pose, marked=self._marked, pressed=pressed,
-            beacon=spec.world.beacon,
+            beacon=spec.world.beacon, earlier=snapshot.earlier_pose,
         )  # fmt: skip
         if not self.show_rays or self._held is not None:
             return scene

@@ -1,0 +1,73 @@
+"""The earlier run: its robot beside the one in view, and where the two parted."""
+
+from __future__ import annotations
+
+import pytest
+from textual.pilot import Pilot
+
+from tests.app.app_help import notices, program, ready, settings, until
+from tests.runs.test_recorded_run import stored
+from tuisim.app.app import LabApp
+from tuisim.app.earlier_run import is_comparable
+from tuisim.app.snapshot import RunPhase
+from tuisim.core.geometry import Pose
+from tuisim.runs.recorded_run import Recording
+
+pytestmark = pytest.mark.usefixtures("home")
+
+STRAIGHT = "tank_drive.on_for_seconds(20, 20, 1)\n"
+LONGER = STRAIGHT + "tank_drive.on_for_seconds(20, 10, 1)\n"
+SIZE = (120, 40)
+
+
+async def run(pilot: Pilot[None], app: LabApp, text: str) -> None:
+    """Run a program from the start pose to its end."""
+    before = app.run_controller.run_id
+    app.run_controller.program = program(text)
+    await pilot.press("m", "R")
+    await until(pilot, lambda: app.run_controller.run_id != before and app.run_controller.state is RunPhase.ENDED)
+
+
+def earlier_pose(app: LabApp) -> Pose | None:
+    return app.run_controller.snapshot().earlier_pose
+
+
+async def test_the_run_before_is_drawn_at_the_same_time() -> None:
+    async with LabApp(settings(STRAIGHT, speed=0.0)).run_test(size=SIZE) as pilot:
+        app = await ready(pilot)
+        await run(pilot, app, STRAIGHT)
+        assert earlier_pose(app) is None
+        first = app.run_controller.timeline.recording
+        assert first is not None
+        await run(pilot, app, LONGER)
+        # It stands where it has ended.
+        assert earlier_pose(app) == first.telemetry.record(first.newest).pose
+        # As long as both drive alike, there is nothing to draw.
+        await pilot.press("home")
+        assert earlier_pose(app) is None
+        await pilot.press("end", "minus")
+        assert earlier_pose(app) is None
+        await pilot.press("minus")
+        assert earlier_pose(app) is not None
+
+
+async def test_a_key_goes_to_where_they_parted() -> None:
+    async with LabApp(settings(STRAIGHT, speed=0.0)).run_test(size=SIZE) as pilot:
+        app = await ready(pilot)
+        await run(pilot, app, STRAIGHT)
+        await pilot.press("exclamation_mark")
+        assert "There is no earlier run on this mat: run the program twice, or choose a run with =" in notices(app)
+        await run(pilot, app, STRAIGHT)
+        await pilot.press("exclamation_mark")
+        await until(pilot, lambda: any(notice.startswith("The robot has driven as in run") for notice in notices(app)))
+        await run(pilot, app, STRAIGHT.replace("20, 20, 1", "20, 10, 1"))
+        await pilot.press("exclamation_mark")
+        timeline = app.run_controller.timeline
+        await until(pilot, lambda: timeline.at is not None)
+        assert 0 < timeline.tick < 30
+
+
+def test_a_run_on_another_mat_is_not_comparable() -> None:
+    bands, shapes = (Recording(stored(STRAIGHT, {"background": mat})) for mat in ("Grey_bands", "Two_shapes"))
+    assert is_comparable(bands, bands)
+    assert not is_comparable(shapes, bands)
