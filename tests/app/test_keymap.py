@@ -22,7 +22,7 @@ from tuisim.guide import tables
         pytest.param({"run": ("S",), "stop": ("R",)}, {"run": "S", "stop": "R"}, id="two keys swapped"),
         pytest.param({"help": ("?", "F1")}, {"help": "question_mark,f1"}, id="several, one as before"),
         pytest.param({"zoom": ("Ctrl+K",)}, {"zoom": "ctrl+k"}, id="modifiers in capitals"),
-        pytest.param({"zoom": ("!",)}, {"zoom": "exclamation_mark"}, id="a sign"),
+        pytest.param({"zoom": ("%",)}, {"zoom": "percent_sign"}, id="a sign"),
         pytest.param({"zoom": ("ä",)}, {"zoom": "ä"}, id="another letter"),
     ],
 )
@@ -32,13 +32,13 @@ def test_keys_are_those_of_the_user(keys: dict[str, tuple[str, ...]], written: d
 
 
 async def test_the_new_key_works_and_is_shown_and_the_old_one_does_nothing(tmp_path: Path) -> None:
-    (tmp_path / "config.toml").write_text("[keys]\npen = '!'\nzoom = 'p'\n")
+    (tmp_path / "config.toml").write_text("[keys]\npen = '%'\nzoom = 'p'\n")
     async with LabApp(settings(LOGS)).run_test(size=(200, 170)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: " ! pen" in screen_text(app) and " p zoom" in screen_text(app))
+        await until(pilot, lambda: " % pen" in screen_text(app) and " p zoom" in screen_text(app))
         down = app.run_controller.pen_down
 
-        await pilot.press("exclamation_mark")
+        await pilot.press("percent_sign")
         await until(pilot, lambda: app.run_controller.pen_down != down)
         await pilot.press("v", "p")
         await until(pilot, lambda: app.panel_area.world is not None)
@@ -47,13 +47,13 @@ async def test_the_new_key_works_and_is_shown_and_the_old_one_does_nothing(tmp_p
         await pilot.press("question_mark")
         await until(pilot, lambda: "Pen up or down" in screen_text(app))
         row = next(row for row in screen_text(app).split("\n") if "Pen up or down" in row)
-        assert row.partition("Pen up")[0].split()[-1] == "!"
+        assert row.partition("Pen up")[0].split()[-1] == "%"
 
 
 @pytest.mark.quick_cases("positioning-*")
-@pytest.mark.parametrize(("panel", "shown"), [("positioning", "[ Start"), ("settings", "! Robots")])
+@pytest.mark.parametrize(("panel", "shown"), [("positioning", "[ Start"), ("settings", "% Robots")])
 async def test_the_words_of_a_panel_follow_the_new_key(panel: str, shown: str, tmp_path: Path) -> None:
-    (tmp_path / "config.toml").write_text("[keys]\nrobot = '!'\nhome = '['\nslower = 'm'\n")
+    (tmp_path / "config.toml").write_text("[keys]\nrobot = '%'\nhome = '['\nslower = 'm'\n")
     async with LabApp(settings(panels_on=frozenset({panel}))).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: shown in screen_text(app))
@@ -61,20 +61,20 @@ async def test_the_words_of_a_panel_follow_the_new_key(panel: str, shown: str, t
 
 @pytest.mark.parametrize("panel", ["controls", "code"])
 async def test_notices_and_panels_name_the_new_key(panel: str, tmp_path: Path) -> None:
-    (tmp_path / "config.toml").write_text("[keys]\nopen = '!'\nrun = 'ctrl+k'\n")
+    (tmp_path / "config.toml").write_text("[keys]\nopen = '%'\nrun = 'ctrl+k'\n")
     async with LabApp(settings(panels_on=frozenset({panel}))).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: "! opens one" in screen_text(app))
+        await until(pilot, lambda: "% opens one" in screen_text(app))
         await pilot.press("ctrl+k")
-        await until(pilot, lambda: [notice.message for notice in app._notifications] == ["No program yet: ! opens one"])
+        await until(pilot, lambda: [notice.message for notice in app._notifications] == ["No program yet: % opens one"])
 
 
 async def test_the_welcome_obeys_the_new_key(tmp_path: Path) -> None:
-    (tmp_path / "config.toml").write_text("[keys]\nhelp = '!'\n")
+    (tmp_path / "config.toml").write_text("[keys]\nhelp = '%'\n")
     async with LabApp(settings(welcomes=True)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: "! shows all keys" in screen_text(app))
-        await pilot.press("exclamation_mark")
+        await until(pilot, lambda: "% shows all keys" in screen_text(app))
+        await pilot.press("percent_sign")
         await until(pilot, lambda: isinstance(app.screen, GuideScreen))
 
 
@@ -90,11 +90,11 @@ async def test_a_wrong_file_is_told_and_the_app_works_with_what_is_right(tmp_pat
 
 
 def test_the_guide_shows_the_keys_of_the_user_but_not_to_others(tmp_path: Path) -> None:
-    (tmp_path / "config.toml").write_text("[keys]\npen = '!'\n")
+    (tmp_path / "config.toml").write_text("[keys]\npen = '%'\n")
     tables.table.cache_clear()
     try:
         mine, usual = (tables.table("keys", for_others=others).markdown() for others in (False, True))
     finally:
         tables.table.cache_clear()
-    assert "| `!` | Pen up or down |" in mine
+    assert "| `%` | Pen up or down |" in mine
     assert "| `p` | Pen up or down |" in usual
