@@ -99,14 +99,15 @@ _ERRORS = ("Error", "Exception", "Timeout")
 """Ends of the names of exceptions, which a program names in its handlers."""
 
 
-def _refused(name: str, hardware: Hardware) -> NotSimulated:
-    return NotSimulated(f"{name}: {hardware.title} is not simulated", hardware.instead)
+def _told(name: str, hardware: Hardware) -> tuple[str, str]:
+    """Return the words of the error about the use of a module: the message and the hint."""
+    return f"{name}: {hardware.title} is not simulated", hardware.instead
 
 
-def refused_as(kind: type[Exception], told: NotSimulated) -> Exception:
+def refused_as(kind: type[Exception], message: str, hint: str) -> Exception:
     """Return an error that is of another kind, too: a program may try what there is, and do without it."""
     both: Any = type("NotSimulated", (NotSimulated, kind), {"__module__": NotSimulated.__module__})
-    error: Exception = both(told.message, told.hint)
+    error: Exception = both(message, hint)
     return error
 
 
@@ -117,7 +118,7 @@ class _Part(type):
     hardware: Hardware
 
     def _use(cls, *_: object, **__: object) -> NoReturn:
-        raise _refused(cls.full_name, cls.hardware)
+        raise NotSimulated(*_told(cls.full_name, cls.hardware))
 
     __call__ = __getitem__ = __iter__ = __len__ = __int__ = __index__ = __float__ = __enter__ = __exit__ = _use
     __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __lt__ = __le__ = __gt__ = __ge__ = _use
@@ -181,8 +182,8 @@ class OtherLibrary:
             NotSimulated: it is one; it is an ImportError, too.
         """
         if fullname in self._names:
-            told = NotSimulated(f"{fullname}: the rules of this run are for another library", self._instead)
-            raise refused_as(ImportError, told)
+            told = f"{fullname}: the rules of this run are for another library"
+            raise refused_as(ImportError, told, self._instead)
 
 
 class HardwareFinder:
@@ -207,7 +208,7 @@ class HardwareFinder:
             NotSimulated: it is for another computer.
         """
         if (top := spec.name.partition(".")[0]) in ELSEWHERE:
-            raise refused_as(ImportError, _refused(spec.name, ELSEWHERE[top]))
+            raise refused_as(ImportError, *_told(spec.name, ELSEWHERE[top]))
         module = HardwareModule(spec.name, ON_THE_BRICK[top])
         if spec.name == top:
             vars(module)["__all__"] = list(ON_THE_BRICK[top].names)
