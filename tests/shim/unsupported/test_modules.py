@@ -46,6 +46,19 @@ def test_the_program_ends_with_its_name(run: Run, text: str, words: str) -> None
     assert (done.ended.exit_code, done.ended.error_line) == (1, text.count("\n") + 1)
 
 
+@pytest.mark.parametrize(
+    ("profile", "own", "other"), [("ev3", "ev3dev2", "pybricks"), ("pybricks4", "pybricks", "ev3dev2")]
+)
+def test_hints_have_the_names_of_the_programs_library(run: Run, profile: str, own: str, other: str) -> None:
+    text = "import socket\ntry:\n    socket.socket(socket.AF_BLUETOOTH)\nexcept Exception as error:\n    print(error)\n"
+    for name in (*ON_THE_BRICK, *ELSEWHERE):
+        text += f"try:\n    import {name}\n    {name}.use()\nexcept Exception as error:\n    print(error)\n"
+    told = run(text, profile=profile, prelude="none").lines
+    assert len(told) == 1 + len(ON_THE_BRICK) + len(ELSEWHERE)
+    assert not any(other in line or "{" in line for line in told)
+    assert f"smbus.use: the I2C bus of the brick is not simulated (the sensors of {own}." in "\n".join(told)
+
+
 def test_every_module_of_the_brick_can_be_imported(run: Run) -> None:
     names = sorted(ON_THE_BRICK)
     stars = "".join(f"from {name} import *\n" for name in names)
