@@ -10,6 +10,7 @@ import pytest
 from tests.core.memory_sink import MemorySink
 from tests.core.motors import SERVO, run
 from tuisim.core.geometry import Pose
+from tuisim.core.motors import STOPPED, TIMED
 from tuisim.core.profile import PROFILES, ProfileSpec
 from tuisim.core.servo.control import Ending
 from tuisim.core.servo.drive_base import DriveBase
@@ -103,6 +104,24 @@ def test_a_robot_at_a_wall_drives_back() -> None:
     robot.sim.advance(300)
     assert robot.sim.drive.x_mm == pytest.approx(at_mm - 100, abs=10)
     assert robot.base.done(robot.now_us)
+
+
+@pytest.mark.parametrize("ending", [Ending.COAST, Ending.BRAKE, Ending.HOLD])
+def test_a_motion_for_a_time_ends_at_a_wall(ending: Ending) -> None:
+    robot = Robot(WALLED)
+    for motor in robot.motors:
+        motor.control.run(robot.now_us, motor.measured, 1000, 3200, 4_000_000)
+        motor.follow(ending=ending)
+    robot.sim.advance(399)
+    assert [motor.mode for motor in robot.motors] == [TIMED, TIMED]
+    robot.sim.advance(2)
+    at_deg = robot.motors[0].position_deg
+    assert [motor.mode for motor in robot.motors] == [STOPPED, STOPPED]
+    assert all((motor.guide is None) == (ending is not Ending.HOLD) for motor in robot.motors)
+    # It holds where it is, and does not push on when the way is free.
+    robot.sim.place(Pose(300, 500, 0))
+    robot.sim.advance(50)
+    assert (robot.motors[0].position_deg, robot.sim.drive.x_mm) == (at_deg, 300)
 
 
 @pytest.mark.parametrize("profile", SERVO)

@@ -257,6 +257,10 @@ class Controller:
         """Whether the motion has hardly moved at full power for the time of the settings."""
         return self.trajectory is not None and self._stalled_us >= self.settings.stall_time_ms * MS_US
 
+    def is_over(self, now_us: int) -> bool:
+        """Return whether a motion for a time has come to its end."""
+        return self.timed and (end_us := self.end_us) is not None and now_us >= end_us
+
     def done(self, now_us: int, milli: int, rate: int) -> bool:
         """Return whether no move is under way.
 
