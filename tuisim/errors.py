@@ -16,6 +16,7 @@ from __future__ import annotations
 import re
 import reprlib
 from collections.abc import Iterable, Sequence
+from typing import ClassVar
 
 SIGNALLED = 128
 """Exit codes above this come from a signal; no further program is then run."""
@@ -164,7 +165,16 @@ class ProgramError(TuisimError):
 
 
 class NotSimulated(ProgramError):
-    """The program used a part of ev3dev2 that is not simulated."""
+    """The program used a part of its library that is not simulated."""
+
+    first: ClassVar[str] = ""
+    """The message of the first one of a run. One that is also an error of the library does not count: a program may
+    try what there is."""
+
+    def __init__(self, message: str, hint: str = "", *, file: str = "", line: int = 0) -> None:
+        super().__init__(message, hint, file=file, line=line)
+        if type(self) is NotSimulated:
+            NotSimulated.first = NotSimulated.first or self.message
 
 
 class HostError(TuisimError):

@@ -92,3 +92,9 @@ def test_what_is_wrong_with_the_folder_is_told(
     done = here("run", "course", *words.split())
     assert (done.returncode, done.stdout) == (2, "")
     assert told in done.stderr
+
+
+def test_the_program_of_a_folder_is_named(here: Command, tmp_path: Path) -> None:
+    (tmp_path / "team").mkdir()
+    (tmp_path / "team" / "main.py").write_text("print(1)\n")
+    assert "team: is a folder without notebooks (name its program team/main.py)" in here("run", "team").stderr

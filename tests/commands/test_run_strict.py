@@ -1,4 +1,4 @@
-"""`--strict`: nothing runs that the brick's Python would refuse."""
+"""What the brick's Python would refuse is told; with `--strict` nothing runs."""
 
 from __future__ import annotations
 
@@ -17,3 +17,19 @@ def test_strict_runs_nothing_that_the_brick_would_refuse(here: Command, tmp_path
     done = here("run", "--strict", "prog.py")
     assert (done.stdout, done.returncode) == ("", 2)
     assert done.stderr.startswith(f"tuisim: {told}")
+
+
+def test_batches_and_marks_tell_what_the_brick_would_refuse(here: Command, tmp_path: Path) -> None:
+    (tmp_path / "class").mkdir()
+    (tmp_path / "class" / "ada.py").write_text("from pybricks.tools import wait\n\nprint(f'{1}')\n")
+    (tmp_path / "class" / "bob.py").write_text("from pybricks.tools import wait\n")
+    (tmp_path / "goals.toml").write_text("[[goal]]\nname = 'end'\npoints = 1\nfinish = true\n")
+    told = "ada.py:3: the brick's Python would refuse this line (f-string)"
+    done = here("batch", "class/ada.py", "class/bob.py", "--seeds", "1,2")
+    assert (done.returncode, done.stderr.count(f"note: {told}"), done.stderr.count("note: ")) == (0, 1, 1)
+    done = here("mark", "goals.toml", "class", "--seeds", "0,1", "--jobs", "1", "--feedback", "told")
+    assert done.returncode == 0
+    assert f"note: ada: {told}" in done.stderr and "note: bob" not in done.stderr
+    feedback = " ".join((tmp_path / "told" / "ada.txt").read_text().split())
+    assert f"Your program would not start on a brick: {told}" in feedback
+    assert "brick" not in (tmp_path / "told" / "bob.txt").read_text()

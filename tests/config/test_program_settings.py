@@ -95,7 +95,17 @@ def test_what_is_decided(case: str) -> None:
     spec = build_run_spec(found.settings)
     assert (spec.profile.name, spec.robot.name) == (profile, robot)
     assert (found.settings["start.x_mm"], found.settings["start.y_mm"]) == place
-    assert bool(found.decided.note) == bool({"robot", "profile"} & found.decided.layer.keys())
+    keeps_robot = bool(found.decided.robot) and rest.get("of_task", False)
+    assert bool(found.decided.note) == (keeps_robot or bool({"robot", "profile"} & found.decided.layer.keys()))
+
+
+def test_a_program_for_another_robot_than_that_of_a_task_is_told() -> None:
+    given: Mapping[str, Any] = {"in_world": True, "of_task": True}
+    told = "p.py is for another robot than that of the task: medium motor on outA"
+    program = parse_program(CLAW, "p.py")
+    assert program_settings(program, {"seed": 1}, **given).decided.said == told
+    assert program_settings(program, {"robot": "Explorer"}, **given).decided.said == ""
+    assert program_settings(parse_program(USUAL, "p.py"), {"seed": 1}, **given).decided.said == ""
 
 
 MISFITS: Mapping[str, tuple[str, dict[str, Any], str]] = {

@@ -10,13 +10,12 @@ from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
 from tests.core.memory_sink import MemorySink
-from tests.core.motors import COMMANDED, commanded
+from tests.core.motors import commanded, run
 from tests.core.test_collision import overlap_mm, simulation
 from tuisim.config import mats
 from tuisim.core.geometry import Pose
-from tuisim.core.motors import FOREVER, Motor
+from tuisim.core.motors import FOREVER
 from tuisim.core.profile import PROFILES
-from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import NoiseSpec, Obstacle, WorldSpec
 
@@ -36,16 +35,6 @@ MOTIONS = {
 def slow(*values: object) -> ParameterSet:
     """A row that is another kind of one that is tested anyway."""
     return pytest.param(*values, marks=pytest.mark.slow)
-
-
-def run(sim: Simulation, motor: Motor, dps: float) -> None:
-    """Run a motor as the library of its profile does."""
-    if isinstance(motor, ServoMotor):
-        now_us, settings = sim.tick * 1_000_000 // sim.spec.profile.tick_hz, motor.control.settings
-        motor.control.run(now_us, motor.measured, settings.counts(int(dps)), settings.acceleration)
-        motor.follow()
-    else:
-        commanded(motor).run(dps)
 
 
 def told(sim: Simulation, left_dps: float, right_dps: float, ticks: int) -> float:
@@ -165,7 +154,7 @@ SPEED = st.floats(-1050, 1050)
     y=st.floats(-50, 1200),
     heading=st.one_of(st.floats(-360, 360), st.sampled_from([0.0, 90.0, 180.0, 45.0])),
     moves=st.lists(st.tuples(SPEED, SPEED), min_size=1, max_size=4),
-    profile=st.sampled_from(COMMANDED),
+    profile=st.sampled_from(sorted(PROFILES)),
 )
 @pytest.mark.slow
 def test_no_motion_leads_deeper_into_what_the_robot_was_put_into(

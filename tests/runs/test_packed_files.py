@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import random
 import shutil
@@ -10,9 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.core.motors import COMMANDED, commanded
+from tests.core.motors import COMMANDED, SERVO, commanded, run
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
+from tuisim.core.servo.control import Ending
+from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import NoiseSpec, RobotSpec, RunSpec, WorldSpec
 from tuisim.errors import LogError
@@ -75,7 +78,22 @@ def _moved_by_hand(sim: Simulation) -> None:
         sim.rewrite_record()
 
 
+def _followed(sim: Simulation) -> None:
+    chance = random.Random(2)
+    for turn in range(40):
+        for motor in (sim.left, sim.right):
+            assert isinstance(motor, ServoMotor)
+            now_us = sim.tick * 1_000_000 // sim.spec.profile.tick_hz
+            if turn % 3:
+                run(sim, motor, chance.uniform(-800, 800))
+            else:
+                motor.control.move_to(now_us, motor.measured, chance.randrange(-900, 900), 1000, 3200, relative=True)
+                motor.follow(ending=Ending(turn % 2))
+        sim.advance(chance.choice((1, 7, 150)))
+
+
 WAYS = {"straight": _straight, "curves": _curves, "steered": _steered, "moves": _moves, "by hand": _moved_by_hand}
+SERVO_WAYS = {"followed": _followed}
 MOST_BYTES = {"straight": 3.0, "curves": 15.0, "steered": 25.0, "moves": 15.0, "by hand": 15.0}
 """A tick, without noise; short recordings, in which the first of everything weighs more."""
 
@@ -84,7 +102,7 @@ def _recorded(folder: Path, way: str, profile: str = "robolab", noise: int = 0) 
     folder.mkdir()
     spec = RunSpec(RobotSpec(), WorldSpec(noise=NoiseSpec(0, noise)), PROFILES[profile], 5)
     writer = TelemetryWriter(folder)
-    WAYS[way](Simulation(spec, writer))
+    (WAYS | SERVO_WAYS)[way](Simulation(spec, writer))
     writer.close()
     output = OutputWriter(folder)
     for row in range(300):
@@ -94,8 +112,9 @@ def _recorded(folder: Path, way: str, profile: str = "robolab", noise: int = 0) 
 
 @pytest.mark.quick_cases("*-robolab-*")
 @pytest.mark.parametrize("noise", [0, 50], ids=["quiet", "noisy"])
-@pytest.mark.parametrize("profile", COMMANDED)
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize(
+    ("way", "profile"), [*itertools.product(WAYS, COMMANDED), *itertools.product(SERVO_WAYS, SERVO)]
+)
 def test_every_bit_comes_back(tmp_path: Path, way: str, profile: str, noise: int) -> None:
     folder = tmp_path / "run"
     _recorded(folder, way, profile, noise)

@@ -204,8 +204,10 @@ def end_words(ended: Ended, stood: str) -> tuple[str, str]:
         stood: Where the robot stood in the way of something solid, in words; may be empty.
     """
     words = ended.summary or end_label(ended.end)
+    if caught := ended.end is End.FINISHED and not ended.exit_code and bool(ended.summary):
+        words = f"{end_label(ended.end)}: {ended.summary}"
     # The traceback is among the rows already.
-    known = ended.end in (End.FINISHED, End.RAISED)
+    known = ended.end in (End.FINISHED, End.RAISED) and not caught
     last = f"— {end_label(ended.end) if known else words} at {ended.time_ns / 1e9:.2f} s"
     return ", ".join(filter(None, (words, stood))), ", ".join(filter(None, (last, stood)))
 

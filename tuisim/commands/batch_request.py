@@ -15,6 +15,7 @@ from tuisim.batch.sweep import Workers
 from tuisim.batch.table import check_expressions
 from tuisim.batch.task import Keep
 from tuisim.commands.batch_options import jobs_option, keep_option, workers_option
+from tuisim.commands.echo import echo_error
 from tuisim.commands.listings import WORLD, names_of
 from tuisim.commands.notebooks import NotRun
 from tuisim.commands.resolve import check_arguments, prepare_runs
@@ -158,12 +159,15 @@ def _subjects(arguments: Arguments, file: BatchFile, goals: GoalsFile | None) ->
         world = replace(world, program=goals.program)
     # A notebook stands for all of its cells.
     arguments.all = True
-    found = []
+    found, refusals = [], []
     for one in prepare_runs(arguments.programs, arguments, world, "batch"):
         if isinstance(one, NotRun):
             raise ConfigError(one.error.message, one.error.hint, file="" if one.error.file else one.label)
         assert one.program is not None
         found.append(Subject(one.program, one.settings, frozenset(arguments.settings), one.label))
+        refusals += [one.decided.refusal] if one.decided.refusal else []
+    for refusal in dict.fromkeys(refusals):
+        echo_error(f"note: {refusal}")
     return tuple(found)
 
 

@@ -26,8 +26,7 @@ from tuisim.config.folders import backgrounds_folder
 from tuisim.config.mat_image import decode, read_file
 from tuisim.config.mats import background
 from tuisim.config.options import APP, PANEL, settings_of
-from tuisim.config.program_file import ProgramSource
-from tuisim.config.program_settings import program_settings
+from tuisim.config.program_settings import ProgramSettings, program_settings
 from tuisim.config.shared_options import shared_options
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError, ExportError, ProfileError, counted, listed, printable, see_page
@@ -130,6 +129,7 @@ def mark(**given: Any) -> int:
         sheet = sheet_of(task.title, _columns(task), seeds, students, outcomes)
         # First, so that marks are seen also if a file cannot be written.
         _print(sheet, found.ignored)
+        _tell_refusals(students)
         _write(sheet, task.goals, students, found.ignored, arguments)
     return max(_tell_unread(students), _tell_missing(outcomes))
 
@@ -181,6 +181,13 @@ def _tell_unread(students: Sequence[Student]) -> int:
     for student in unread:
         echo_error(f"tuisim: the marks are without {printable(student.name)}: {student.problem}")
     return 1 if unread else 0
+
+
+def _tell_refusals(students: Sequence[Student]) -> None:
+    """Tell whose programs would not start on a brick."""
+    for student in students:
+        if student.refusal:
+            echo_error(f"note: {printable(f'{student.name}: {student.refusal}')}")
 
 
 def _tell_missing(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
@@ -244,7 +251,11 @@ def _entries(found: StudentsFound, task: GoalsFile, arguments: Arguments) -> tup
         spec = shared
         if student.source:
             try:
-                spec = _shared_spec(student.source, task, arguments) if task.settings else _own_spec(student, arguments)
+                own = _settings(student, task, arguments)
+                spec = build_run_spec(own.settings)
+                if not task.settings:
+                    _check_background(spec)
+                student = replace(student, refusal=own.decided.refusal)
             except ConfigError as error:
                 misfits += [error] if isinstance(error, ProfileError) and names_profile else []
                 cause = error.__cause__
@@ -258,32 +269,34 @@ def _entries(found: StudentsFound, task: GoalsFile, arguments: Arguments) -> tup
     return entries, students
 
 
-def _shared_spec(source: ProgramSource, task: GoalsFile, arguments: Arguments) -> RunSpec:
-    """Return the world of the goals, by the rules for the library of a program where the goals name no others.
+def _settings(student: Student, task: GoalsFile, arguments: Arguments) -> ProgramSettings:
+    """Return the settings of a student's program: in the world of the goals if they name one, else of its magic line.
 
-    Raises:
-        ProfileError: they name a profile for another library.
-    """
-    bare = replace(source, options={})
-    layers = task.settings, arguments.settings
-    return build_run_spec(program_settings(bare, *layers, in_world=True, of_task=True).settings)
-
-
-def _own_spec(student: Student, arguments: Arguments) -> RunSpec:
-    """Return the world of a student's magic line.
+    In the world of the goals, the rules are those for the program's library where the goals name no others.
 
     Raises:
         ConfigError: the line, or a file that it names, is wrong.
+        ProfileError: a profile is named for another library.
     """
     assert student.source is not None
+    if task.settings:
+        bare = replace(student.source, options={})
+        return program_settings(bare, task.settings, arguments.settings, in_world=True, of_task=True)
     if outside := file_outside(student):
         raise ConfigError("the magic line names a file outside the folder", key=outside)
-    spec = build_run_spec(program_settings(student.source, arguments.settings).settings)
+    return program_settings(student.source, arguments.settings)
+
+
+def _check_background(spec: RunSpec) -> None:
+    """Read a picture of the student's own, to detect a damaged one before the runs.
+
+    Raises:
+        ConfigError: it is no picture, or it cannot be read.
+    """
     image = background(spec.world.background).image
     if not image.is_relative_to(backgrounds_folder()):
         # A run for which it cannot be read is one that this machine could not make.
         decode(read_file(image), image, spec.world.background_fit)
-    return spec
 
 
 def _told(error: ConfigError, student: Student) -> str:

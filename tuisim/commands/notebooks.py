@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -88,7 +89,9 @@ def check_folder(word: str, *, run_all: bool) -> list[Path]:
     """
     found = notebooks_in(Path(word))
     if not found:
-        raise ConfigError("is a folder without notebooks", "name a program, or a folder with notebooks", file=word)
+        main = os.path.join(word, "main.py")
+        named = f"its program {main}" if os.path.isfile(main) else "a program, or a folder with notebooks"
+        raise ConfigError("is a folder without notebooks", f"name {named}", file=word)
     if not run_all:
         hint = f"tuisim run {word} --all runs them all"
         raise ConfigError(f"is a folder of {counted(len(found), 'notebook')}", hint, file=word)

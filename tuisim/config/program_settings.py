@@ -217,7 +217,9 @@ def decide(source: ProgramSource, settings: Settings, free: Collection[str], *, 
     needed = facts.robot.choice if facts.robot else None
     law = _law(profile) if facts.refused else None
     refused = facts.refused if law is MotorLaw.PYBRICKS else ()
-    return Decided(layer, *_in_words(source.program, facts, layer), needed, frozenset(free), refused)
+    keeps_robot = "robot" not in layer and settings.given.get("robot") is None
+    words = _in_words(source.program, facts, layer, keeps_robot=keeps_robot)
+    return Decided(layer, *words, needed, frozenset(free), refused)
 
 
 def _check_prelude(program: Program) -> None:
@@ -281,13 +283,21 @@ def _by_brick_rules(source: ProgramSource, facts: SourceFacts, free: Collection[
     return bool(facts.library) and not facts.of_course and not source.has_magic and "profile" in free
 
 
-def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) -> tuple[str, str]:
-    """Return what the source of a program decided, and how to change it; both empty for nothing."""
+def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any], *, keeps_robot: bool) -> tuple[str, str]:
+    """Return what the source of a program decided, and how to change it; both empty for nothing.
+
+    Args:
+        keeps_robot: Whether a task keeps its own robot, though nobody has named one.
+    """
     rules = f"by the rules of a brick (profile {layer['profile']})" if "profile" in layer else ""
-    if facts.robot and "robot" in layer:
+    if facts.robot and ("robot" in layer or keeps_robot):
         from tuisim.config.program_robot.report import in_words
 
-        parts = [f"{program.name} runs on a robot built from it: {in_words(facts.robot)}", *facts.robot.doubts]
+        words = in_words(facts.robot)
+        if keeps_robot:
+            parts = [f"{program.name} is for another robot than that of the task: {words}"]
+        else:
+            parts = [f"{program.name} runs on a robot built from it: {words}", *facts.robot.doubts]
         options = "-r or --profile" if rules else "-r"
         shown = f"; `tuisim robots --from {shlex.quote(program.path)}` shows the robot" if program.path else ""
         return "; ".join(filter(None, [*parts, rules])), f"{options} to change it{shown}"

@@ -91,9 +91,10 @@ class ProfileSpec(Spec):
     clock_read_ns: int = _cost(default=20_000, source=f"{_NEW}, so that loops on the clock end; {_OLD}: nothing")
     display_update_ns: int = _cost(
         default=10 * MS,
-        source=f"{_NEW}, an estimate: 130 steps per pixel at the brick's 300 MHz; the old simulator has none",
+        source=f"{_NEW}, an estimate: 130 steps per pixel at the brick's 300 MHz; the old simulator has none; "
+        "lego-micropython: its firmware draws in C",
     )
-    """`Display.update()`: it converts 22 784 pixels into 91 KB."""
+    """`Display.update()`: it converts 22 784 pixels into 91 KB. Of Pybricks, any drawing."""
 
     motor_law: MotorLaw = choice(
         MotorLaw,
@@ -180,6 +181,7 @@ LEGO_MICROPYTHON = replace(
     EV3,
     name="lego-micropython",
     title="LEGO's MicroPython for the EV3: Pybricks 2.0",
+    display_update_ns=1 * MS,
     motor_law=MotorLaw.PYBRICKS,
     max_speed_dps=930.0,
     mode_switch_ns=30 * MS,

@@ -51,6 +51,8 @@ def feedback_of(sheet: Sheet, row: SheetRow, source: str = "") -> str:
         parts += [_wrapped(f"Your program did not run to its end: {row.failure}"), ""]
         parts += [f"    {line}" for line in source_lines(row.error)[-MOST_ERROR_LINES:]]
         parts += [""] if row.error else []
+    if row.refusal:
+        parts += [_wrapped(f"Your program would not start on a brick: {row.refusal}"), ""]
     quoted = source_lines(source)
     for column, cell in zip(sheet.columns, row.cells, strict=True):
         parts += [*_goal(column, cell, row.runs, quoted), ""]

@@ -73,6 +73,8 @@ class SheetRow:
     runs: int = 0
     stopped_early: bool = False
     """Whether further seeds were left out, because the program hung, flooded or died."""
+    refusal: str = ""
+    """The first line of the program that the brick's Python would refuse, and how many follow; empty for none."""
     outcomes: tuple[Outcome, ...] = ()
 
 
@@ -137,6 +139,7 @@ def row_of(student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome
         error=failed.error if failed else "",
         runs=len(ordered),
         stopped_early=len(ordered) < seeds and ordered[0].gave_up,
+        refusal=student.refusal,
         outcomes=ordered,
     )
 

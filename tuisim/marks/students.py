@@ -37,6 +37,8 @@ class Student:
     """Why there is none, one sentence."""
     is_unread: bool = False
     """Whether this machine could not read what the student has handed in, which is not the student's fault."""
+    refusal: str = ""
+    """The first line that the brick's Python would refuse, and how many follow; empty for none."""
 
     @property
     def text(self) -> str:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 from tuisim.core.profile import NS_PER_S
-from tuisim.errors import LogError
+from tuisim.errors import LogError, NotSimulated
 from tuisim.protocol import NO_ANSWER, Answer, End, InputWanted
 from tuisim.runs.records import Stream
 from tuisim.runtime.hooks import ErrorHooks, flush_streams, safe_text
@@ -59,6 +59,14 @@ def _has_finalizer(value: object) -> bool:
 def _is_data(value: object) -> bool:
     """Return whether a value is neither code nor an open file."""
     return not isinstance(value, types.ModuleType | types.FunctionType | types.BuiltinFunctionType | type | io.IOBase)
+
+
+def _with_caught(outcome: ProgramOutcome) -> ProgramOutcome:
+    """Add to the summary what the program used that is not simulated, if it caught the error about it."""
+    if not NotSimulated.first or outcome.end not in (End.FINISHED, End.TIME_LIMIT):
+        return outcome
+    summary = "; ".join(filter(None, (outcome.summary, f"caught NotSimulated: {NotSimulated.first}")))
+    return ProgramOutcome(outcome.end, outcome.exit_code, summary, outcome.error, outcome.error_line)
 
 
 class ProgramRunner:
@@ -151,7 +159,9 @@ class ProgramRunner:
         self._finish_streams()
         # A stop in another thread, an exit function or a `__del__` need not have arrived here.
         stop = self._session.stop_reason
-        return outcome if stop is None or outcome.end is not End.FINISHED else ProgramOutcome(stop.end, 0, stop.summary)
+        if stop is not None and outcome.end is End.FINISHED:
+            outcome = ProgramOutcome(stop.end, 0, stop.summary)
+        return _with_caught(outcome)
 
     def _outcome(self, part: Callable[[], None]) -> ProgramOutcome:
         try:
@@ -237,6 +247,7 @@ class ProgramRunner:
         gc.enable()
         if self._config.debugged:
             self._session.debug().begin(self._config.options)
+        NotSimulated.first = ""
         exec(program, self.names)
 
     # Ends

@@ -55,6 +55,14 @@ async def test_a_reload_keeps_cursor_and_scroll_and_can_be_undone() -> None:
         assert area.document.get_line(10) == "new"
 
 
+async def test_the_line_that_runs_stays_in_sight_when_the_panel_shrinks() -> None:
+    async with CodeApp().run_test(size=(60, 30)) as pilot:
+        code, area = await alone(pilot, "\n".join(f"x{n} = {n}" for n in range(200)))
+        code.show_line(20)
+        await pilot.resize_terminal(60, 10)
+        await until(pilot, lambda: area.scroll_offset.y <= 19 < area.scroll_offset.y + area.size.height)
+
+
 @pytest.mark.parametrize("text", ["", "\n", "a\n\n", "x = '\x0c\u2028\x85'\n", "\x1b[31m", "漢字 = 1\n", "\ta\n"])
 async def test_no_text_is_changed_by_being_shown(text: str) -> None:
     async with CodeApp().run_test(size=(40, 8)) as pilot:

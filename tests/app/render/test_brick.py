@@ -52,6 +52,17 @@ def test_dots_keep_a_thin_line() -> None:
     assert sum(0x2800 < ord(char) <= 0x28FF for char in rows[0]) == 89
 
 
+@pytest.mark.parametrize(("width", "height"), [(60, 24), (30, 9), (16, 6)])
+def test_a_small_display_keeps_every_thin_line(width: int, height: int) -> None:
+    def dots(*place: slice) -> int:
+        lines = text_of(BrickState(picture=picture((place[0], place[1]))), width, height)
+        return sum(0x2800 < ord(char) <= 0x28FF for line in lines for char in line)
+
+    everything = slice(None)
+    assert all(dots(slice(row, row + 1), everything) for row in range(DISPLAY_HEIGHT))
+    assert all(dots(everything, slice(column, column + 1)) for column in range(DISPLAY_WIDTH))
+
+
 def test_shrinking_averages() -> None:
     ink = np.zeros((4, 4), np.uint8)
     ink[:2, :2] = 1

@@ -8,8 +8,10 @@ from dataclasses import replace
 import pytest
 
 from tests.core.memory_sink import MemorySink
+from tests.core.motors import SERVO, run
 from tuisim.core.geometry import Pose
-from tuisim.core.profile import PROFILES
+from tuisim.core.motors import STOPPED, TIMED
+from tuisim.core.profile import PROFILES, ProfileSpec
 from tuisim.core.servo.control import Ending
 from tuisim.core.servo.drive_base import DriveBase
 from tuisim.core.servo.motor import ServoMotor
@@ -24,9 +26,9 @@ WALLED = replace(WORLD, obstacles=(Obstacle(900, 500, 40, 800),))
 class Robot:
     """A robot in a world, whose drive base and motors get commands."""
 
-    def __init__(self, world: WorldSpec) -> None:
+    def __init__(self, world: WorldSpec, profile: ProfileSpec = PROFILE) -> None:
         self.sink = MemorySink()
-        self.sim = Simulation(RunSpec(RobotSpec(), world, PROFILE), self.sink)
+        self.sim = Simulation(RunSpec(RobotSpec(), world, profile), self.sink)
         left, right = self.sim.left, self.sim.right
         assert isinstance(left, ServoMotor) and isinstance(right, ServoMotor)
         self.motors = left, right
@@ -102,3 +104,46 @@ def test_a_robot_at_a_wall_drives_back() -> None:
     robot.sim.advance(300)
     assert robot.sim.drive.x_mm == pytest.approx(at_mm - 100, abs=10)
     assert robot.base.done(robot.now_us)
+
+
+@pytest.mark.parametrize("ending", [Ending.COAST, Ending.BRAKE, Ending.HOLD])
+def test_a_motion_for_a_time_ends_at_a_wall(ending: Ending) -> None:
+    robot = Robot(WALLED)
+    for motor in robot.motors:
+        motor.control.run(robot.now_us, motor.measured, 1000, 3200, 4_000_000)
+        motor.follow(ending=ending)
+    robot.sim.advance(399)
+    assert [motor.mode for motor in robot.motors] == [TIMED, TIMED]
+    robot.sim.advance(2)
+    at_deg = robot.motors[0].position_deg
+    assert [motor.mode for motor in robot.motors] == [STOPPED, STOPPED]
+    assert all((motor.guide is None) == (ending is not Ending.HOLD) for motor in robot.motors)
+    # It holds where it is, and does not push on when the way is free.
+    robot.sim.place(Pose(300, 500, 0))
+    robot.sim.advance(50)
+    assert (robot.motors[0].position_deg, robot.sim.drive.x_mm) == (at_deg, 300)
+
+
+@pytest.mark.parametrize("profile", SERVO)
+@pytest.mark.parametrize("blocking", ["run", "move"])
+@pytest.mark.parametrize("freeing", ["run", "move"])
+def test_motors_that_a_wall_has_blocked_drive_back(profile: str, blocking: str, freeing: str) -> None:
+    robot = Robot(WALLED, PROFILES[profile])
+
+    def command(way: str, counts: int) -> None:
+        for motor in robot.motors:
+            if way == "run":
+                run(robot.sim, motor, counts / 2)
+            else:
+                target = motor.milli // 1000 + counts
+                motor.control.move_to(robot.now_us, motor.measured, target, 1600, 3200)
+                motor.follow()
+
+    command(blocking, 4000)
+    robot.sim.advance(400)
+    at_mm = robot.sim.drive.x_mm
+    assert robot.motors[0].control.stalled
+    command(freeing, -2000)
+    # A motion at a speed that was blocked counts on: a move to a position begins there.
+    robot.sim.advance(800)
+    assert robot.sim.drive.x_mm < at_mm - 100

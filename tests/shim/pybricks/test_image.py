@@ -100,6 +100,13 @@ def test_the_screen_is_recorded_when_it_changes(lab: Lab) -> None:
     assert len({row for row, _ in lab.shown}) == 2
 
 
+def test_drawing_takes_a_millisecond(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
+    charged: list[int] = []
+    monkeypatch.setattr(lab, "charge", charged.append)
+    Image(image.THE_SCREEN).draw_line(0, 0, 9, 9)
+    assert charged == [1_000_000]
+
+
 def test_print_has_its_own_cursor_and_scrolls(lab: Lab) -> None:
     screen = Image(image.THE_SCREEN)
     screen.set_font(Font(size=24))

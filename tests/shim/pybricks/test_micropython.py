@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -35,6 +36,12 @@ def test_a_file_of_the_program_is_no_built_in_module(here: Command, tmp_path: Pa
     text = "import pybricks, utime, umqtt\nprint(hasattr(utime, 'own'), hasattr(umqtt, 'own'))"
     (tmp_path / "main.py").write_text(text)
     assert here("run", "main.py").stdout == "False True\n"
+
+
+def test_the_interpreter_has_its_name_and_still_imports(here: Command, tmp_path: Path) -> None:
+    (tmp_path / "helper.py").write_text("import usys\nprint(usys.implementation.name)\n")
+    (tmp_path / "main.py").write_text("import pybricks, sys, helper\nprint(sys.implementation.cache_tag)")
+    assert here("run", "main.py").stdout == f"micropython\n{sys.implementation.cache_tag}\n"
 
 
 def test_they_are_not_there_for_another_library(run_on: RunOn) -> None:

@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from tests.running import Run, Start, over
+from tuisim.app.snapshot import end_words
+from tuisim.protocol import End
 from tuisim.shim.unsupported.modules import BLUETOOTH, ELSEWHERE, ON_THE_BRICK, PACKAGES
 
 USES = {
@@ -44,6 +46,19 @@ def test_the_program_ends_with_its_name(run: Run, text: str, words: str) -> None
     assert (done.ended.exit_code, done.ended.error_line) == (1, text.count("\n") + 1)
 
 
+@pytest.mark.parametrize(
+    ("profile", "own", "other"), [("ev3", "ev3dev2", "pybricks"), ("pybricks4", "pybricks", "ev3dev2")]
+)
+def test_hints_have_the_names_of_the_programs_library(run: Run, profile: str, own: str, other: str) -> None:
+    text = "import socket\ntry:\n    socket.socket(socket.AF_BLUETOOTH)\nexcept Exception as error:\n    print(error)\n"
+    for name in (*ON_THE_BRICK, *ELSEWHERE):
+        text += f"try:\n    import {name}\n    {name}.use()\nexcept Exception as error:\n    print(error)\n"
+    told = run(text, profile=profile, prelude="none").lines
+    assert len(told) == 1 + len(ON_THE_BRICK) + len(ELSEWHERE)
+    assert not any(other in line or "{" in line for line in told)
+    assert f"smbus.use: the I2C bus of the brick is not simulated (the sensors of {own}." in "\n".join(told)
+
+
 def test_every_module_of_the_brick_can_be_imported(run: Run) -> None:
     names = sorted(ON_THE_BRICK)
     stars = "".join(f"from {name} import *\n" for name in names)
@@ -53,7 +68,27 @@ def test_every_module_of_the_brick_can_be_imported(run: Run) -> None:
 
 def test_a_program_can_do_without_what_a_brick_does_not_have(run: Run) -> None:
     tries = "".join(f"try:\n    import {name}\nexcept ImportError:\n    print('{name}')\n" for name in ELSEWHERE)
-    assert run(tries, prelude="none").lines == list(ELSEWHERE)
+    done = run(tries, prelude="none")
+    assert (done.lines, done.ended.summary) == (list(ELSEWHERE), "")
+
+
+CAUGHT = "import serial, time\nfor _ in range(3):\n    try:\n        serial.Serial()\n    except{}:\n        pass\n"
+TOLD = "caught NotSimulated: serial.Serial: a serial port is not simulated"
+
+
+@pytest.mark.parametrize("handled", ["", " Exception", " Exception as error"])
+def test_the_end_tells_what_a_program_caught(run: Run, handled: str) -> None:
+    ended = run(CAUGHT.format(handled), prelude="none").ended
+    assert (ended.end, ended.exit_code, ended.summary) == (End.FINISHED, 0, TOLD)
+    assert end_words(ended, "") == (f"finished: {TOLD}", f"— finished: {TOLD} at 0.00 s")
+
+
+def test_a_limit_and_an_exit_code_tell_it_too(run: Run) -> None:
+    ended = run(CAUGHT.format("") + "time.sleep(9)", prelude="none", time_limit_s=1).ended
+    assert ended.summary == f"stopped at the limit of 1 s simulated time; {TOLD}"
+    ended = run(CAUGHT.format("") + "raise SystemExit(3)", prelude="none").ended
+    assert ended.summary == f"the program ended itself with exit code 3; {TOLD}"
+    assert run("import time\nraise SystemExit(0)", prelude="none").ended.summary == ""
 
 
 def test_errors_can_be_handled(run: Run) -> None:

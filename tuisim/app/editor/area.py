@@ -156,9 +156,10 @@ class CodeArea(TextArea):
         return True
 
     def on_resize(self) -> None:
-        """Scroll back to the start of the lines unless the user types."""
+        """Scroll back to the start of the lines, and to the highlighted one, unless the user types."""
         if not self.typing:
             self.call_after_refresh(self.scroll_to, x=0, animate=False, force=True)
+            self.call_after_refresh(self.scroll_to_line, self._lit)
 
     # Marks
 

@@ -32,8 +32,9 @@ HALF_BLOCK_SCALE = 0.7
 _SHADES = 5
 """Shades between paper and ink for half blocks: more would only cost bytes."""
 
-_DOT_SHARE = 0.25
-"""A dot is dark if at least this share of its area is dark, so that thin lines stay visible."""
+_DOT_SHARE, _LINE_PX = 0.25, 0.5
+"""A dot is dark if at least this share of its area is dark, or as much as a line of this width darkens, which is what
+the greater part of a thin line leaves in one of two dots."""
 
 _SYMBOLS = {"backspace": "⌫", "up": "▲", "left": "◀", "enter": "●", "right": "▶", "down": "▼"}
 """In the order of the single-row layout."""
@@ -123,15 +124,15 @@ def _display(picture: bytes, width: int, rows: int) -> list[list[Run]]:
     high = max(per_row, round(fine * DISPLAY_HEIGHT) // per_row * per_row)
     across = max(2, round(fine * DISPLAY_WIDTH) // 2 * 2)
     shares = shrunk(ink, min(high, DISPLAY_HEIGHT), min(across, DISPLAY_WIDTH))
-    drawn = _in_dots(shares) if dots else _in_half_blocks(shares)
+    drawn = _in_dots(shares, min(_DOT_SHARE, _LINE_PX * fine)) if dots else _in_half_blocks(shares)
     left = (width - sum(len(text) for text, _ in drawn[0])) // 2
     lines: list[list[Run]] = [[(" " * left, _PLAIN), *line] for line in drawn]
     top = max(0, (rows - len(lines)) // 2)
     return ([[] for _ in range(top)] + lines + [[] for _ in range(rows)])[:rows]
 
 
-def _in_dots(shares: NDArray[np.float64]) -> list[list[Run]]:
-    dark = shares >= _DOT_SHARE
+def _in_dots(shares: NDArray[np.float64], least: float) -> list[list[Run]]:
+    dark = shares >= least
     rows, columns = dark.shape[0] // 4, dark.shape[1] // 2
     fields = dark[: rows * 4, : columns * 2].reshape(rows, 4, columns, 2)
     codes = (fields * _DOT_BITS[None, :, None, :]).sum(axis=(1, 3))

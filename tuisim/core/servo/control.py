@@ -193,7 +193,10 @@ class Controller:
             if spliced is not None and found.first.acceleration == start.acceleration:
                 takes_us = time_us + now_us - spliced.start_us
                 found = timed_move(spliced, takes_us, rate, acceleration, settings.speed)
+        # What a motion at a speed has forgotten, the next one does not catch up either.
+        behind_milli = self._behind_milli if self.timed and self.trajectory is not None and not self._slips else 0
         self._begin(found, timed=True)
+        self._behind_milli = behind_milli
 
     def _runs_at(self, now_us: int, rate: int) -> bool:
         """Return whether a motion at a rate has reached it, so that the same command changes nothing."""
@@ -234,19 +237,17 @@ class Controller:
         """
         settings, trajectory = self.settings, self.trajectory
         assert trajectory is not None
-        error = abs(self.milli(now_us) - milli)
-        power = settings.kp * error // MILLI
+        error = self.milli(now_us) - milli
+        power = settings.kp * abs(error) // MILLI
         limit = self.actuation - settings.feed_forward + settings.kp * abs(rate) * PAUSE_MARGIN_MS // 1000
-        if power < limit:
+        moved = self.milli(now_us) - self.milli(now_us - passed_us)
+        # A trajectory that leads back to the motion goes on: a blocked motor comes free when it reverses.
+        leads_back = (moved if self.timed else trajectory.even.rate) * error < 0
+        if power < limit or leads_back:
             self._stalled_us = 0
             return
         if self.timed:
-            self._behind_milli += self.milli(now_us) - self.milli(now_us - passed_us)
-        elif self._slips and self.rate(now_us) * (trajectory.end.milli - milli) < 0:
-            # Something blocks the way out of the motion before: the move begins where it is.
-            here, target = Segment(now_us, milli, 0, 0), divided(trajectory.end.milli, MILLI)
-            acceleration = abs(trajectory.last.acceleration)
-            self._begin(angle_move(here, target, trajectory.even.rate, acceleration, settings.speed), timed=False)
+            self._behind_milli += moved
         else:
             self._paused_us += passed_us
         self._stalled_us = self._stalled_us + passed_us if abs(rate) < settings.stall_speed else 0
@@ -255,6 +256,10 @@ class Controller:
     def stalled(self) -> bool:
         """Whether the motion has hardly moved at full power for the time of the settings."""
         return self.trajectory is not None and self._stalled_us >= self.settings.stall_time_ms * MS_US
+
+    def is_over(self, now_us: int) -> bool:
+        """Return whether a motion for a time has come to its end."""
+        return self.timed and (end_us := self.end_us) is not None and now_us >= end_us
 
     def done(self, now_us: int, milli: int, rate: int) -> bool:
         """Return whether no move is under way.

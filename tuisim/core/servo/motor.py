@@ -294,6 +294,11 @@ class ServoMotor:
         if guide is None:
             return self._run_on(now_us)
         if self._course is None:
+            if guide is self.control and self.control.is_over(now_us):
+                # A motion for a time ends where it is.
+                self.control.hold(now_us, self.milli)
+                self._end()
+                return 0.0
             guide.fall_behind(now_us - self._tick_us, self._tick_us, self)
         halves = guide.halves(now_us, self)
         if self._course is not None:
@@ -319,7 +324,7 @@ class ServoMotor:
 
     def _end(self) -> None:
         """End the motion: from now on the motor stands."""
-        self.mode = STOPPED
+        self.mode, self.speed_dps, self.blocked_ticks = STOPPED, 0.0, 0
         if self._ending != Ending.HOLD and self._guide is not None:
             self.control.release()
             self._guide, self._free_dps, self.duty = None, 0.0, 0 if self._ending == Ending.BRAKE else None

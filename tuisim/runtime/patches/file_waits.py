@@ -157,7 +157,7 @@ class FileWaits:
 
     def finish_socket(self, module: types.ModuleType) -> None:
         """Let blocking sockets wait in simulated time, and refuse those for Bluetooth."""
-        refuse_bluetooth(module)
+        refuse_bluetooth(module, self._session.sim.spec.profile.motor_law.library)
         sockets: Any = module.socket
         for names, writes in ((_READS, False), (_WRITES, True)):
             for name in names:

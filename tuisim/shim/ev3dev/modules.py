@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from functools import partial
 
+from tuisim.core.profile import Library
 from tuisim.shim.brick import BuiltBrick, ports_hint
 from tuisim.shim.buttons import patch_button_module
 from tuisim.shim.console import Terminal, patch_console_module
@@ -57,7 +58,7 @@ def install(session: DeviceSession, built: BuiltBrick) -> None:
     """Let a program import the libraries."""
     sys.meta_path.insert(0, OtherLibrary((PYBRICKS,), "choose --profile lego-micropython"))
     sys.meta_path.append(MissingLibrary())
-    sys.meta_path.append(HardwareFinder())
+    sys.meta_path.append(HardwareFinder(Library.EV3DEV2))
     connect(built.files, partial(ports_hint, session))
     sys.modules["ev3dev2_glue"] = glue_module(session)
     sys.modules.update(evdev_modules(session))

@@ -90,7 +90,7 @@ class MicroPythonFinder:
 
 def install(session: DeviceSession) -> None:
     """Let a program import MicroPython's modules, and add their names to those of Python's modules that it has."""
-    for name, more in (("time", clock_names(session)), ("gc", GARBAGE), ("os", FILES), ("sys", ERRORS)):
+    for name, more in (("time", clock_names(session)), ("gc", GARBAGE), ("os", FILES), ("sys", SYSTEM)):
         vars(import_module(name)).update(more)
     for name, function, fitted in (("collections", "namedtuple", _named_tuple), ("_thread", "stack_size", lambda _: 0)):
         names = vars(import_module(name))
@@ -218,5 +218,9 @@ def _print_exception(error: BaseException, file: Any = None) -> None:
     import_module("traceback").print_exception(error, file=sys.stdout if file is None else file)
 
 
-ERRORS: Mapping[str, Any] = {"print_exception": _print_exception}
+SYSTEM: Mapping[str, Any] = {
+    # The rest stays: Python's import needs it.
+    "implementation": types.SimpleNamespace(**{**vars(sys.implementation), "name": "micropython"}),
+    "print_exception": _print_exception,
+}
 """What `sys` has in MicroPython only."""

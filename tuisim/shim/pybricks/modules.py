@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
-from tuisim.core.profile import MotorLaw
+from tuisim.core.profile import Library, MotorLaw
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.shim.brick import BuiltBrick, ports_hint
 from tuisim.shim.display import Screen
@@ -80,7 +80,7 @@ def _version_4() -> Mapping[str, Mapping[str, Any]]:
 def install(session: DeviceSession, built: BuiltBrick, screen: Screen, mixer: Mixer) -> None:
     """Let a program import the library, and the modules of MicroPython."""
     sys.meta_path.insert(0, OtherLibrary(("ev3dev2", "ev3dev"), "choose --profile ev3"))
-    sys.meta_path.append(HardwareFinder())
+    sys.meta_path.append(HardwareFinder(Library.PYBRICKS))
     micropython.install(session)
     motors = {port: motor for port, motor in built.motors.items() if isinstance(motor, ServoMotor)}
     hint = partial(ports_hint, session)

@@ -203,7 +203,7 @@ class Motor(DCMotor):
         motor = self._motor
         if motor.guide is None:
             return True
-        if motor.control.stalled:
+        if motor.control.stalled and not motor.control.timed:
             self.brick.say_stalled(f"the motor on {self._name} is", call)
         return self.move_done(now_us, motor.control)
 

@@ -107,7 +107,12 @@ def of_driver(name: str) -> Hardware | None:
 
 
 def refusal(where: str, kind: Hardware, name: str = "") -> NotSimulated:
-    """Return the error about the use of a kind.
+    """Return the error about the use of a kind; arguments as of `_told`."""
+    return NotSimulated(*_told(where, kind, name))
+
+
+def _told(where: str, kind: Hardware, name: str) -> tuple[str, str]:
+    """Return the message and the hint of the error about the use of a kind.
 
     Args:
         where: What the program used.
@@ -115,7 +120,7 @@ def refusal(where: str, kind: Hardware, name: str = "") -> NotSimulated:
         name: Its driver, address or mode, as the program wrote it.
     """
     called = f" ({shortened(name, 80)})" if name else ""
-    return NotSimulated(f"{where}: {kind.title}{called} is not simulated", kind.instead)
+    return f"{where}: {kind.title}{called} is not simulated", kind.instead
 
 
 def foreign_mode(mode: str, port: str, plugged: str) -> NotSimulated | None:
@@ -138,7 +143,7 @@ def refused_device(device: Any, class_name: str, missing: type[Exception]) -> Ex
     found = _refused(class_name, _texts(wanted.get("driver_name")), _texts(wanted.get("address")))
     if found is None:
         return None
-    return refused_as(missing, refusal(_named(type(device)), *found))
+    return refused_as(missing, *_told(_named(type(device)), *found))
 
 
 def _refused(class_name: str, drivers: list[str], addresses: list[str]) -> tuple[Hardware, str] | None:

@@ -10,18 +10,38 @@ from __future__ import annotations
 import sys
 import types
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import wraps
 from importlib.machinery import ModuleSpec
 from typing import Any, NoReturn
 
+from tuisim.core.profile import Library
 from tuisim.errors import NotSimulated
 
-_RADIO = "to drive by hand, use the brick's buttons or RemoteControlledTank; parts of a program can talk by queue.Queue"
-_BUS = "the sensors of ev3dev2.sensor.lego are simulated"
+
+@dataclass(frozen=True, slots=True)
+class Instead:
+    """Names in the library of a program, for what it can do instead."""
+
+    library: str
+    sensors: str
+    sound: str
+    remote: str
+    queue: str
+
+
+INSTEAD: Mapping[Library, Instead] = {
+    Library.EV3DEV2: Instead("ev3dev2", "ev3dev2.sensor.lego", "ev3dev2.sound", "RemoteControlledTank", "queue.Queue"),
+    Library.PYBRICKS: Instead(
+        "pybricks", "pybricks.ev3devices", "EV3Brick().speaker", "an InfraredSensor", "mailboxes of pybricks.messaging"
+    ),
+}
+
+_RADIO = "to drive by hand, use the brick's buttons or {remote}; parts of a program can talk by {queue}"
+_BUS = "the sensors of {sensors} are simulated"
 CAMERA = "use a ColorSensor for colours, and an UltrasonicSensor for distances"
-_GAMEPAD = "to drive by hand, use the brick's buttons or RemoteControlledTank"
-_MICROPHONE = "it is silent here: start by a TouchSensor or a Button; ev3dev2.sound makes sounds"
+_GAMEPAD = "to drive by hand, use the brick's buttons or {remote}"
+_MICROPHONE = "it is silent here: start by a TouchSensor or a button; {sound} makes sounds"
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,9 +50,13 @@ class Hardware:
 
     title: str
     instead: str
-    """What a program can do instead."""
+    """What a program can do instead; may have fields of `Instead`."""
     names: tuple[str, ...] = ()
     """What `from … import *` gives."""
+
+    def told_to(self, library: Library) -> Hardware:
+        """Return the same with the names of a library."""
+        return replace(self, instead=self.instead.format_map(asdict(INSTEAD[library])))
 
 
 _SMBUS = Hardware("the I2C bus of the brick", _BUS, ("SMBus",))
@@ -64,9 +88,9 @@ ON_THE_BRICK: Mapping[str, Hardware] = {
 }  # fmt: skip
 """Modules that can be imported but not used, by name."""
 
-_PI = Hardware("the Raspberry Pi", "this is an EV3: use ev3dev2")
+_PI = Hardware("the Raspberry Pi", "this is an EV3: use {library}")
 _PI_CAMERA = Hardware("the camera of the Raspberry Pi", CAMERA)
-_BRICKPI = Hardware("the BrickPi", "this is an EV3: use ev3dev2")
+_BRICKPI = Hardware("the BrickPi", "this is an EV3: use {library}")
 
 ELSEWHERE: Mapping[str, Hardware] = {
     "RPi": _PI,
@@ -78,9 +102,9 @@ ELSEWHERE: Mapping[str, Hardware] = {
     "picamera2": _PI_CAMERA,
     "brickpi": _BRICKPI,
     "brickpi3": _BRICKPI,
-    "microbit": Hardware("the micro:bit", "this is an EV3: use ev3dev2"),
-    "spike": Hardware("the SPIKE hub", "this is an EV3: use ev3dev2"),
-    "mindstorms": Hardware("the hub of the Robot Inventor", "this is an EV3: use ev3dev2"),
+    "microbit": Hardware("the micro:bit", "this is an EV3: use {library}"),
+    "spike": Hardware("the SPIKE hub", "this is an EV3: use {library}"),
+    "mindstorms": Hardware("the hub of the Robot Inventor", "this is an EV3: use {library}"),
 }
 """Modules that cannot be imported, by name."""
 
@@ -99,14 +123,15 @@ _ERRORS = ("Error", "Exception", "Timeout")
 """Ends of the names of exceptions, which a program names in its handlers."""
 
 
-def _refused(name: str, hardware: Hardware) -> NotSimulated:
-    return NotSimulated(f"{name}: {hardware.title} is not simulated", hardware.instead)
+def _told(name: str, hardware: Hardware) -> tuple[str, str]:
+    """Return the words of the error about the use of a module: the message and the hint."""
+    return f"{name}: {hardware.title} is not simulated", hardware.instead
 
 
-def refused_as(kind: type[Exception], told: NotSimulated) -> Exception:
+def refused_as(kind: type[Exception], message: str, hint: str) -> Exception:
     """Return an error that is of another kind, too: a program may try what there is, and do without it."""
     both: Any = type("NotSimulated", (NotSimulated, kind), {"__module__": NotSimulated.__module__})
-    error: Exception = both(told.message, told.hint)
+    error: Exception = both(message, hint)
     return error
 
 
@@ -117,7 +142,7 @@ class _Part(type):
     hardware: Hardware
 
     def _use(cls, *_: object, **__: object) -> NoReturn:
-        raise _refused(cls.full_name, cls.hardware)
+        raise NotSimulated(*_told(cls.full_name, cls.hardware))
 
     __call__ = __getitem__ = __iter__ = __len__ = __int__ = __index__ = __float__ = __enter__ = __exit__ = _use
     __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __lt__ = __le__ = __gt__ = __ge__ = _use
@@ -181,12 +206,19 @@ class OtherLibrary:
             NotSimulated: it is one; it is an ImportError, too.
         """
         if fullname in self._names:
-            told = NotSimulated(f"{fullname}: the rules of this run are for another library", self._instead)
-            raise refused_as(ImportError, told)
+            told = f"{fullname}: the rules of this run are for another library"
+            raise refused_as(ImportError, told, self._instead)
 
 
 class HardwareFinder:
-    """Finds the modules for hardware; the last finder, so that a file of the program or a package comes first."""
+    """Finds the modules for hardware; the last finder, so that a file of the program or a package comes first.
+
+    Args:
+        library: The library of the program.
+    """
+
+    def __init__(self, library: Library) -> None:
+        self._library = library
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None = None, target: types.ModuleType | None = None
@@ -207,8 +239,8 @@ class HardwareFinder:
             NotSimulated: it is for another computer.
         """
         if (top := spec.name.partition(".")[0]) in ELSEWHERE:
-            raise refused_as(ImportError, _refused(spec.name, ELSEWHERE[top]))
-        module = HardwareModule(spec.name, ON_THE_BRICK[top])
+            raise refused_as(ImportError, *_told(spec.name, ELSEWHERE[top].told_to(self._library)))
+        module = HardwareModule(spec.name, ON_THE_BRICK[top].told_to(self._library))
         if spec.name == top:
             vars(module)["__all__"] = list(ON_THE_BRICK[top].names)
         return module
@@ -229,9 +261,14 @@ BLUETOOTH: Mapping[str, Any] = {
 """Names of `socket` that are missing where Python was built without Bluetooth."""
 
 
-def refuse_bluetooth(module: types.ModuleType) -> None:
-    """Refuse sockets for Bluetooth; called after the import of `socket`."""
+def refuse_bluetooth(module: types.ModuleType, library: Library) -> None:
+    """Refuse sockets for Bluetooth; called after the import of `socket`.
+
+    Args:
+        library: The library of the program.
+    """
     names: Any = vars(module)
+    told = ON_THE_BRICK["bluetooth"].told_to(library)
     for name, value in BLUETOOTH.items():
         names.setdefault(name, value)
     real = module.socket.__init__
@@ -239,7 +276,7 @@ def refuse_bluetooth(module: types.ModuleType) -> None:
     @wraps(real)
     def __init__(self: Any, family: int = -1, *given: Any, **named: Any) -> None:  # noqa: N807
         if family == names["AF_BLUETOOTH"]:
-            raise NotSimulated("socket.AF_BLUETOOTH: Bluetooth is not simulated", _RADIO)
+            raise NotSimulated(*_told("socket.AF_BLUETOOTH", told))
         real(self, family, *given, **named)
 
     module.socket.__init__ = __init__
