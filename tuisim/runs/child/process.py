@@ -38,6 +38,8 @@ BOOT = (
 
 MOST_TEMPLATES = 4
 
+FEW_IDS = 32
+"""So many process ids are tried one by one: it takes longer to list all processes of the machine."""
 FILE_LOCKS = 10
 """Number of a limit that every process inherits on Linux, and that is unused since 2.4.25."""
 
@@ -243,10 +245,12 @@ def end_left_over(pid: int, marked: int) -> None:
 
 
 def _younger_than(pid: int) -> set[int]:
-    """Return the processes that may have been started after a process."""
+    """Return the processes that may have been started after a process, and ids that may belong to none."""
     last = int(Path("/proc/loadavg").read_text("ascii").split()[-1])
-    there = {int(name) for name in os.listdir("/proc") if name.isdigit()}
     # Process ids increase, and wrap around when they are used up.
+    if pid <= last < pid + FEW_IDS:
+        return set(range(pid + 1, last + 1))
+    there = {int(name) for name in os.listdir("/proc") if name.isdigit()}
     return {one for one in there if one > pid} if last >= pid else there
 
 

@@ -19,6 +19,8 @@ from tuisim.runs.child.readable import is_readable
 
 ANSWER_S = 10.0
 """Longest wait for a server: a program may have stopped it. Then it is continued once, and given up after that."""
+LOOK_EVERY_S = 0.03
+"""How often it is looked whether a program has stopped the process that reports the end of a child."""
 END_S = 5.0
 """Time for a server to end when its socket is closed; then it is killed."""
 _NUMBER_BYTES = 8
@@ -53,6 +55,7 @@ class ForkedChild:
         self.pid = pid
         self.returncode: int | None = None
         self._status_fd = status_fd
+        self._look_at_s = time.monotonic() + LOOK_EVERY_S
         self._lock = threading.Lock()
 
     def poll(self) -> int | None:
@@ -68,7 +71,8 @@ class ForkedChild:
                     with suppress(OSError):
                         os.killpg(self.pid, signal.SIGKILL)
                     self.returncode = -signal.SIGKILL
-            elif self.returncode is None:
+            elif self.returncode is None and (now_s := time.monotonic()) >= self._look_at_s:
+                self._look_at_s = now_s + LOOK_EVERY_S
                 _continue_parent_of(self.pid)
         return self.returncode
 
