@@ -164,6 +164,7 @@ class RunHandle:
                 _template_key(program, spec, field),
                 of_many,
                 _needs(program, field) if isolated else None,
+                run.data,
             )
         except OSError as error:
             os.close(self._lock_fd)

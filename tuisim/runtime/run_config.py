@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from tuisim.config.folders import programs_folder
 from tuisim.config.mat_cache import FieldFiles
-from tuisim.core.spec import RunSpec
-from tuisim.core.tree import from_plain
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.tree import from_plain, put_all
 from tuisim.errors import ConfigError
 from tuisim.runs.run_options import RunOptions
 from tuisim.runtime import wallclock
@@ -69,6 +70,34 @@ def read_config(folder: Path) -> RunConfig:
         field=FieldFiles.from_plain(data["field"]),
         options=RunOptions.from_plain(data["options"]),
     )
+
+
+def next_config(last: RunConfig, folder: Path, changes: Mapping[str, Any]) -> RunConfig:
+    """Return the configuration of another run of the same robot and world.
+
+    Args:
+        last: That of the run before.
+        folder: The run folder.
+        changes: What is different, as the host sends it; see `tuisim.runs.child.warm.Template`.
+    """
+    program, options, spec, *varied = (changes.get(name) for name in ("program", "options", "spec", *_KINDS))
+    whole = last.spec if spec is None else from_plain(spec)
+    values = {path: of(value) for (path, of), value in zip(_KINDS.values(), varied, strict=True) if value is not None}
+    return replace(
+        last,
+        folder=folder,
+        program=last.program if program is None else _program_of(program),
+        spec=put_all(whole, values) if values else whole,
+        options=last.options if options is None else RunOptions.from_plain(options),
+    )
+
+
+_KINDS: dict[str, tuple[str, Callable[[Any], object]]] = {
+    "seed": ("seed", int),
+    "noise": ("world.noise", lambda plain: NoiseSpec(**plain)),
+    "start": ("world.start", lambda plain: Pose(**plain)),
+}
+"""Paths of the changes in the spec, and what makes their values."""
 
 
 def _program_of(plain: Mapping[str, Any]) -> Program:

@@ -12,10 +12,10 @@ import sys
 import threading
 import time
 from collections import OrderedDict
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, ClassVar
+from typing import IO, TYPE_CHECKING, Any, ClassVar
 
 from tuisim.atomic import private
 from tuisim.regular_file import read_regular
@@ -93,6 +93,7 @@ def start_child(
     template_key: Hashable = None,
     makes_template: bool = False,
     isolated_with: Sequence[Path] | None = None,
+    run: Mapping[str, Any] | None = None,
 ) -> tuple[ChildProcess, int, int, int]:
     """Start the process that executes the run of a folder.
 
@@ -106,6 +107,7 @@ def start_child(
         makes_template: Whether such a template is made if there is none; otherwise the warm process forks the child.
         isolated_with: The files and folders that it needs besides its run folder and its working directory; it is then
             started by itself, isolated from the others. None starts it without isolation.
+        run: The contents of the `run.json` in the folder, for a template.
 
     Returns:
         The process; write end of its commands and read end of its events, both non-blocking; and its lifeline, at
@@ -126,7 +128,7 @@ def start_child(
             if isolated_with is None:
                 key = template_key if makes_template or template_key in _Starts.templates else None
                 with _Starts.lock:
-                    forked = _fork(folder, cwd, log.fileno(), inherited, key)
+                    forked = _fork(folder, cwd, log.fileno(), inherited, key, run)
                 process = forked or _spawn(folder, cwd, log, inherited)
             else:
                 command = [*_command(LIMITS), str(folder), *map(str, inherited)]
@@ -165,7 +167,14 @@ def _command(first: str = "") -> list[str]:
     return [sys.executable, "-s", "-P", "-c", first + BOOT, str(Path(__file__).parents[3])]
 
 
-def _fork(folder: Path, cwd: str | None, log_fd: int, inherited: Sequence[int], key: Hashable) -> ChildProcess | None:
+def _fork(
+    folder: Path,
+    cwd: str | None,
+    log_fd: int,
+    inherited: Sequence[int],
+    key: Hashable,
+    run: Mapping[str, Any] | None,
+) -> ChildProcess | None:
     """Fork a child from a template or the warm process; return None if there is none, or it cannot."""
     if _Starts.warm is None or not _Starts.warm.is_usable:
         return None
@@ -176,7 +185,7 @@ def _fork(folder: Path, cwd: str | None, log_fd: int, inherited: Sequence[int], 
         return None
     try:
         server = _Starts.warm if key is None else _template(_Starts.warm, key, folder)
-        return server.fork(str(folder), here, _environment(), [log_fd, *inherited])
+        return server.fork(str(folder), here, _environment(), [log_fd, *inherited], run=run)
     except OSError:
         cool_down()
         return None

@@ -13,7 +13,7 @@ import threading
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from typing import Protocol
+from typing import Any, Protocol
 
 from tuisim.runs.child.readable import is_readable
 
@@ -121,6 +121,8 @@ class ForkClient:
         self._lock = threading.Lock()
         self._pid = os.getpid()
         self._socket, self._process = connection, process
+        # A program may have stopped the server when more is sent than the system keeps.
+        self._socket.settimeout(ANSWER_S)
 
     @property
     def is_usable(self) -> bool:
@@ -134,6 +136,7 @@ class ForkClient:
         environment: Mapping[str, str],
         files: Sequence[int],
         serves: bool = False,
+        run: Mapping[str, Any] | None = None,
     ) -> ForkedChild:
         """Fork a child. Blocks until it leads its process group, a few milliseconds; first until the server is ready.
 
@@ -144,6 +147,7 @@ class ForkClient:
             files: Descriptors: its error output; its commands, events, lifeline and lock, or the socket of a
                 template.
             serves: Whether it becomes a template.
+            run: The contents of the `run.json` in the folder; only a template uses them.
 
         Raises:
             OSError: it cannot be forked, or the server has ended, or does not answer.
@@ -154,10 +158,10 @@ class ForkClient:
             "environment": dict(environment),
             "serves": serves,
         }
-        data = json.dumps(request).encode()
         status_fd, theirs = os.pipe()
         try:
             with open(os.devnull, "r+b", buffering=0) as null, self._lock:
+                data = json.dumps({**request, "changes": self._changes(run or {})}).encode()
                 message = len(data).to_bytes(_LENGTH_BYTES, "little") + data
                 sent = socket.send_fds(self._socket, [message], [theirs, null.fileno(), *files])
                 self._socket.sendall(message[sent:])
@@ -175,6 +179,10 @@ class ForkClient:
             os.close(status_fd)
             raise OSError(-pid, os.strerror(-pid)) if pid else ConnectionError("the server has ended")
         return ForkedChild(pid, status_fd)
+
+    def _changes(self, _run: Mapping[str, Any]) -> dict[str, Any]:
+        """Return what the server has to know of a run besides its folder."""
+        return {}
 
     def _answer(self, status_fd: int) -> bytes:
         for _ in range(2):
@@ -198,6 +206,29 @@ class ForkClient:
 
 class Template(ForkClient):
     """A process that is prepared for a robot and a world, and forks children for them."""
+
+    def __init__(self, connection: socket.socket, process: ChildProcess) -> None:
+        super().__init__(connection, process)
+        self._last: dict[str, Any] = {}
+        """What it knows of the last run."""
+
+    def _changes(self, run: Mapping[str, Any]) -> dict[str, Any]:
+        last, self._last = self._last, known_of(run)
+        changes = {name: value for name, value in self._last.items() if last.get(name) != value}
+        # What the run folder that it was prepared with holds, a program may have changed.
+        return changes if last else {**changes, "spec": run["spec"]}
+
+
+def known_of(run: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a template has to know of a run, from its `run.json`: all in which two of its runs may differ."""
+    spec, world = run["spec"], run["spec"]["world"]
+    return {
+        "program": run["program"],
+        "options": run["options"],
+        "seed": spec["seed"],
+        "noise": world["noise"],
+        "start": world["start"],
+    }
 
 
 class WarmProcess(ForkClient):
