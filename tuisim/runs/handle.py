@@ -161,10 +161,10 @@ class RunHandle:
                 run.folder,
                 run.lock_fd,
                 program.working_directory,
+                run.data,
                 _template_key(program, spec, field),
                 of_many,
                 _needs(program, field) if isolated else None,
-                run.data,
             )
         except OSError as error:
             os.close(self._lock_fd)
@@ -448,7 +448,7 @@ class RunHandle:
 
     def prepare_next(self) -> None:
         """Prepare a process for later runs of this robot and world, which then start sooner. Does not block."""
-        prepare_template(_template_key(self.program, self.spec, self.field), self.folder)
+        prepare_template(_template_key(self.program, self.spec, self.field), self.folder, self._run.data)
 
     def close(self) -> None:
         """Make sure that the child is gone and the end of the run is recorded."""

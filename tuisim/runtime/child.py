@@ -57,18 +57,17 @@ def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
         arguments: The run folder; descriptors of the commands, the events, the lifeline and the lock of the folder.
         prepared: The child, if it has been prepared already.
     """
-    folder = Path(arguments[0])
     command_fd, event_fd, lifeline_fd, lock_fd = map(int, arguments[1:5])
     # The folder is locked as long as this process lives, and those that it forks.
     os.set_inheritable(lock_fd, False)
     die_with_host(lifeline_fd)
     channel = Channel(command_fd, event_fd)
     try:
-        child = Child(read_config(folder)) if prepared is None else prepared
+        child = Child(read_config(Path(arguments[0]))) if prepared is None else prepared
         child.connect(channel)
     except OSError as error:
         for name in (TELEMETRY_FILE, OUTPUT_FILE):
-            (folder / name).unlink(missing_ok=True)
+            Path(arguments[0], name).unlink(missing_ok=True)
         end, summary = protocol.End.DISK_FULL, _no_room(error)
         if not is_full(error):
             end, summary = protocol.End.CRASHED, f"the run cannot begin: {error.strerror or error}"

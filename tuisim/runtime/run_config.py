@@ -62,7 +62,15 @@ def read_config(folder: Path) -> RunConfig:
     Raises:
         OSError, ValueError, KeyError, TypeError: the host has not prepared the folder.
     """
-    data = json.loads((folder / "run.json").read_text("utf-8"))
+    return config_of(folder, json.loads((folder / "run.json").read_text("utf-8")))
+
+
+def config_of(folder: Path, data: Mapping[str, Any]) -> RunConfig:
+    """Return the configuration in the contents of a `run.json`.
+
+    Raises:
+        ValueError, KeyError, TypeError: they are none.
+    """
     return RunConfig(
         folder=folder,
         program=_program_of(data["program"]),
@@ -80,24 +88,22 @@ def next_config(last: RunConfig, folder: Path, changes: Mapping[str, Any]) -> Ru
         folder: The run folder.
         changes: What is different, as the host sends it; see `tuisim.runs.child.warm.Template`.
     """
-    program, options, spec, *varied = (changes.get(name) for name in ("program", "options", "spec", *_KINDS))
-    whole = last.spec if spec is None else from_plain(spec)
-    values = {path: of(value) for (path, of), value in zip(_KINDS.values(), varied, strict=True) if value is not None}
+    values = {path: of(changes[name]) for name, (path, of) in _VALUES.items() if name in changes}
     return replace(
         last,
         folder=folder,
-        program=last.program if program is None else _program_of(program),
-        spec=put_all(whole, values) if values else whole,
-        options=last.options if options is None else RunOptions.from_plain(options),
+        program=_program_of(changes["program"]) if "program" in changes else last.program,
+        spec=put_all(last.spec, values) if values else last.spec,
+        options=RunOptions.from_plain(changes["options"]) if "options" in changes else last.options,
     )
 
 
-_KINDS: dict[str, tuple[str, Callable[[Any], object]]] = {
+_VALUES: dict[str, tuple[str, Callable[[Any], object]]] = {
     "seed": ("seed", int),
     "noise": ("world.noise", lambda plain: NoiseSpec(**plain)),
     "start": ("world.start", lambda plain: Pose(**plain)),
 }
-"""Paths of the changes in the spec, and what makes their values."""
+"""Values of a spec that may be different, by their names as changes: their paths, and what makes them."""
 
 
 def _program_of(plain: Mapping[str, Any]) -> Program:

@@ -23,7 +23,7 @@ from typing import Any
 
 from tuisim.core import noise
 from tuisim.runtime.child import Child
-from tuisim.runtime.run_config import read_config
+from tuisim.runtime.run_config import config_of
 
 LENGTH_BYTES = 4
 """Each request begins with its length."""
@@ -38,7 +38,7 @@ _ONLY_HERE = ("_socket", "hashlib", "_hashlib", "_blake2", "_sha3", "tuisim.runt
 """Modules that other children have not imported."""
 
 # Saved: the program, whose functions a template has, gets others.
-_read, _write, _close = os.read, os.write, os.close
+_read, _write, _close, _change_folder = os.read, os.write, os.close, os.chdir
 
 
 def serve(socket_fd: int) -> Child | None:
@@ -60,7 +60,7 @@ def serve(socket_fd: int) -> Child | None:
         request = ForkServer(socket_fd, prepared).next_request()
         if not request["serves"]:
             break
-        prepared = Child(read_config(Path(request["folder"])))
+        prepared = Child(config_of(Path(request["folder"]), request["run"]))
         (socket_fd,) = request["channel"]
     for name in _ONLY_HERE:
         sys.modules.pop(name, None)
@@ -121,7 +121,7 @@ class ForkServer:
     def _fork(self, request: dict[str, Any], files: list[int]) -> dict[str, Any] | None:
         status_fd, *given = files
         if self._prepared is not None:
-            self._prepared.expect(Path(request["folder"]), request["changes"])
+            self._prepared.expect(Path(request["folder"]), request["run"])
         try:
             _assert_one_thread()
             pid = wallclock.fork()
@@ -167,7 +167,7 @@ class ForkServer:
             os.environ.clear()
             os.environ.update(request["environment"])
         with suppress(OSError):
-            os.chdir(request["working_directory"])
+            _change_folder(request["working_directory"])
         wallclock.start_folder = wallclock._start_folder()
 
 

@@ -90,10 +90,10 @@ def start_child(
     folder: Path,
     lock_fd: int,
     working_directory: str,
+    run: Mapping[str, Any],
     template_key: Hashable = None,
     makes_template: bool = False,
     isolated_with: Sequence[Path] | None = None,
-    run: Mapping[str, Any] | None = None,
 ) -> tuple[ChildProcess, int, int, int]:
     """Start the process that executes the run of a folder.
 
@@ -103,11 +103,11 @@ def start_child(
         folder: The run folder.
         lock_fd: Its lock, which the process inherits; it is closed here.
         working_directory: Initial working directory, if it still exists.
+        run: The contents of the `run.json` in the folder.
         template_key: What a template must be prepared for to fork the child; None forks it from the warm process.
         makes_template: Whether such a template is made if there is none; otherwise the warm process forks the child.
         isolated_with: The files and folders that it needs besides its run folder and its working directory; it is then
             started by itself, isolated from the others. None starts it without isolation.
-        run: The contents of the `run.json` in the folder, for a template.
 
     Returns:
         The process; write end of its commands and read end of its events, both non-blocking; and its lifeline, at
@@ -128,7 +128,7 @@ def start_child(
             if isolated_with is None:
                 key = template_key if makes_template or template_key in _Starts.templates else None
                 with _Starts.lock:
-                    forked = _fork(folder, cwd, log.fileno(), inherited, key, run)
+                    forked = _fork(folder, cwd, log.fileno(), inherited, run, key)
                 process = forked or _spawn(folder, cwd, log, inherited)
             else:
                 command = [*_command(LIMITS), str(folder), *map(str, inherited)]
@@ -148,18 +148,19 @@ def _pipe(reader: ExitStack, writer: ExitStack) -> tuple[int, int]:
     return read_fd, write_fd
 
 
-def prepare_template(key: Hashable, folder: Path) -> None:
+def prepare_template(key: Hashable, folder: Path, run: Mapping[str, Any]) -> None:
     """Make a template unless there is one, if the warm process runs. Does not block until it is ready.
 
     Args:
         key: What it is prepared for.
         folder: A run folder with that.
+        run: The contents of its `run.json`, as it was started.
     """
     with _Starts.lock:
         if _Starts.warm is not None and _Starts.warm.is_usable:
             # Without a template, children are forked from the warm process.
             with suppress(OSError):
-                _template(_Starts.warm, key, folder)
+                _template(_Starts.warm, key, folder, run)
 
 
 def _command(first: str = "") -> list[str]:
@@ -172,8 +173,8 @@ def _fork(
     cwd: str | None,
     log_fd: int,
     inherited: Sequence[int],
+    run: Mapping[str, Any],
     key: Hashable,
-    run: Mapping[str, Any] | None,
 ) -> ChildProcess | None:
     """Fork a child from a template or the warm process; return None if there is none, or it cannot."""
     if _Starts.warm is None or not _Starts.warm.is_usable:
@@ -184,19 +185,19 @@ def _fork(
         # The working directory no longer exists; only a process that is started there can be in it.
         return None
     try:
-        server = _Starts.warm if key is None else _template(_Starts.warm, key, folder)
-        return server.fork(str(folder), here, _environment(), [log_fd, *inherited], run=run)
+        server = _Starts.warm if key is None else _template(_Starts.warm, key, folder, run)
+        return server.fork(str(folder), here, _environment(), [log_fd, *inherited], run)
     except OSError:
         cool_down()
         return None
 
 
-def _template(warm: WarmProcess, key: Hashable, folder: Path) -> Template:
+def _template(warm: WarmProcess, key: Hashable, folder: Path, run: Mapping[str, Any]) -> Template:
     templates = _Starts.templates
     if key not in templates:
         if len(templates) >= MOST_TEMPLATES:
             templates.popitem(last=False)[1].close()
-        templates[key] = warm.template(str(folder))
+        templates[key] = warm.template(str(folder), run)
     templates.move_to_end(key)
     return templates[key]
 

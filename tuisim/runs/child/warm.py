@@ -135,8 +135,8 @@ class ForkClient:
         working_directory: str,
         environment: Mapping[str, str],
         files: Sequence[int],
+        run: Mapping[str, Any],
         serves: bool = False,
-        run: Mapping[str, Any] | None = None,
     ) -> ForkedChild:
         """Fork a child. Blocks until it leads its process group, a few milliseconds; first until the server is ready.
 
@@ -146,8 +146,8 @@ class ForkClient:
             environment: Its environment variables.
             files: Descriptors: its error output; its commands, events, lifeline and lock, or the socket of a
                 template.
+            run: The contents of the `run.json` in the folder.
             serves: Whether it becomes a template.
-            run: The contents of the `run.json` in the folder; only a template uses them.
 
         Raises:
             OSError: it cannot be forked, or the server has ended, or does not answer.
@@ -161,7 +161,7 @@ class ForkClient:
         status_fd, theirs = os.pipe()
         try:
             with open(os.devnull, "r+b", buffering=0) as null, self._lock:
-                data = json.dumps({**request, "changes": self._changes(run or {})}).encode()
+                data = json.dumps({**request, "run": run if serves else self._changes(run)}).encode()
                 message = len(data).to_bytes(_LENGTH_BYTES, "little") + data
                 sent = socket.send_fds(self._socket, [message], [theirs, null.fileno(), *files])
                 self._socket.sendall(message[sent:])
@@ -181,7 +181,7 @@ class ForkClient:
         return ForkedChild(pid, status_fd)
 
     def _changes(self, _run: Mapping[str, Any]) -> dict[str, Any]:
-        """Return what the server has to know of a run besides its folder."""
+        """Return what the server has to know of a run, whose process reads the rest."""
         return {}
 
     def _answer(self, status_fd: int) -> bytes:
@@ -205,22 +205,26 @@ class ForkClient:
 
 
 class Template(ForkClient):
-    """A process that is prepared for a robot and a world, and forks children for them."""
+    """A process that is prepared for a robot and a world, and forks children for them.
 
-    def __init__(self, connection: socket.socket, process: ChildProcess) -> None:
+    Args:
+        connection: The socket to it.
+        process: The process.
+        run: The contents of the `run.json` of the run that it was prepared with.
+    """
+
+    def __init__(self, connection: socket.socket, process: ChildProcess, run: Mapping[str, Any]) -> None:
         super().__init__(connection, process)
-        self._last: dict[str, Any] = {}
+        self._last = _varying(run)
         """What it knows of the last run."""
 
     def _changes(self, run: Mapping[str, Any]) -> dict[str, Any]:
-        last, self._last = self._last, known_of(run)
-        changes = {name: value for name, value in self._last.items() if last.get(name) != value}
-        # What the run folder that it was prepared with holds, a program may have changed.
-        return changes if last else {**changes, "spec": run["spec"]}
+        last, self._last = self._last, _varying(run)
+        return {name: value for name, value in self._last.items() if last[name] != value}
 
 
-def known_of(run: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a template has to know of a run, from its `run.json`: all in which two of its runs may differ."""
+def _varying(run: Mapping[str, Any]) -> dict[str, Any]:
+    """Return all in which two runs of a template may differ, from the contents of a `run.json`."""
     spec, world = run["spec"], run["spec"]["world"]
     return {
         "program": run["program"],
@@ -260,11 +264,12 @@ class WarmProcess(ForkClient):
         """Whether it runs, and belongs to this process, not to one that has forked this one."""
         return super().is_usable and self._process.poll() is None
 
-    def template(self, folder: str) -> Template:
+    def template(self, folder: str, run: Mapping[str, Any]) -> Template:
         """Fork a template for the robot and the world of a run. Does not block until it is ready.
 
         Args:
             folder: The folder of a run.
+            run: The contents of its `run.json`: the program could change the file.
 
         Raises:
             OSError: it cannot be forked, or the warm process has ended.
@@ -273,7 +278,7 @@ class WarmProcess(ForkClient):
         try:
             with theirs, open(os.devnull, "wb") as log:
                 files = [log.fileno(), theirs.fileno()]
-                return Template(mine, self.fork(folder, "/", self._environment, files, serves=True))
+                return Template(mine, self.fork(folder, "/", self._environment, files, run, serves=True), run)
         except OSError:
             mine.close()
             raise
