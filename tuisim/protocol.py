@@ -145,6 +145,7 @@ BEFORE_NEXT_TICK = -1
 NO_ANSWER = "there is no further answer to input()"
 """Message of the EOFError from input() when no answer is available."""
 _SURROGATE = re.compile("[\ud800-\udfff]")
+_encoded = json.JSONEncoder(separators=(",", ":"), ensure_ascii=False, default=lambda part: asdict(part)).encode
 
 UNKNOWN_ORDINAL = -2
 """Ordinal of a line in a tick whose lines were not counted from its start."""
@@ -162,7 +163,7 @@ class Message:
 
     def encode(self) -> bytes:
         """Return the message as one JSON line."""
-        text = json.dumps({"kind": self.kind, **asdict(self)}, separators=(",", ":"), ensure_ascii=False)
+        text = _encoded({"kind": self.kind, **{name: getattr(self, name) for name in self.__dataclass_fields__}})
         # A lone surrogate, such as in a file name that is not UTF-8, is not valid text: it is written as an escape.
         return _SURROGATE.sub(lambda found: f"\\\\u{ord(found[0]):x}", text).encode() + b"\n"
 

@@ -8,6 +8,8 @@ import stat
 from pathlib import Path
 from typing import BinaryIO
 
+# Saved: in the process that runs a program it is replaced by one that notes what the program opens.
+_open = os.open
 _OF_THE_MACHINE = frozenset({errno.EIO, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.ENOSPC})
 
 
@@ -22,7 +24,7 @@ def open_regular(path: Path, follow_links: bool = False) -> BinaryIO:
         OSError: it cannot be opened; ELOOP for a link, EINVAL for a pipe, a device, a socket or a folder.
     """
     no_links = 0 if follow_links else os.O_NOFOLLOW
-    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | no_links)
+    descriptor = _open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | no_links)
     if not stat.S_ISREG(os.fstat(descriptor).st_mode):
         os.close(descriptor)
         raise OSError(errno.EINVAL, "it is not a regular file")

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import pytest
 
+from tests.running import over
 from tests.runs.child.test_warm import printed
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.runs.child import process
+from tuisim.runs.handle import RunHandle, RunOptions
 from tuisim.runs.run_folder import field_files
+from tuisim.runs.store import RunStore
+from tuisim.source import Program
 
 SURROUNDINGS = {
     "modules": "print(sorted(sys.modules))",
@@ -41,6 +45,77 @@ def test_a_program_cannot_tell_how_it_was_started(name: str, prelude: str, monke
     monkeypatch.setattr(process, "_fork", lambda *_: None)
     alone = printed(text, False, prelude)
     assert forked == (alone, alone)
+
+
+def test_a_template_runs_each_program_as_it_is() -> None:
+    process.cool_down()
+    texts = ["import __main__; print(1, __main__.__file__)", "def f(): 1 / 0\nprint(2)", "print(input)"] * 3
+    assert [printed(text, True)[:1] for text in texts] == [printed(text, False)[:1] for text in texts]
+
+
+def test_a_template_is_told_what_is_different_in_a_run() -> None:
+    process.cool_down()
+    text = "print(random.random(), tank_drive, sys.argv)"
+    seen = set()
+    for seed, x_mm, arguments in (
+        (1, 300.0, ()),
+        (2, 300.0, ()),
+        (1, 400.0, ("a",)),
+        (1, 300.0, ()),
+        (2, 400.0, ("a",)),
+    ):
+        spec = build_run_spec(Settings({"seed": seed, "start.x_mm": x_mm}))
+        program = Program(
+            "p.py", f"import random, sys, time\ntime.sleep(0.1)\n{text}", "preloaded", arguments=arguments
+        )
+        handle = RunHandle(program, spec, field_files(spec), RunOptions(), RunStore(), of_many=True)
+        over(handle)
+        (row,) = handle.output.all_rows()
+        last = handle.telemetry.last()
+        assert last is not None
+        assert (last.x_mm, row.text.endswith(f"{['p.py', *arguments]}")) == (x_mm, True)
+        seen.add((seed, row.text.partition(" ")[0]))
+    assert len(seen) == len({number for _, number in seen}) == 2
+
+
+REWRITES = """
+import glob, json, os, time
+time.sleep(0.1)
+for name in map(os.path.realpath, glob.glob("/proc/self/fd/*")):
+    file = os.path.join(os.path.dirname(name), "run.json")
+    if os.path.isfile(file):
+        data = json.load(open(file))
+        data["spec"]["robot"].update(wheel_diameter_mm=99.0, weight=9.0)
+        data["options"]["answers"] = ["mine"]
+        data["program"]["text"] = "print('mine')"
+        json.dump(data, open(file, "w"))
+        break
+else:
+    raise FileNotFoundError
+"""
+
+
+@pytest.mark.usefixtures("home")
+def test_a_program_cannot_change_what_a_template_is_prepared_for() -> None:
+    process.cool_down()
+    spec = build_run_spec(Settings())
+    text = "tank_drive.on_for_rotations(20, 20, 1)\ntry: print(input())\nexcept EOFError: print('none')"
+
+    def end_of(template: bool) -> tuple[object, ...]:
+        program = Program("p.py", text, "preloaded")
+        handle = RunHandle(program, spec, field_files(spec), RunOptions(), RunStore(), of_many=template)
+        over(handle)
+        last = handle.telemetry.last()
+        return last, [row.text for row in handle.output.all_rows()], handle.ended
+
+    expected = end_of(False)
+    harmful = RunHandle(Program("p.py", REWRITES, "preloaded"), spec, field_files(spec), RunOptions(), RunStore())
+    over(harmful)
+    assert harmful.ended is not None
+    assert harmful.ended.end == "finished", harmful.ended.error
+    harmful.prepare_next()
+    assert end_of(False) == expected
+    assert process._Starts.templates
 
 
 @pytest.mark.usefixtures("real_mats", "home")

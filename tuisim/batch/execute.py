@@ -52,6 +52,10 @@ def execute(task: Task, folder: Path) -> Result:
         try:
             ended = _to_the_end(handle, task.real_time_limit_s)
             run = handle.stored()
+            # Each is read once: nothing changes any more.
+            for view in (run.telemetry, run.output):
+                view.read_on()
+                view.holds = True
             judgements = _judged(task, run)
             result = _result(task, run, ended, judgements)
         except LogError as error:

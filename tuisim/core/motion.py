@@ -92,8 +92,6 @@ class Motion:
     )  # fmt: skip
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
-        self.spec = spec
-        self._sink = sink
         self._hz = spec.profile.tick_hz
         self._tick_s = 1.0 / self._hz
         self.stall_ticks = stall_ticks(self._hz)
@@ -108,11 +106,8 @@ class Motion:
             farthest = fastest * self._tick_s * abs(self._left_mm_per_deg)
             self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
         self.tick = 0
-        self.drive = drive_of(spec)
-        """The robot's pose and how its wheels change it."""
         left, right = spec.robot.wheel_motors
         self.left, self.right = motor_of(spec, left.kind), motor_of(spec, right.kind)
-        self.noise = spec.world.noise
         self.pen_down = spec.robot.pen.down
         self.end_flags = flags_at_start(spec.robot)
         """Which end stops the motors are at that drive no wheel: the bits of `core.end_stops`."""
@@ -123,6 +118,14 @@ class Motion:
         self.changed = False
         """Set when a motor ends a move by itself; the caller clears it."""
         self._left_dps = self._right_dps = 0.0
+        self._begin(spec, sink)
+
+    def _begin(self, spec: RunSpec, sink: TickSink) -> None:
+        """Take up its initial state, as far as it differs between runs of one robot in one world."""
+        self.spec, self._sink = spec, sink
+        self.noise = spec.world.noise
+        self.drive = drive_of(spec)
+        """The robot's pose and how its wheels change it."""
         self._buffer: Buffer = sink.room(ROOM_TICKS)
         self._room_end = ROOM_TICKS
         """Number of records the buffer has space for."""

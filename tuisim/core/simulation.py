@@ -66,15 +66,13 @@ class Simulation(Motion):
     # Changing
 
     def restart(self, spec: RunSpec, sink: TickSink) -> None:
-        """Begin the recorded run of a simulation that was prepared without one. The motors stay the same objects.
+        """Begin the recorded run of a simulation that was prepared without one, and has not run yet.
 
         Args:
             spec: Differs from the earlier one at most in seed, noise and start.
             sink: Receives the tick records.
         """
-        left, right = self.left, self.right
-        Motion.__init__(self, spec, sink)
-        self.left, self.right = left, right
+        self._begin(spec, sink)
 
     def place(self, pose: Pose) -> None:
         """Set the robot's pose; the gyro keeps its angle."""

@@ -61,12 +61,14 @@ from tuisim.runs.run_options import DEFAULT_TIME_LIMIT_S as DEFAULT_TIME_LIMIT_S
 from tuisim.runs.run_options import RunOptions as RunOptions
 from tuisim.runs.side_files import LOG_FILE, MOST_BYTES, STACK_FILE, copy_modules, read_actions, read_stop_tick
 from tuisim.runs.store import NewRun, RunStore
-from tuisim.runs.views import views_of
+from tuisim.runs.views import TelemetryView, views_of
 from tuisim.source import Program
 
 STUCK_AFTER_S = 0.3
 """A child that has not ended this long after a stop is killed; see `RunHandle._fair_time_s`."""
 ASK_AGAIN_S = 0.05
+LOOK_EVERY_S = 0.03
+"""What a child records is looked at this often while it runs: most are over before the first look."""
 ENDED_CHILD_S = 0.2
 """Time for a child to exit after its last event."""
 _BEYOND_LIMIT_S = CLEANUP_S + 1.0
@@ -144,6 +146,8 @@ class RunHandle:
         """Commands sent before the child listens: the signal that announces one would kill it."""
         self._stop_at: float | None = None
         self._asked_at = 0.0
+        self._look_at_s = time.monotonic() + LOOK_EVERY_S
+        self._has_looked = False
         self._progress = (0, 0.0)
         self._stack_asked = False
         self._announced: Ended | None = None
@@ -157,6 +161,7 @@ class RunHandle:
                 run.folder,
                 run.lock_fd,
                 program.working_directory,
+                run.data,
                 _template_key(program, spec, field),
                 of_many,
                 _needs(program, field) if isolated else None,
@@ -225,8 +230,14 @@ class RunHandle:
                     self.wheels = event
                 case Ended():
                     self._announced, self._announced_at = event, time.monotonic()
-        self._look_for_falsified()
-        self._enforce_quota()
+        now_s = time.monotonic()
+        is_due = now_s >= self._look_at_s
+        if is_due or self._events.falsified or (exited and self._has_looked):
+            self._look_for_falsified()
+        if is_due:
+            self._has_looked, self._look_at_s = True, now_s + LOOK_EVERY_S
+            self._enforce_quota()
+            self._look_for_stall()
         self._enforce_stop()
         final = self._final_event(exited)
         kept = [event for event in events if not isinstance(event, Ended)]
@@ -241,7 +252,7 @@ class RunHandle:
         if not self._falsified and self.folder.is_dir():
             damages = self.telemetry.read_on(), self.output.read_on()
             self._falsified = (
-                self._events.falsified or next(filter(None, damages), "") or self._flooded_log() or self._endless()
+                self._events.falsified or next(filter(None, damages), "") or self._too_much(self.telemetry)
             )
             if self._falsified:
                 end_group(self._process.pid)
@@ -252,17 +263,15 @@ class RunHandle:
             if self._exceeded:
                 end_group(self._process.pid)
 
-    def _endless(self) -> str:
-        limit_s, hz = self._options.time_limit_s, self.spec.profile.tick_hz
-        # The host reads what is recorded: it must not grow beyond what the run can record.
-        if limit_s and self.telemetry.count > (limit_s + _BEYOND_LIMIT_S) * hz:
-            return f"it has recorded more than {limit_s:g} s"
-        return ""
-
-    def _flooded_log(self) -> str:
+    def _too_much(self, telemetry: TelemetryView) -> str:
+        """Return what is larger than the run can have made it; empty if nothing is."""
         with suppress(OSError):
             if (self.folder / LOG_FILE).stat().st_size > MOST_BYTES:
                 return f"it has written more than {MOST_BYTES >> 20} MiB to {LOG_FILE}"
+        limit_s, hz = self._options.time_limit_s, self.spec.profile.tick_hz
+        # The host reads what is recorded: it must not grow beyond what the run can record.
+        if limit_s and telemetry.count > (limit_s + _BEYOND_LIMIT_S) * hz:
+            return f"it has recorded more than {limit_s:g} s"
         return ""
 
     def _final_event(self, exited: bool) -> Ended | None:
@@ -270,15 +279,15 @@ class RunHandle:
             end_group(self._process.pid)
         if not exited:
             return None
+        falsified = self._falsified or (self._what_is_falsified() if self.folder.is_dir() else "")
+        if self._announced is not None and not falsified and not self._exceeded:
+            return self._announced
         tick = max(0, self.telemetry.count - 1)
         time_ns = due_ns(tick, self.spec.profile.tick_hz)
-        falsified = self._falsified or (self._what_is_falsified() if self.folder.is_dir() else "")
         if falsified:
             return Ended(End.FALSIFIED, tick, time_ns, 1, f"the program has falsified its recording: {falsified}")
         if self._exceeded:
             return Ended(End.OUTPUT_LIMIT, tick, time_ns, 1, self._exceeded)
-        if self._announced is not None:
-            return self._announced
         line = stuck_line(self.folder, self.program.path or self.program.name)
         if self._stop_at is not None:
             where = f" in line {line}, where it was stuck" if line else ""
@@ -296,11 +305,14 @@ class RunHandle:
         is_whole = end is not None and end.end not in (End.CRASHED, End.DISK_FULL)
         # As whoever opens the run later finds them: what this host has seen before may be gone.
         telemetry, output = views_of(self.folder, is_checked=True)
-        for view in (telemetry, output):
-            if view.damage or (is_whole and view.note):
-                return view.damage or view.note
-            if is_whole and view.is_missing:
-                return "a part of it was deleted"
+        # Each is read once: the process has ended.
+        damages = telemetry.read_on(), output.read_on()
+        telemetry.holds = output.holds = True
+        if wrong := next(filter(None, damages), "") or self._too_much(telemetry):
+            return wrong
+        for view in (telemetry, output) if is_whole else ():
+            if view.note or view.is_missing:
+                return view.note or "a part of it was deleted"
         ticks = telemetry.count
         if is_whole and end is not None and end.tick != ticks - 1:
             return f"it ends at tick {end.tick}, and {counted(ticks, 'tick is', 'ticks are')} recorded"
@@ -436,7 +448,7 @@ class RunHandle:
 
     def prepare_next(self) -> None:
         """Prepare a process for later runs of this robot and world, which then start sooner. Does not block."""
-        prepare_template(_template_key(self.program, self.spec, self.field), self.folder)
+        prepare_template(_template_key(self.program, self.spec, self.field), self.folder, self._run.data)
 
     def close(self) -> None:
         """Make sure that the child is gone and the end of the run is recorded."""
@@ -459,12 +471,16 @@ class RunHandle:
             elif self.started and time.monotonic() - self._asked_at > ASK_AGAIN_S:
                 self._asked_at = time.monotonic()
                 self._signal(COMMAND_SIGNAL)
-        elif self._options.stall_limit_s and not self.paused:
-            tick, now = self.telemetry.count, self._clock.now_s()
-            if tick != self._progress[0] or self.waiting_for_reply or self.waiting_for_input is not None:
-                self._progress = (tick, now)
-            elif now - self._progress[1] > STALL_FACTOR * self._options.stall_limit_s:
-                self._read_stack_and_kill()
+
+    def _look_for_stall(self) -> None:
+        """Kill a child that has made no progress for too long."""
+        if self._announced is not None or self._stop_at is not None or not self._options.stall_limit_s or self.paused:
+            return
+        tick, now = self.telemetry.count, self._clock.now_s()
+        if tick != self._progress[0] or self.waiting_for_reply or self.waiting_for_input is not None:
+            self._progress = (tick, now)
+        elif now - self._progress[1] > STALL_FACTOR * self._options.stall_limit_s:
+            self._read_stack_and_kill()
 
     @property
     def time_used_s(self) -> float:

@@ -139,11 +139,11 @@ class _Writer:
         OSError: by the constructor, without space.
     """
 
-    def __init__(self, path: Path, magic: bytes, record_bytes: int, first_bytes: int) -> None:
+    def __init__(self, path: str, magic: bytes, record_bytes: int, first_bytes: int) -> None:
         self.full: Callable[[OSError], BaseException] = lambda error: error
         """Returns the exception to raise when the disk is full; what was written before is kept."""
         self._is_full = False
-        self._fd = private(str(path), os.O_RDWR | os.O_CREAT | os.O_EXCL)
+        self._fd = private(path, os.O_RDWR | os.O_CREAT | os.O_EXCL)
         self._capacity = HEADER_BYTES + first_bytes
         _reserve(self._fd, 0, self._capacity)
         self._map_file()
@@ -196,7 +196,7 @@ class TelemetryWriter(_Writer):
     """Appends tick records. The hot loop packs into the map of `room` directly, then calls `publish`."""
 
     def __init__(self, folder: Path) -> None:
-        super().__init__(folder / TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size, TELEMETRY_CHUNK)
+        super().__init__(f"{folder}{os.sep}{TELEMETRY_FILE}", TELEMETRY_MAGIC, TICK_RECORD.size, TELEMETRY_CHUNK)
         self.count = 0
 
     def room(self, records: int) -> mmap.mmap:
@@ -219,7 +219,7 @@ class OutputWriter(_Writer):
     """Appends printed lines and publishes each at once; when the disk is full, later output is lost."""
 
     def __init__(self, folder: Path) -> None:
-        super().__init__(folder / OUTPUT_FILE, OUTPUT_MAGIC, 0, OUTPUT_CHUNK)
+        super().__init__(f"{folder}{os.sep}{OUTPUT_FILE}", OUTPUT_MAGIC, 0, OUTPUT_CHUNK)
         self.length = self._rows = 0
 
     def write(self, text: bytes, tick: int, time_ns: int, line: int, stream: Stream) -> None:

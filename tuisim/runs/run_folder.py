@@ -190,12 +190,12 @@ def _typed(value: Any, kind: type[_Kind], name: str) -> _Kind:
     return value
 
 
-def _checked(spec: RunSpec) -> RunSpec:
-    """Return a spec whose numbers are ones to reckon with."""
+def _checked(spec: RunSpec, plain: Mapping[str, Any]) -> RunSpec:
+    """Return a spec whose numbers are ones to reckon with; `plain` is the same as data."""
     if not 1 <= spec.profile.tick_hz <= NS_PER_S:
         raise ValueError(f"a tick rate of {spec.profile.tick_hz}")
     # A seed may be any whole number.
-    for number in _numbers_in([to_plain(spec)[name] for name in ("robot", "world", "profile")]):
+    for number in _numbers_in([plain[name] for name in ("robot", "world", "profile")]):
         if not abs(number) <= MOST_INTEGER:
             raise ValueError(f"{number} is out of range")
     return spec
@@ -222,12 +222,13 @@ def _end_of(data: Mapping[str, Any]) -> Ended:
     return Ended(**{name: _typed(value, kinds.get(name, object), name) for name, value in known.items()})
 
 
-def read_run(folder: Path, document: bytes | None = None) -> StoredRun:
+def read_run(folder: Path, document: str | None = None, known: RunSpec | None = None) -> StoredRun:
     """Return the run in a folder.
 
     Args:
         folder: The run folder.
         document: The contents of its `run.json`, if they are known; otherwise they are read.
+        known: The spec in it, if it is known.
 
     Raises:
         LogError: the folder holds no run, or a damaged one.
@@ -249,7 +250,8 @@ def read_run(folder: Path, document: bytes | None = None) -> StoredRun:
             program[key] = tuple(_typed(word, str, key) for word in _typed(data["program"].get(key, []), list, key))
         for key in ("working_directory", "module_folder"):
             program[key] = _typed(data["program"].get(key, ""), str, key)
-        spec = _checked(from_plain(data["spec"]))
+        spec = from_plain(data["spec"]) if known is None else known
+        spec = _checked(spec, to_plain(spec) if known is None else data["spec"])
         end = None if data["end"] is None else _end_of(data["end"])
         lost = [view.note or _lost_of(view, end) for view in (telemetry, output)]
         return StoredRun(

@@ -218,6 +218,11 @@ def read_modules(run_folder: Path) -> list[OwnModule]:
     """
     path = run_folder / MODULES_FILE
     with _reading(path):
+        try:
+            # Most runs have none, and each looks for it.
+            _lstat(f"{run_folder}{os.sep}{MODULES_FILE}")
+        except FileNotFoundError:
+            return []
         return [
             OwnModule(row["name"], row["file"], None if row["folders"] is None else tuple(row["folders"]), row["text"])
             for row in _rows(path)
@@ -267,7 +272,7 @@ class FilesRead:
     """How many more there were."""
 
 
-_stat, _open, _read, _close = os.stat, os.open, os.read, os.close
+_stat, _lstat, _open, _read, _close = os.stat, os.lstat, os.open, os.read, os.close
 """Saved before those of the program are replaced, which note what it opens."""
 _PART_BYTES = 1 << 20
 MOST_SUMMED_BYTES = 1 << 22

@@ -19,7 +19,7 @@ from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError
 from tuisim.protocol import Ended
 from tuisim.runs.removal import remove_tree
-from tuisim.runs.run_folder import RUN_FILE, StoredRun, new_run_data, read_run, run_document, write_run_file
+from tuisim.runs.run_folder import RUN_FILE, StoredRun, new_run_data, read_run, write_run_file
 from tuisim.runs.side_files import hold, is_held
 from tuisim.runs.store import NewRun
 from tuisim.source import Program
@@ -121,6 +121,9 @@ class TemporaryRun:
         self.folder = _new_folder(parent)
         self._data: dict[str, Any] = {}
         """The contents of `run.json`: the program could change the file."""
+        self._document = ""
+        """They as text."""
+        self._spec: RunSpec | None = None
 
     def __enter__(self) -> TemporaryRun:
         return self
@@ -146,9 +149,10 @@ class TemporaryRun:
         created = datetime.now(UTC).isoformat(timespec="milliseconds")
         run_id = self.folder.name
         self._data = data = new_run_data(run_id, 0, created, program, spec, field, options, live)
+        self._document, self._spec = json.dumps(data), spec
         file = self.folder / RUN_FILE
         try:
-            file.write_text(json.dumps(data), "utf-8")
+            file.write_text(self._document, "utf-8")
             return NewRun(run_id, 0, self.folder, hold(self.folder), data)
         except OSError as error:
             raise LogError(f"cannot be written: {error.strerror or error}", file=str(file)) from error
@@ -167,7 +171,7 @@ class TemporaryRun:
         """
         if not folder.is_dir():
             raise LogError("its folder was deleted while it ran", file=str(folder))
-        return read_run(folder, run_document(self._data))
+        return read_run(folder, self._document, self._spec)
 
     def write_end(self, end: Ended) -> None:
         """Write the end of the run to its folder, which then is as that of a stored run.

@@ -15,6 +15,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
+from math import hypot
 from mmap import MAP_ANONYMOUS, MAP_PRIVATE, mmap
 from pathlib import Path
 from stat import S_IRUSR
@@ -305,10 +306,8 @@ def _are_few_sound(part: memoryview, begin: int, end: int) -> bool:
     columns = [doubles[at :: TICK_RECORD.size // 8] for at in range(1, 6)]
     columns += [floats[at :: TICK_RECORD.size // 4] for at in range(12, 15)]
     ticks = part.cast("I")[:: TICK_RECORD.size // 4].tolist()
-    # NaN is not below anything, nor is a sum with it.
-    return ticks == list(range(begin, end)) and all(
-        sum(map(abs, column.tolist())) <= _MOST_NUMBER * len(column) for column in columns
-    )
+    # No number is larger than the root of the sum of all squares; NaN is not below anything, nor is a sum with it.
+    return ticks == list(range(begin, end)) and all(hypot(*column.tolist()) <= _MOST_NUMBER for column in columns)
 
 
 def _are_all_sound(part: memoryview, begin: int, end: int) -> bool:

@@ -6,9 +6,9 @@ from tuisim.runtime import wallclock  # isort: skip - must come first: it saves 
 
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from tuisim import protocol
 from tuisim.config.mat_cache import open_field
@@ -20,6 +20,7 @@ from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, Strea
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.control import ATTENTION, STOPPING, RunControl
 from tuisim.runtime.interrupts import Interrupts, die_with_host
+from tuisim.runtime.known_programs import KnownPrograms, file_of
 from tuisim.runtime.limits import STACK_BYTES, limit_memory, refuse_processes
 from tuisim.runtime.output import OutputRecorder
 from tuisim.runtime.patches.clock import (
@@ -34,7 +35,7 @@ from tuisim.runtime.patches.file_reads import FileReads
 from tuisim.runtime.patches.file_waits import FileWaits
 from tuisim.runtime.patches.randomness import finish_random, finish_uuid, patch_urandom
 from tuisim.runtime.patches.replacement import PatchedModules, replace
-from tuisim.runtime.run_config import RunConfig, read_config
+from tuisim.runtime.run_config import RunConfig, next_config, read_config
 from tuisim.runtime.session import RunLimits, Session
 from tuisim.runtime.stack import finish_inspect, finish_traceback
 from tuisim.runtime.tracebacks import own_files, remember_source
@@ -56,19 +57,17 @@ def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
         arguments: The run folder; descriptors of the commands, the events, the lifeline and the lock of the folder.
         prepared: The child, if it has been prepared already.
     """
-    folder = Path(arguments[0])
     command_fd, event_fd, lifeline_fd, lock_fd = map(int, arguments[1:5])
     # The folder is locked as long as this process lives, and those that it forks.
     os.set_inheritable(lock_fd, False)
     die_with_host(lifeline_fd)
     channel = Channel(command_fd, event_fd)
     try:
-        config = read_config(folder)
-        child = Child(config) if prepared is None else prepared
-        child.connect(config, channel)
+        child = Child(read_config(Path(arguments[0]))) if prepared is None else prepared
+        child.connect(channel)
     except OSError as error:
         for name in (TELEMETRY_FILE, OUTPUT_FILE):
-            (folder / name).unlink(missing_ok=True)
+            Path(arguments[0], name).unlink(missing_ok=True)
         end, summary = protocol.End.DISK_FULL, _no_room(error)
         if not is_full(error):
             end, summary = protocol.End.CRASHED, f"the run cannot begin: {error.strerror or error}"
@@ -85,7 +84,7 @@ class Child:
     """One run with all its parts: prepared for a robot in a world, then connected with the run.
 
     Args:
-        config: The run, or another one that differs at most in its program, its options, seed, noise and start.
+        config: The run, or another one that differs at most in what `expect` changes.
     """
 
     def __init__(self, config: RunConfig) -> None:
@@ -97,6 +96,12 @@ class Child:
         self._interrupts = Interrupts(session, frozenset({turn.__code__}))
         self._patch_modules(turn)
         self._runner.prepare(config.program.prelude)
+        self._known_programs = KnownPrograms()
+
+    def expect(self, folder: Path, changes: Mapping[str, Any]) -> None:
+        """Prepare for a run, as far as nothing of its program is executed; arguments as of `next_config`."""
+        self._config = config = next_config(self._config, folder, changes)
+        self._runner.code = self._known_programs.code(config.program)
 
     def _patch_modules(self, turn: Callable[[], None]) -> None:
         """Patch what programs find, and make what runs them."""
@@ -151,17 +156,17 @@ class Child:
         self._runner = ProgramRunner(session, self._output, scheduler, turn, leave)
         session.make_debugger = lambda: _debugger(session, scheduler, self._runner)
 
-    def connect(self, config: RunConfig, channel: Channel) -> None:
-        """Create the recording of a run, and connect everything with it.
+    def connect(self, channel: Channel) -> None:
+        """Create the recording of the run, and connect everything with it.
 
         Args:
-            config: The run.
             channel: Pipes to the host.
 
         Raises:
             OSError: there is no space for the recording.
         """
-        self._config, self._channel, options = config, channel, config.options
+        self._channel, config = channel, self._config
+        options = config.options
         self._pid = wallclock.getpid()
         session = self._session
         self._telemetry, self._output.writer = TelemetryWriter(config.folder), OutputWriter(config.folder)
@@ -170,7 +175,7 @@ class Child:
             channel, config.folder, options.live, options.speed, options.start_paused, options.actions
         )
         limits = RunLimits(int(options.time_limit_s * NS_PER_S), options.stall_limit_s)
-        session.connect(channel, steering, limits, config.program.path or config.program.name)
+        session.connect(channel, steering, limits, file_of(config.program))
         session.replies = options.replies
         for writer in (self._telemetry, self._output.writer):
             writer.full = lambda error: session.request_stop(protocol.End.DISK_FULL, _no_room(error))

@@ -67,10 +67,10 @@ class Interrupts:
         Args:
             folder: Run folder; a signal writes the stack there, even inside a long C call.
         """
-        self._stack_file = os.fdopen(private(str(folder / STACK_FILE), os.O_WRONLY | os.O_CREAT | os.O_TRUNC), "w")
+        stack_fd = private(f"{folder}{os.sep}{STACK_FILE}", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         # Crashes such as SIGSEGV are written there, too.
-        _enable(self._stack_file, all_threads=False)
-        _register(STACK_SIGNAL, file=self._stack_file, all_threads=False)
+        _enable(stack_fd, all_threads=False)
+        _register(STACK_SIGNAL, file=stack_fd, all_threads=False)
         signal.signal(COMMAND_SIGNAL, self._on_command)
         wallclock.set_signal(signal.SIGALRM, self._on_alarm)
         # The interrupt of the terminal is for the host; the program's own is simulated.

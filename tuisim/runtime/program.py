@@ -229,7 +229,8 @@ class ProgramRunner:
         replace(os, "_exit", lambda status: self._exit_now(operator.index(status)))
 
     def _execute(self) -> None:
-        self.code = program = compile_program(self._config.program.text, self._session.program_file)
+        if self.code is None:
+            self.code = compile_program(self._config.program.text, self._session.program_file)
         self.names["__file__"] = self._file
         if self._prelude_error is not None:
             raise self._prelude_error
@@ -248,7 +249,7 @@ class ProgramRunner:
         if self._config.debugged:
             self._session.debug().begin(self._config.options)
         NotSimulated.first = ""
-        exec(program, self.names)
+        exec(self.code, self.names)
 
     # Ends
 

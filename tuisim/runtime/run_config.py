@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from tuisim.config.folders import programs_folder
 from tuisim.config.mat_cache import FieldFiles
-from tuisim.core.spec import RunSpec
-from tuisim.core.tree import from_plain
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.tree import from_plain, put_all
 from tuisim.errors import ConfigError
 from tuisim.runs.run_options import RunOptions
 from tuisim.runtime import wallclock
@@ -61,7 +62,15 @@ def read_config(folder: Path) -> RunConfig:
     Raises:
         OSError, ValueError, KeyError, TypeError: the host has not prepared the folder.
     """
-    data = json.loads((folder / "run.json").read_text("utf-8"))
+    return config_of(folder, json.loads((folder / "run.json").read_text("utf-8")))
+
+
+def config_of(folder: Path, data: Mapping[str, Any]) -> RunConfig:
+    """Return the configuration in the contents of a `run.json`.
+
+    Raises:
+        ValueError, KeyError, TypeError: they are none.
+    """
     return RunConfig(
         folder=folder,
         program=_program_of(data["program"]),
@@ -69,6 +78,32 @@ def read_config(folder: Path) -> RunConfig:
         field=FieldFiles.from_plain(data["field"]),
         options=RunOptions.from_plain(data["options"]),
     )
+
+
+def next_config(last: RunConfig, folder: Path, changes: Mapping[str, Any]) -> RunConfig:
+    """Return the configuration of another run of the same robot and world.
+
+    Args:
+        last: That of the run before.
+        folder: The run folder.
+        changes: What is different, as the host sends it; see `tuisim.runs.child.warm.Template`.
+    """
+    values = {path: of(changes[name]) for name, (path, of) in _VALUES.items() if name in changes}
+    return replace(
+        last,
+        folder=folder,
+        program=_program_of(changes["program"]) if "program" in changes else last.program,
+        spec=put_all(last.spec, values) if values else last.spec,
+        options=RunOptions.from_plain(changes["options"]) if "options" in changes else last.options,
+    )
+
+
+_VALUES: dict[str, tuple[str, Callable[[Any], object]]] = {
+    "seed": ("seed", int),
+    "noise": ("world.noise", lambda plain: NoiseSpec(**plain)),
+    "start": ("world.start", lambda plain: Pose(**plain)),
+}
+"""Values of a spec that may be different, by their names as changes: their paths, and what makes them."""
 
 
 def _program_of(plain: Mapping[str, Any]) -> Program:

@@ -23,7 +23,7 @@ from typing import Any
 
 from tuisim.core import noise
 from tuisim.runtime.child import Child
-from tuisim.runtime.run_config import read_config
+from tuisim.runtime.run_config import config_of
 
 LENGTH_BYTES = 4
 """Each request begins with its length."""
@@ -36,6 +36,9 @@ _NEEDED_LATER = (
 """What a child imports after it has begun."""
 _ONLY_HERE = ("_socket", "hashlib", "_hashlib", "_blake2", "_sha3", "tuisim.runtime.warm")
 """Modules that other children have not imported."""
+
+# Saved: the program, whose functions a template has, gets others.
+_read, _write, _close, _change_folder = os.read, os.write, os.close, os.chdir
 
 
 def serve(socket_fd: int) -> Child | None:
@@ -54,10 +57,10 @@ def serve(socket_fd: int) -> Child | None:
     prepared = None
     while True:
         gc.freeze()
-        request = ForkServer(socket_fd).next_request()
+        request = ForkServer(socket_fd, prepared).next_request()
         if not request["serves"]:
             break
-        prepared = Child(read_config(Path(request["folder"])))
+        prepared = Child(config_of(Path(request["folder"]), request["run"]))
         (socket_fd,) = request["channel"]
     for name in _ONLY_HERE:
         sys.modules.pop(name, None)
@@ -71,9 +74,12 @@ class ForkServer:
 
     Args:
         socket_fd: The socket to the host.
+        prepared: What its children continue with; None if it is not prepared for a robot and a world.
     """
 
-    def __init__(self, socket_fd: int) -> None:
+    def __init__(self, socket_fd: int, prepared: Child | None = None) -> None:
+        self._prepared = prepared
+        self._environment = dict(os.environ)
         # Not `socket`: the program imports that with its functions patched.
         library: Any = import_module("_socket")
         self._socket: Any = library.socket(fileno=socket_fd)
@@ -92,7 +98,7 @@ class ForkServer:
         while True:
             ready = wallclock.select_files([self._socket, self._ended], [], [])[0]
             if self._ended in ready:
-                os.read(self._ended, _READ_BYTES)
+                _read(self._ended, _READ_BYTES)
                 self._report_ended()
             if self._socket in ready and (request := self._fork(*self._receive())):
                 return request
@@ -114,19 +120,21 @@ class ForkServer:
 
     def _fork(self, request: dict[str, Any], files: list[int]) -> dict[str, Any] | None:
         status_fd, *given = files
+        if self._prepared is not None:
+            self._prepared.expect(Path(request["folder"]), request["run"])
         try:
             _assert_one_thread()
             pid = wallclock.fork()
         except OSError as error:
             _report(status_fd, -(error.errno or errno.EAGAIN))
-            os.close(status_fd)
+            _close(status_fd)
         else:
             if not pid:
                 self._become_child(request, given, status_fd)
                 return request
             self._status_fds[pid] = status_fd
         for fd in given:
-            os.close(fd)
+            _close(fd)
         return None
 
     def _report_ended(self) -> None:
@@ -139,7 +147,7 @@ class ForkServer:
                 return
             status_fd = self._status_fds.pop(pid)
             _report(status_fd, os.waitstatus_to_exitcode(status))
-            os.close(status_fd)
+            _close(status_fd)
 
     def _become_child(self, request: dict[str, Any], given: list[int], status_fd: int) -> None:
         os.setsid()
@@ -149,18 +157,23 @@ class ForkServer:
         wallclock.set_signal(signal.SIGCHLD, int(signal.SIG_DFL))
         self._socket.close()
         for fd in (self._ended, self._wake, status_fd, *self._status_fds.values()):
-            os.close(fd)
+            _close(fd)
         null, log, *request["channel"] = given
         for fd, file in ((0, null), (1, null), (2, log)):
             os.dup2(file, fd)
         for fd in {null, log} - {0, 1, 2}:
-            os.close(fd)
-        _set_surroundings(request)
+            _close(fd)
+        if request["environment"] != self._environment:
+            os.environ.clear()
+            os.environ.update(request["environment"])
+        with suppress(OSError):
+            _change_folder(request["working_directory"])
+        wallclock.start_folder = wallclock._start_folder()
 
 
 def _report(status_fd: int, number: int) -> None:
     try:
-        os.write(status_fd, number.to_bytes(8, sys.byteorder, signed=True))
+        _write(status_fd, number.to_bytes(8, sys.byteorder, signed=True))
     except OSError:
         # The host has given up this child, or has ended.
         return
@@ -173,13 +186,3 @@ def _assert_one_thread() -> None:
         # No such file system.
         return
     assert count == 1, f"{count} threads"
-
-
-def _set_surroundings(request: dict[str, Any]) -> None:
-    """Set what a child that was started by itself gets from its host."""
-    if os.environ != request["environment"]:
-        os.environ.clear()
-        os.environ.update(request["environment"])
-    with suppress(OSError):
-        os.chdir(request["working_directory"])
-    wallclock.start_folder = wallclock._start_folder()

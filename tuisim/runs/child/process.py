@@ -12,10 +12,10 @@ import sys
 import threading
 import time
 from collections import OrderedDict
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, ClassVar
+from typing import IO, TYPE_CHECKING, Any, ClassVar
 
 from tuisim.atomic import private
 from tuisim.regular_file import read_regular
@@ -38,6 +38,8 @@ BOOT = (
 
 MOST_TEMPLATES = 4
 
+FEW_IDS = 32
+"""So many process ids are tried one by one: it takes longer to list all processes of the machine."""
 FILE_LOCKS = 10
 """Number of a limit that every process inherits on Linux, and that is unused since 2.4.25."""
 
@@ -88,6 +90,7 @@ def start_child(
     folder: Path,
     lock_fd: int,
     working_directory: str,
+    run: Mapping[str, Any],
     template_key: Hashable = None,
     makes_template: bool = False,
     isolated_with: Sequence[Path] | None = None,
@@ -100,6 +103,7 @@ def start_child(
         folder: The run folder.
         lock_fd: Its lock, which the process inherits; it is closed here.
         working_directory: Initial working directory, if it still exists.
+        run: The contents of the `run.json` in the folder.
         template_key: What a template must be prepared for to fork the child; None forks it from the warm process.
         makes_template: Whether such a template is made if there is none; otherwise the warm process forks the child.
         isolated_with: The files and folders that it needs besides its run folder and its working directory; it is then
@@ -124,7 +128,7 @@ def start_child(
             if isolated_with is None:
                 key = template_key if makes_template or template_key in _Starts.templates else None
                 with _Starts.lock:
-                    forked = _fork(folder, cwd, log.fileno(), inherited, key)
+                    forked = _fork(folder, cwd, log.fileno(), inherited, run, key)
                 process = forked or _spawn(folder, cwd, log, inherited)
             else:
                 command = [*_command(LIMITS), str(folder), *map(str, inherited)]
@@ -144,18 +148,19 @@ def _pipe(reader: ExitStack, writer: ExitStack) -> tuple[int, int]:
     return read_fd, write_fd
 
 
-def prepare_template(key: Hashable, folder: Path) -> None:
+def prepare_template(key: Hashable, folder: Path, run: Mapping[str, Any]) -> None:
     """Make a template unless there is one, if the warm process runs. Does not block until it is ready.
 
     Args:
         key: What it is prepared for.
         folder: A run folder with that.
+        run: The contents of its `run.json`, as it was started.
     """
     with _Starts.lock:
         if _Starts.warm is not None and _Starts.warm.is_usable:
             # Without a template, children are forked from the warm process.
             with suppress(OSError):
-                _template(_Starts.warm, key, folder)
+                _template(_Starts.warm, key, folder, run)
 
 
 def _command(first: str = "") -> list[str]:
@@ -163,7 +168,14 @@ def _command(first: str = "") -> list[str]:
     return [sys.executable, "-s", "-P", "-c", first + BOOT, str(Path(__file__).parents[3])]
 
 
-def _fork(folder: Path, cwd: str | None, log_fd: int, inherited: Sequence[int], key: Hashable) -> ChildProcess | None:
+def _fork(
+    folder: Path,
+    cwd: str | None,
+    log_fd: int,
+    inherited: Sequence[int],
+    run: Mapping[str, Any],
+    key: Hashable,
+) -> ChildProcess | None:
     """Fork a child from a template or the warm process; return None if there is none, or it cannot."""
     if _Starts.warm is None or not _Starts.warm.is_usable:
         return None
@@ -173,19 +185,19 @@ def _fork(folder: Path, cwd: str | None, log_fd: int, inherited: Sequence[int], 
         # The working directory no longer exists; only a process that is started there can be in it.
         return None
     try:
-        server = _Starts.warm if key is None else _template(_Starts.warm, key, folder)
-        return server.fork(str(folder), here, _environment(), [log_fd, *inherited])
+        server = _Starts.warm if key is None else _template(_Starts.warm, key, folder, run)
+        return server.fork(str(folder), here, _environment(), [log_fd, *inherited], run)
     except OSError:
         cool_down()
         return None
 
 
-def _template(warm: WarmProcess, key: Hashable, folder: Path) -> Template:
+def _template(warm: WarmProcess, key: Hashable, folder: Path, run: Mapping[str, Any]) -> Template:
     templates = _Starts.templates
     if key not in templates:
         if len(templates) >= MOST_TEMPLATES:
             templates.popitem(last=False)[1].close()
-        templates[key] = warm.template(str(folder))
+        templates[key] = warm.template(str(folder), run)
     templates.move_to_end(key)
     return templates[key]
 
@@ -243,10 +255,12 @@ def end_left_over(pid: int, marked: int) -> None:
 
 
 def _younger_than(pid: int) -> set[int]:
-    """Return the processes that may have been started after a process."""
+    """Return the processes that may have been started after a process, and ids that may belong to none."""
     last = int(Path("/proc/loadavg").read_text("ascii").split()[-1])
-    there = {int(name) for name in os.listdir("/proc") if name.isdigit()}
     # Process ids increase, and wrap around when they are used up.
+    if pid <= last < pid + FEW_IDS:
+        return set(range(pid + 1, last + 1))
+    there = {int(name) for name in os.listdir("/proc") if name.isdigit()}
     return {one for one in there if one > pid} if last >= pid else there
 
 

@@ -13,12 +13,14 @@ import threading
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from typing import Protocol
+from typing import Any, Protocol
 
 from tuisim.runs.child.readable import is_readable
 
 ANSWER_S = 10.0
 """Longest wait for a server: a program may have stopped it. Then it is continued once, and given up after that."""
+LOOK_EVERY_S = 0.03
+"""How often it is looked whether a program has stopped the process that reports the end of a child."""
 END_S = 5.0
 """Time for a server to end when its socket is closed; then it is killed."""
 _NUMBER_BYTES = 8
@@ -53,6 +55,7 @@ class ForkedChild:
         self.pid = pid
         self.returncode: int | None = None
         self._status_fd = status_fd
+        self._look_at_s = time.monotonic() + LOOK_EVERY_S
         self._lock = threading.Lock()
 
     def poll(self) -> int | None:
@@ -68,7 +71,8 @@ class ForkedChild:
                     with suppress(OSError):
                         os.killpg(self.pid, signal.SIGKILL)
                     self.returncode = -signal.SIGKILL
-            elif self.returncode is None:
+            elif self.returncode is None and (now_s := time.monotonic()) >= self._look_at_s:
+                self._look_at_s = now_s + LOOK_EVERY_S
                 _continue_parent_of(self.pid)
         return self.returncode
 
@@ -117,6 +121,8 @@ class ForkClient:
         self._lock = threading.Lock()
         self._pid = os.getpid()
         self._socket, self._process = connection, process
+        # A program may have stopped the server when more is sent than the system keeps.
+        self._socket.settimeout(ANSWER_S)
 
     @property
     def is_usable(self) -> bool:
@@ -129,6 +135,7 @@ class ForkClient:
         working_directory: str,
         environment: Mapping[str, str],
         files: Sequence[int],
+        run: Mapping[str, Any],
         serves: bool = False,
     ) -> ForkedChild:
         """Fork a child. Blocks until it leads its process group, a few milliseconds; first until the server is ready.
@@ -139,6 +146,7 @@ class ForkClient:
             environment: Its environment variables.
             files: Descriptors: its error output; its commands, events, lifeline and lock, or the socket of a
                 template.
+            run: The contents of the `run.json` in the folder.
             serves: Whether it becomes a template.
 
         Raises:
@@ -150,10 +158,10 @@ class ForkClient:
             "environment": dict(environment),
             "serves": serves,
         }
-        data = json.dumps(request).encode()
         status_fd, theirs = os.pipe()
         try:
             with open(os.devnull, "r+b", buffering=0) as null, self._lock:
+                data = json.dumps({**request, "run": run if serves else self._changes(run)}).encode()
                 message = len(data).to_bytes(_LENGTH_BYTES, "little") + data
                 sent = socket.send_fds(self._socket, [message], [theirs, null.fileno(), *files])
                 self._socket.sendall(message[sent:])
@@ -171,6 +179,10 @@ class ForkClient:
             os.close(status_fd)
             raise OSError(-pid, os.strerror(-pid)) if pid else ConnectionError("the server has ended")
         return ForkedChild(pid, status_fd)
+
+    def _changes(self, _run: Mapping[str, Any]) -> dict[str, Any]:
+        """Return what the server has to know of a run, whose process reads the rest."""
+        return {}
 
     def _answer(self, status_fd: int) -> bytes:
         for _ in range(2):
@@ -193,7 +205,34 @@ class ForkClient:
 
 
 class Template(ForkClient):
-    """A process that is prepared for a robot and a world, and forks children for them."""
+    """A process that is prepared for a robot and a world, and forks children for them.
+
+    Args:
+        connection: The socket to it.
+        process: The process.
+        run: The contents of the `run.json` of the run that it was prepared with.
+    """
+
+    def __init__(self, connection: socket.socket, process: ChildProcess, run: Mapping[str, Any]) -> None:
+        super().__init__(connection, process)
+        self._last = _varying(run)
+        """What it knows of the last run."""
+
+    def _changes(self, run: Mapping[str, Any]) -> dict[str, Any]:
+        last, self._last = self._last, _varying(run)
+        return {name: value for name, value in self._last.items() if last[name] != value}
+
+
+def _varying(run: Mapping[str, Any]) -> dict[str, Any]:
+    """Return all in which two runs of a template may differ, from the contents of a `run.json`."""
+    spec, world = run["spec"], run["spec"]["world"]
+    return {
+        "program": run["program"],
+        "options": run["options"],
+        "seed": spec["seed"],
+        "noise": world["noise"],
+        "start": world["start"],
+    }
 
 
 class WarmProcess(ForkClient):
@@ -225,11 +264,12 @@ class WarmProcess(ForkClient):
         """Whether it runs, and belongs to this process, not to one that has forked this one."""
         return super().is_usable and self._process.poll() is None
 
-    def template(self, folder: str) -> Template:
+    def template(self, folder: str, run: Mapping[str, Any]) -> Template:
         """Fork a template for the robot and the world of a run. Does not block until it is ready.
 
         Args:
             folder: The folder of a run.
+            run: The contents of its `run.json`: the program could change the file.
 
         Raises:
             OSError: it cannot be forked, or the warm process has ended.
@@ -238,7 +278,7 @@ class WarmProcess(ForkClient):
         try:
             with theirs, open(os.devnull, "wb") as log:
                 files = [log.fileno(), theirs.fileno()]
-                return Template(mine, self.fork(folder, "/", self._environment, files, serves=True))
+                return Template(mine, self.fork(folder, "/", self._environment, files, run, serves=True), run)
         except OSError:
             mine.close()
             raise
