@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -41,6 +41,7 @@ from tuisim.config.options import DEFAULT_FPS, Settings
 from tuisim.config.program_settings import Decided
 from tuisim.config.user_config import FILE, UserConfig, load_config
 from tuisim.core.spec import RunSpec
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.protocol import Answer, Ended
 from tuisim.runs.child.process import warm_up

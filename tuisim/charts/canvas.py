@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -17,6 +16,7 @@ from tuisim.charts import axes
 from tuisim.charts.axes import Limits
 from tuisim.charts.traces import min_max
 from tuisim.core.css_colors import Rgb
+from tuisim.data_class import dataclass
 from tuisim.runs.arrays import FloatArray
 from tuisim.terminal.text_runs import Run, rgb_of
 

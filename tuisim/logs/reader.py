@@ -9,7 +9,6 @@ import stat
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from time import monotonic
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 import pyarrow as pa
 
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError
 from tuisim.logs import arrow
 from tuisim.logs.blocks import (

@@ -13,11 +13,12 @@ import shutil
 import sqlite3
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
 
 from tuisim.atomic import make_private_folder, private
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError, shortened
 from tuisim.protocol import RUN_STATES, RunState
 

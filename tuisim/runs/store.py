@@ -16,7 +16,7 @@ import sys
 import threading
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, field, replace
 from datetime import UTC, datetime
 from operator import index
 from pathlib import Path
@@ -26,6 +26,7 @@ from tuisim.atomic import make_private_folder, private
 from tuisim.config.folders import home_folder
 from tuisim.core.profile import NS_PER_S, due_ns
 from tuisim.core.spec import RunSpec
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError
 from tuisim.protocol import RUN_STATES, End, Ended, Unended
 from tuisim.regular_file import of_the_machine, open_regular
@@ -61,8 +62,7 @@ _COUNT_A_LISTING_BYTES = 8 << 20
 """Bytes of output in which samples are counted on each listing; the rest waits for the next listing."""
 
 COMPACT_TICKS = 6000
-"""A run of at least this many ticks is packed in a separate process as soon as it is over; shorter runs gain
-little."""
+"""A run of at least this many ticks is packed in a separate process as soon as it is over; others gain little."""
 
 PACKER_LOCK_FILE = "packer.lock"
 PACKERS: list[threading.Thread] = []

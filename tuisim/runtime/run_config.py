@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +12,7 @@ from tuisim.config.folders import programs_folder
 from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.spec import RunSpec
 from tuisim.core.tree import from_plain
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.runs.run_options import RunOptions
 from tuisim.runtime import wallclock

@@ -10,11 +10,11 @@ from __future__ import annotations
 import sys
 import types
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import wraps
 from importlib.machinery import ModuleSpec
 from typing import Any, NoReturn
 
+from tuisim.data_class import dataclass
 from tuisim.errors import NotSimulated
 
 _RADIO = "to drive by hand, use the brick's buttons or RemoteControlledTank; parts of a program can talk by queue.Queue"
