@@ -200,3 +200,16 @@ def test_an_object_that_contains_itself_can_be_shown() -> None:
     node = Node()
     node.next = node
     assert repr(node).endswith("Node(next=...)")
+
+
+def test_what_is_compiled_late_can_be_compiled_at_once() -> None:
+    @data_class.dataclass
+    class Late:
+        """Nobody has made one yet."""
+
+        number: int
+
+    assert not inspect.isfunction(vars(Late)["__init__"])
+    data_class.prepare()
+    assert inspect.isfunction(vars(Late)["__init__"])
+    assert Late(1).number == 1

@@ -1,7 +1,8 @@
 """Data classes that cost a start little: Python's own compile six methods for each class, each time it is imported.
 
-Here one function serves all classes where that is as fast, and only `__init__` is compiled. Otherwise they are as
-Python's own: `fields`, `replace` and `asdict` take them, and type checkers see no difference.
+Here one function serves all classes where that is as fast, and only `__init__` is compiled, when the first object is
+made. Otherwise they are as Python's own: `fields`, `replace` and `asdict` take them, and type checkers see no
+difference.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from operator import attrgetter
 from reprlib import recursive_repr
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
-__all__ = ["dataclass"]
+__all__ = ["dataclass", "prepare"]
 
 _Class = TypeVar("_Class", bound=type)
 
@@ -84,6 +85,38 @@ def _init(cls: type, frozen: bool) -> Any:
     return init
 
 
+class _LateInit:
+    """Stands for the `__init__` of a class until somebody asks for it.
+
+    Args:
+        cls: The class.
+        frozen: Whether its objects are.
+    """
+
+    def __init__(self, cls: type, frozen: bool) -> None:
+        self._cls, self._frozen = cls, frozen
+        _LATE.append(self)
+
+    def __get__(self, instance: object, owner: type | None = None) -> Any:
+        init = self.write()
+        return init if instance is None else init.__get__(instance)
+
+    def write(self) -> Any:
+        """Write it into the class, and return it."""
+        init = _init(self._cls, self._frozen)
+        type.__setattr__(self._cls, "__init__", init)
+        return init
+
+
+_LATE: list[_LateInit] = []
+
+
+def prepare() -> None:
+    """Compile now what would be compiled later: a process does so once for all that are forked from it."""
+    while _LATE:
+        _LATE.pop().write()
+
+
 def _contents(all_fields: tuple[Field[Any], ...]) -> Callable[[Any], tuple[Any, ...]]:
     """Return a function that returns the values by which an object is compared."""
     names = [one.name for one in all_fields if one.compare]
@@ -96,7 +129,7 @@ def _decorated(cls: _Class, frozen: bool, slots: bool, eq: bool, order: bool) ->
     written = set(vars(cls))
     decorate = standard_dataclass(init=False, repr=False, eq=order, order=order, slots=slots)
     made: _Class = decorate(cls)  # type: ignore[assignment]
-    methods: dict[str, Any] = {"__init__": _init(made, frozen), "__repr__": _repr}
+    methods: dict[str, Any] = {"__init__": _LateInit(made, frozen), "__repr__": _repr}
     if eq:
         contents = _contents(fields(made))
 
