@@ -9,7 +9,6 @@ from __future__ import annotations
 import fcntl
 import os
 import reprlib
-import secrets
 import shutil
 import subprocess
 import sys
@@ -331,7 +330,7 @@ class RunStore:
             The id of the run, its folder, and the descriptor of the lock.
         """
         while True:
-            run_id = f"{now:%Y%m%dT%H%M%S}-{secrets.token_hex(3)}"
+            run_id = f"{now:%Y%m%dT%H%M%S}-{os.urandom(3).hex()}"
             folder = self.folder(run_id)
             try:
                 make_private_folder(self._runs)
@@ -530,7 +529,7 @@ def _copy_files(folder: Path, place: Path) -> None:
 def _delete(folder: Path) -> None:
     """Delete a run folder; of a symbolic link only the link."""
     # Renamed first: a partly deleted run must not look like a run.
-    removed = folder.with_name(f".{folder.name}.{secrets.token_hex(4)}{REMOVED}")
+    removed = folder.with_name(f".{folder.name}.{os.urandom(4).hex()}{REMOVED}")
     os.replace(folder, removed)
     if removed.is_symlink():
         removed.unlink()
