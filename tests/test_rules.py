@@ -311,6 +311,13 @@ def inner_parts_of_terminal(source: Source) -> Iterable[object]:
             yield from {str(node.module).split(".")[2]} - {*terminal.__all__}
 
 
+def slow_data_classes(source: Source) -> Iterable[object]:
+    """Imports of Python's own data class, which is compiled at each start."""
+    for node in source.nodes:
+        if isinstance(node, ast.ImportFrom) and node.module == "dataclasses" and "dataclass" in _aliases(node):
+            yield node.lineno
+
+
 TERMINAL = python_files("tuisim/terminal")
 MAY_REACH_TEXTUAL = [*TERMINAL, *python_files("tuisim/app"), *python_files("tuisim/web")]
 OUTSIDE_TERMINAL = [path for path in PACKAGE if path not in TERMINAL]
@@ -337,6 +344,10 @@ RULES: dict[str, tuple[Callable[[Source], Iterable[object]], list[Path]]] = {
     "private names of Textual are in one module": (
         private_names_of_textual,
         [path for path in MAY_REACH_TEXTUAL if path.name != "textual_internals.py"],
+    ),
+    "data classes start fast": (
+        slow_data_classes,
+        [path for path in OUTSIDE_TERMINAL if path.name not in ("data_class.py", "spec_fields.py")],
     ),
     "the terminal kit is reached through its surface": (inner_parts_of_terminal, OUTSIDE_TERMINAL),
 }

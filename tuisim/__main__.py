@@ -8,7 +8,7 @@ import sys
 from contextlib import suppress
 from typing import NoReturn
 
-COLLECT_EVERY = 50_000
+COLLECT_EVERY = 300_000
 """New objects after which the collector looks for cycles: a start makes many, and keeps nearly all of them."""
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +12,7 @@ from tuisim.config.options import APP, OPTIONS, Option
 from tuisim.config.program_file import ProgramSource, find_program, program_of_text, read_program
 from tuisim.config.program_settings import ProgramSettings, program_settings
 from tuisim.config.worlds import load_world
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest
 from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S, RunOptions, start_run
 from tuisim.runs.records import Stream

@@ -9,11 +9,11 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from tuisim.core.conditions import ValueCondition, ValueSource, comparison_form, finite_number, run_condition_in
 from tuisim.core.sensors import named_column
 from tuisim.core.spec import RobotSpec
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, see_page
 
 FORMS = (

@@ -9,7 +9,6 @@ import errno
 import os
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
@@ -20,6 +19,7 @@ from click.shell_completion import get_completion_class, shell_complete
 
 from tuisim import __version__
 from tuisim.config.command_line import Group, command
+from tuisim.data_class import dataclass
 from tuisim.errors import EXIT_BROKEN_PIPE, EXIT_INTERRUPTED, ConfigError, HostError, TuisimError, printable, shortened
 
 

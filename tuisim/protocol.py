@@ -6,10 +6,11 @@ import json
 import re
 import signal
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from enum import StrEnum
 from typing import Any, ClassVar
 
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 
 

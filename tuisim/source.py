@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 
 _IMPORTS = """\

@@ -25,7 +25,7 @@ from tests.bench.run_key import run_key
 from tests.bench.running import EMPTY, begin
 from tests.bench.sampling import QUICK, THOROUGH, Effort, MeasuringError
 from tests.bench.speed import LOADS, libraries, noise, speeds
-from tests.bench.starts import first_line, first_paint, help_text, imports
+from tests.bench.starts import commands, first_line, first_paint, help_text, imports
 from tests.bench.stops import stop_latency
 from tests.bench.variables import variables
 from tests.bench.wire import wire
@@ -39,6 +39,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "crowded": crowded,
     "first-line": first_line,
     "help": help_text,
+    "commands": commands,
     "imports": imports,
     "first-paint": first_paint,
     "stop": stop_latency,

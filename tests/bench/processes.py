@@ -71,6 +71,7 @@ def command_cpu_s(*words: str, environment: Mapping[str, str] | None = None) -> 
         env=app_environment() if environment is None else environment,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
         check=True,
     )
     return children_cpu_s() - before

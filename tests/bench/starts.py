@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from functools import partial
+from pathlib import Path
 
 from tests.bench.figures import Figure
 from tests.bench.processes import app_environment, command_cpu_s, cpu_s, wait_until_stopped
@@ -18,12 +20,13 @@ from tuisim.runs.handle import RunOptions
 
 STOPS_ITSELF = "import os, signal; os.kill(os.getpid(), signal.SIGSTOP)\n"
 """A program that stands still in its first line, so that the CPU used until then can be read at leisure."""
+FEW = "import time\nfor n in range(50):\n    print('n:', n // 10)\n    time.sleep(0.1)\n"
 HALF_BLOCK = "▀".encode()
 
 
 def first_line(effort: Effort) -> Iterator[Figure]:
     """Yield the CPU of a program's process until the program's own first line, prelude included."""
-    for prelude, goal in (("preloaded", 13.0), ("none", None)):
+    for prelude, goal in (("preloaded", 10.0), ("none", None)):
         samples = in_turns(partial(_first_line_cpu_s, prelude), start_cpu_s, effort)
         yield _start(f"to the first line, prelude {prelude}", samples, goal)
 
@@ -49,12 +52,25 @@ def _first_line_cpu_s(prelude: str) -> float:
 
 def help_text(effort: Effort) -> Iterator[Figure]:
     """Yield the CPU of `tuisim --help`."""
-    yield _start("tuisim --help", in_turns(lambda: command_cpu_s("-m", "tuisim", "--help"), start_cpu_s, effort), 7)
+    yield _start("tuisim --help", in_turns(lambda: command_cpu_s("-m", "tuisim", "--help"), start_cpu_s, effort), 6)
+
+
+def commands(effort: Effort) -> Iterator[Figure]:
+    """Yield the CPU of commands that have little to do: nothing to run, one run to list, a short log."""
+    with tempfile.TemporaryDirectory() as home:
+        environment = app_environment(TUISIM_HOME=home)
+        for name, text in (("few.py", FEW), ("none.py", "")):
+            Path(home, name).write_text(text, encoding="utf-8")
+        run = partial(command_cpu_s, "-m", "tuisim", environment=environment)
+        run("run", f"{home}/few.py")
+        for words, most in (("runs list", 11), ("log bands 1", 28), ("log plot 1", 35), (f"run {home}/none.py", 24)):
+            samples = in_turns(partial(run, *words.split()), start_cpu_s, effort)
+            yield _start(f"tuisim {words.replace(f'{home}/', '')}", samples, most)
 
 
 def first_paint(effort: Effort) -> Iterator[Figure]:
     """Yield the CPU of the app until its panels, and until the mat in the world, are on the screen."""
-    for name, text, most in (("panels", b"World", None), ("world", HALF_BLOCK, 4.2)):
+    for name, text, most in (("panels", b"World", None), ("world", HALF_BLOCK, 3.6)):
         samples = in_turns(partial(_first_paint_cpu_s, text), paint_cpu_s, effort)
         ratio = Ratio(samples.ratio, "x minimal app")
         yield Figure(f"first paint, {name}", samples.value * 1e3, "ms CPU", most=most, ratio=ratio)
@@ -71,7 +87,7 @@ def imports(effort: Effort) -> Iterator[Figure]:
     shell = "from IPython.core.interactiveshell import InteractiveShell as S; import pandas; s = S.instance()"
     for name, before, added, goal in (
         ("import tuisim", "pass", "import tuisim", 1.0),
-        ("%load_ext tuisim, beyond pandas", shell, "s.run_line_magic('load_ext', 'tuisim')", 2.7),
+        ("%load_ext tuisim, beyond pandas", shell, "s.run_line_magic('load_ext', 'tuisim')", 1.0),
     ):
         samples = in_turns(partial(_added_cpu_s, before, added), start_cpu_s, effort)
         yield _start(name, samples, goal)

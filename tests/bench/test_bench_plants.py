@@ -109,7 +109,7 @@ def test_slow_obstacles_are_seen() -> None:
     assert_each_worse("crowded", in_runs(CROWDED.format(turns=2000)))
 
 
-@pytest.mark.parametrize("bench", ["help", "imports", "first-paint"])
+@pytest.mark.parametrize("bench", ["help", "commands", "imports", "first-paint"])
 def test_slow_commands_are_seen(bench: str) -> None:
     assert_each_worse(bench, in_commands(SLOW.format(turns=300)))
 

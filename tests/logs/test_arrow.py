@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pyarrow as pa
 import pytest
 
@@ -16,6 +17,7 @@ from tuisim.logs.arrow import (
     mask_of,
     numbers_of,
     sorted_places,
+    table_of,
     texts_array,
     unique_names,
     whole_numbers,
@@ -43,6 +45,24 @@ def column(*parts: list[Any], kind: pa.DataType | None = None) -> pa.ChunkedArra
 )
 def test_a_column_as_numbers(cells: pa.ChunkedArray, expected: list[float]) -> None:
     np.testing.assert_array_equal(numbers_of(cells), expected)
+
+
+@pytest.mark.parametrize("rows", [0, 1, 9])
+def test_a_table_of_columns_is_that_of_their_frame(rows: int) -> None:
+    known = np.arange(rows) / 3
+    columns: dict[str, Any] = {
+        "index": (np.arange(rows) * 7).astype("m8[ns]"),
+        "variable": [f"Größe {at}" for at in range(rows)],
+        "known": known,
+        "some": np.where(np.arange(rows) % 2 == 0, NAN, known),
+        "strided": np.stack([known, known])[:, ::-1].T[:, 0],
+        "line": np.arange(rows),
+    }
+    frame = pd.DataFrame({**columns, "variable": pd.Series(columns["variable"], dtype="str")})
+    expected = pa.Table.from_pandas(frame, preserve_index=False).replace_schema_metadata()
+    table = table_of(columns)
+    table.validate(full=True)
+    assert table.cast(expected.schema).equals(expected)
 
 
 def test_whole_numbers_are_not_copied() -> None:

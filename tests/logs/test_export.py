@@ -305,3 +305,14 @@ def test_importing_is_light(module: str) -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_the_log_of_a_run_is_read_without_pandas(record: Callable[..., Recorder], noisy_spec: RunSpec) -> None:
+    run = noisy_run(record, noisy_spec)
+    code = (
+        "import sys; from tuisim import load_run; from tuisim.logs.reader import log_of_runs\n"
+        f"log = log_of_runs([load_run({str(run.folder)!r})])\n"
+        "print([len(log.series(name).values) for name in log.names], 'pandas' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[30, 30] False\n"

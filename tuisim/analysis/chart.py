@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ from tuisim.charts.axes import Limits, column_of, value_limits
 from tuisim.charts.canvas import DOTS_X, DOTS_Y, seen_points
 from tuisim.charts.layout import ChartData, Line, with_unit
 from tuisim.charts.traces import LARGEST, min_max
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError, printable
 from tuisim.runs.arrays import FloatArray
 

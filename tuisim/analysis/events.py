@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tuisim.core.conditions import NUMBER, Operator, ValueCondition, comparison_form, condition_in
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError, among
 from tuisim.logs.signals import known_in_order
 from tuisim.runs.arrays import FloatArray

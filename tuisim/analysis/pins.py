@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from tuisim.charts.files import clean
 from tuisim.core.spec import RobotSpec
+from tuisim.data_class import dataclass
 from tuisim.palette import MET, MISSED
 from tuisim.scene.pictures import world_view
 

@@ -8,12 +8,13 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.atomic import make_private_folder, replacing
 from tuisim.config.folders import home_folder
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError
 from tuisim.regular_file import open_regular, read_regular
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tuisim.core.conditions import COMPARE, Operator, ValueCondition, comparison_form, condition_in
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError, among
 from tuisim.logs.arrow import cell_text, contains, mask_of, sorted_places
 from tuisim.runs.arrays import IntArray

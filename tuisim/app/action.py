@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeVar
 
 from rich.console import Console
@@ -20,6 +19,7 @@ from textual.message import Message
 from textual.widget import Widget
 
 from tuisim import palette
+from tuisim.data_class import dataclass
 from tuisim.errors import TuisimError
 from tuisim.terminal.textual_internals import bindings_of, is_leaving
 

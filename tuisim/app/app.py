@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -20,7 +20,7 @@ from tuisim.app.actions import ActionContext, time_travel
 from tuisim.app.actions.files import welcome
 from tuisim.app.actions.keys import ACTIONS, PAGES, RUN_KEYS, TEXT_KEYS, footer_actions, working
 from tuisim.app.actions.lesson import reads_on, takes_pages
-from tuisim.app.background import leave
+from tuisim.app.background import enter, leave
 from tuisim.app.branch import branch_message
 from tuisim.app.debugger import DebugController
 from tuisim.app.editor.document import Document
@@ -41,6 +41,7 @@ from tuisim.config.options import DEFAULT_FPS, Settings
 from tuisim.config.program_settings import Decided
 from tuisim.config.user_config import FILE, UserConfig, load_config
 from tuisim.core.spec import RunSpec
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.protocol import Answer, Ended
 from tuisim.runs.child.process import warm_up
@@ -556,6 +557,7 @@ def _footed(state: AppState) -> tuple[Any, ...]:
 
 def run_app(settings: AppSettings) -> int:
     """Run the app in this terminal until the user quits; return the exit code."""
+    enter()
     lab = LabApp(settings, picture_mode_at_start(settings.cells, settings.colors))
     lab.run()
     return leave(lab.return_code or 0)

@@ -5,13 +5,14 @@ The user's actions until then are repeated too, each at its tick, so that the st
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tuisim import protocol
 from tuisim.core.spec import NoiseSpec
+from tuisim.data_class import dataclass
 from tuisim.protocol import UserAction
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
@@ -13,6 +13,7 @@ from tuisim.app.editor.text_lines import code_line, same_lines
 from tuisim.app.snapshot import PauseView
 from tuisim.breakpoints import Breakpoint, LineBreak, break_line_of, break_lines, moved, parse_break
 from tuisim.config.files import MAX_FILE_BYTES
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
 from tuisim.regular_file import read_regular

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy.typing as npt
 from tuisim.core.field import Field
 from tuisim.core.sensors import columns_of
 from tuisim.core.tick_record import FLAG_PEN_DOWN
+from tuisim.data_class import dataclass
 from tuisim.runs.frames import column_values
 from tuisim.runs.records import OutputRow
 from tuisim.runs.samples import samples_of

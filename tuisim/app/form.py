@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from rich.style import Style
@@ -17,6 +16,7 @@ from textual.widget import Widget
 from textual.widgets import Input, Label, Static
 
 from tuisim.app.action import ActionHost
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.terminal.textual_internals import bindings_of
 

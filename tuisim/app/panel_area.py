@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, TypeVar, cast
 
 from textual import events
@@ -28,6 +27,7 @@ from tuisim.app.layout.arrangement import (
 )
 from tuisim.app.layout.tree import PanelLayout
 from tuisim.app.panels import PANELS, NextRunPanel, Panel, TerminalSize
+from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
     from tuisim.app.panels.brick import Brick

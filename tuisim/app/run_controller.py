@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
@@ -19,6 +19,7 @@ from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import FLAG_PEN_DOWN
+from tuisim.data_class import dataclass
 from tuisim.protocol import RunState
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.recorded_run import Recording

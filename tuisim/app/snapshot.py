@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 from typing import assert_never
@@ -14,6 +13,7 @@ from tuisim.core.sensors import color, gyro, readings, ultrasonic
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
+from tuisim.data_class import dataclass
 from tuisim.protocol import End, Ended, Inspected, Paused, RunState, Unended
 from tuisim.runs.brick_state import BrickState
 

@@ -21,7 +21,6 @@ from tuisim import palette
 from tuisim.app import background
 from tuisim.app.action import ActionHost, with_keys_of
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
-from tuisim.app.screenshot import save_screenshot, screen_cells
 from tuisim.app.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors
 from tuisim.charts.traces import TRACE_COLORS
 from tuisim.config.files import Scalar
@@ -244,6 +243,8 @@ class TerminalApp(BufferedApp):
 
     def action_save_screen(self) -> None:
         """Save the whole screen as SVG and PNG, in the working directory."""
+        # Imported on demand: the app starts faster without it.
+        from tuisim.app.screenshot import save_screenshot, screen_cells
 
         def saved(files: tuple[Path, Path]) -> None:
             svg, png = files

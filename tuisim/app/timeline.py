@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tuisim.core.conditions import Operator, ValueCondition, ValueSource, comparison_form, run_condition_in, spelled
 from tuisim.core.field import Field
 from tuisim.core.sensors import named_column
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.runs.brick_state import BrickState, face_after
 from tuisim.runs.frames import begins, column_values, held

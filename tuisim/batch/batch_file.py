@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,6 +17,7 @@ from tuisim.config.files import Location
 from tuisim.config.folders import user_path
 from tuisim.config.worlds import BATCH_KEY, WORLD_SUFFIX, WorldFile, load_world, world_from_table
 from tuisim.core.values import shown
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 
 MAX_PROGRAMS = 10_000

@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from decimal import Decimal
 from enum import StrEnum
 from random import Random
 
 from tuisim.batch.task import Value
 from tuisim.core.values import MAX_SEED
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest, see_page
 
 MAX_VALUES = 1_000_000

@@ -6,7 +6,7 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from tuisim.config.overrides import settings_of_keys
 from tuisim.config.program_settings import require_library
 from tuisim.core.spec import RunSpec
 from tuisim.core.tree import to_plain
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.goals.spec import Goal
 from tuisim.runs.handle import RunOptions, in_surroundings

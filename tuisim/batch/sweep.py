@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, MutableMapping
 from contextlib import closing
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tuisim.batch.plan import Plan
 from tuisim.batch.pool import run_many
 from tuisim.batch.table import Row, row_of
 from tuisim.batch.task import Result, Task
+from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
     from tuisim.batch.partial import PartialTable

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from tuisim.batch.parameters import SEED
 from tuisim.batch.task import Result, Value, VariableStatistics
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, LogError, nearest
 from tuisim.goals.judgement import GoalState, points
 from tuisim.logs.export import table_metadata

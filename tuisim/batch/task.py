@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 
 from tuisim.core.spec import RunSpec
+from tuisim.data_class import dataclass
 from tuisim.goals.judgement import Judgement
 from tuisim.goals.spec import Goal
 from tuisim.runs.handle import RunOptions

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from tuisim.charts import axes
 from tuisim.charts.axes import Limits
 from tuisim.charts.traces import min_max
 from tuisim.core.css_colors import Rgb
+from tuisim.data_class import dataclass
 from tuisim.runs.arrays import FloatArray
 from tuisim.terminal.text_runs import Run, rgb_of
 
@@ -43,6 +45,10 @@ class Curve:
 
 @lru_cache(maxsize=1)
 def _plotext() -> Any:
+    # Most of its import is spent on its manual, which nobody opens here.
+    manual = ModuleType("plotext._doc.doc")
+    vars(manual)["docs"] = None
+    sys.modules.setdefault(manual.__name__, manual)
     # Costs more than the rest of the app's start: imported when the first curve is drawn.
     import plotext
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from rich.color import Color
@@ -30,6 +29,7 @@ from tuisim.charts.layout import (
 )
 from tuisim.core.css_colors import Rgb
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.data_class import dataclass
 from tuisim.errors import counted
 from tuisim.runs.arrays import FloatArray
 from tuisim.terminal.pixels import Pixels

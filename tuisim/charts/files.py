@@ -6,7 +6,6 @@ import base64
 import io
 import re
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,6 +24,7 @@ from tuisim.charts.layout import (
     laid_out,
 )
 from tuisim.core.css_colors import Rgb
+from tuisim.data_class import dataclass
 from tuisim.errors import ExportError
 from tuisim.logs.export import check_place
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeAlias
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from tuisim.charts.axes import Limits, label, ticks, value_limits
 from tuisim.core.css_colors import Rgb
+from tuisim.data_class import dataclass
 from tuisim.errors import printable
 from tuisim.logs import units
 from tuisim.runs.arrays import FloatArray

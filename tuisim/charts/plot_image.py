@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tuisim.charts.canvas import BRAILLE, Curve
 from tuisim.charts.traces import min_max
+from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from rich.style import Style
@@ -16,6 +16,7 @@ from tuisim.charts.canvas import AXIS, BRAILLE, PLAIN, Curve, TextRun, canvas, s
 from tuisim.charts.layout import COLORS, ChartData, Line, Scales, color_of
 from tuisim.charts.plot_image import Plot
 from tuisim.charts.traces import Trace, Traces
+from tuisim.data_class import dataclass
 from tuisim.errors import printable
 from tuisim.terminal.text_runs import Run, cut
 

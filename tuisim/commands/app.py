@@ -6,7 +6,6 @@ import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -16,6 +15,7 @@ from tuisim.commands.listings import WORLD, names_of
 from tuisim.commands.log import COLUMNS, TELEMETRY
 from tuisim.config.command_line import Arguments, WordType, argument, command, option
 from tuisim.config.shared_options import shared_options
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 
 if TYPE_CHECKING:

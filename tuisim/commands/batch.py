@@ -8,7 +8,7 @@ import shutil
 import time
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -47,6 +47,7 @@ from tuisim.commands.listings import names_of
 from tuisim.config.command_line import Arguments, command
 from tuisim.config.options import APP, PANEL
 from tuisim.config.shared_options import shared_options
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, counted
 from tuisim.logs.export import export_frame
 from tuisim.logs.signals import QUANTILES

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from tuisim.batch.batch_file import BatchFile, load_batch, means_batch
@@ -25,6 +25,7 @@ from tuisim.config.files import read_file
 from tuisim.config.folders import user_path
 from tuisim.config.worlds import WorldFile, means_world
 from tuisim.core.spec import RunSpec
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.logs.export import LISTED, check_target

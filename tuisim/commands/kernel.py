@@ -8,7 +8,7 @@ import re
 import shutil
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from glob import escape, glob
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +17,7 @@ from tuisim.atomic import replacing
 from tuisim.commands.echo import echo, echo_json, echo_lines, table
 from tuisim.config.command_line import AS_JSON, Group, command, option
 from tuisim.config.folders import user_path
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 
 if TYPE_CHECKING:

@@ -6,13 +6,13 @@ To add a subcommand: write its function in `commands/logs/` and add a line to `S
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from importlib import import_module
 from typing import cast
 
 from tuisim.commands.echo import Progress
 from tuisim.commands.listings import COLUMN
 from tuisim.config.command_line import Arguments, Command, Group, GroupedOption, WordType, argument, choice, option
+from tuisim.data_class import dataclass
 from tuisim.logs.export import LISTED
 from tuisim.logs.units import SECONDS
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from tuisim.commands import exit_status
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines, table
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, counted
 from tuisim.notebook.cells import NotebookProgram, chosen_programs, is_notebook, notebooks_in
 from tuisim.runs.run_folder import StoredRun

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from itertools import groupby
 from types import FrameType
 from typing import TextIO
 
 from tuisim.commands.echo import echo_error, progress_hidden, tell
+from tuisim.data_class import dataclass
 from tuisim.errors import EXIT_BROKEN_PIPE, SIGNALLED
 from tuisim.protocol import Ended, Message
 from tuisim.runs.handle import RunHandle

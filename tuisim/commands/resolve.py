@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -25,6 +25,7 @@ from tuisim.config.robots import RobotChoice, choose_robot
 from tuisim.config.user_config import Section, UserConfig
 from tuisim.config.worlds import WorldFile, load_world, means_world
 from tuisim.core.spec import RunSpec
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.notebook.cells import is_notebook, notebook_programs
 from tuisim.runs.run_folder import StoredRun, field_files

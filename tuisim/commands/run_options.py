@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from tuisim.config.command_line import GroupedOption, WordType, option
 from tuisim.config.options import parse
 from tuisim.core.values import Number
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest
 from tuisim.protocol import BUTTONS, SetButtons, UserAction
 from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S

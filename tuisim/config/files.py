@@ -12,7 +12,7 @@ import re
 import stat
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import MISSING, dataclass, replace
+from dataclasses import MISSING, replace
 from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
@@ -22,6 +22,7 @@ from tuisim.atomic import replacing
 from tuisim.config.folders import user_path
 from tuisim.core.spec_fields import Spec
 from tuisim.core.values import NamedNumber, Value, WrongValue, shown, values_of
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, did_you_mean, nearest
 
 if TYPE_CHECKING:

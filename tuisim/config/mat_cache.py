@@ -16,7 +16,6 @@ import os
 import zlib
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +24,7 @@ from tuisim.config.folders import cache_folder
 from tuisim.config.mat_image import check_fit, decode, fits_as_it_is, read_file
 from tuisim.core.field import Field, disc_mask
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.data_class import dataclass
 from tuisim.errors import BackgroundError
 from tuisim.regular_file import open_regular, read_regular
 

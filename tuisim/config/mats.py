@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
@@ -23,6 +23,7 @@ from tuisim.config.mat_image import read_file as read_image
 from tuisim.config.obstacles import obstacles_from_sides
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import Obstacle
+from tuisim.data_class import dataclass
 from tuisim.errors import BackgroundError
 
 CATALOG = "catalog.toml"

@@ -9,12 +9,13 @@ To add an option that is no value of a run: add a line to `OPTIONS`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, NamedTuple
 
 from tuisim.core.spec import RunSpec
 from tuisim.core.tree import leaves
 from tuisim.core.values import Choice, Flag, NamedNumber, Value, Whole, WrongValue, values_of
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.source import PRELUDE_TEXTS
 from tuisim.terminal.picture_options import AUTO, CELLS, PIXELS

@@ -7,7 +7,7 @@ import os
 import re
 import shlex
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,6 +17,7 @@ from tuisim.config.folders import programs_folder, user_path
 from tuisim.config.program_robot.course import global_names, uses_course_names
 from tuisim.config.program_robot.source import library_of, read_modules
 from tuisim.config.shared_options import parse_words
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, did_you_mean, nearest, see_page
 from tuisim.regular_file import read_regular
 from tuisim.source import LIBRARIES, PRELUDE_TEXTS, PRELUDES, Program, decode_source, source_lines

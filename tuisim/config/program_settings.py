@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any
 
 from tuisim.config.options import Settings, settings_of
@@ -20,6 +20,7 @@ from tuisim.config.program_robot.source import Module, data_files, library_of, r
 from tuisim.config.robots import RobotChoice
 from tuisim.core.profile import PROFILES, PYBRICKS_4, Library, MotorLaw, ProfileSpec
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.data_class import dataclass
 from tuisim.errors import ProfileError
 from tuisim.source import Program
 

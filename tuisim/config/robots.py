@@ -6,7 +6,7 @@ To add a robot: add an entry to `ROBOTS`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import takewhile
 from pathlib import Path
 from typing import Any
@@ -31,6 +31,7 @@ from tuisim.core.spec import (
     UltrasonicSpec,
 )
 from tuisim.core.values import Part, Value, shown, values_of
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, RobotError
 
 

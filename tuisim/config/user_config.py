@@ -7,7 +7,7 @@ end of `_EVERY`. To add a setting: do the one or the other.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import StrEnum
 from functools import lru_cache
 from pathlib import Path
@@ -17,6 +17,7 @@ from tuisim.config.files import Location, Scalar, means_file, parse_toml, read_v
 from tuisim.config.folders import config_folder, user_path
 from tuisim.config.options import OF_THE_APP, OPTIONS, Name, Settings
 from tuisim.core.values import Value, shown
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest, see_page
 from tuisim.regular_file import read_regular
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias, TypeVar
@@ -25,6 +24,7 @@ from tuisim.core.geometry import Pose
 from tuisim.core.profile import ProfileSpec
 from tuisim.core.spec import START_VALUES, BeaconSpec, RemotePress, RunSpec
 from tuisim.core.values import shown, values_of
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, ObstacleError, ProfileError, RobotError
 
 WORLD_SUFFIX = ".toml"

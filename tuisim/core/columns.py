@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
     from tuisim.core.field import Field

@@ -9,11 +9,12 @@ import math
 import operator
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from typing import Any
 
 from tuisim.core.sensors.color import COLOR_NAMES
+from tuisim.data_class import dataclass
 
 
 class Operator(StrEnum):

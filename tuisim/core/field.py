@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
+
+from tuisim.data_class import dataclass
 
 OUTSIDE_DISC_RGB = (245, 226, 225)
 """Colour of a pixel array in the corners of the box, outside the disc."""

@@ -7,8 +7,9 @@ second.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
+
+from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
     from tuisim.core.drive import EvenGlide, Glide

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from tuisim.core.spec import RobotSpec, TouchSpec, UltrasonicSpec
+from tuisim.data_class import dataclass
 
 SENSOR_HOUSING_MM = 15.0
 """A sensor's housing extends this far from its centre, to every side."""

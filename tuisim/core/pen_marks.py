@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from itertools import islice
 
 from tuisim.core.css_colors import css_rgb
@@ -11,6 +10,7 @@ from tuisim.core.field import Field, disc_weights, in_disc
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.spec import FIELD_HEIGHT_MM, RunSpec
 from tuisim.core.tick_record import FLAG_PEN_DOWN
+from tuisim.data_class import dataclass
 
 _BLOCK_PX = 32
 """Side of the square blocks for which it is tracked whether they contain any mark."""

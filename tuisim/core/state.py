@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
+from tuisim.data_class import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 
+from tuisim.data_class import dataclass
 from tuisim.goals.evidence import START, Evidence, EvidenceSpan
 from tuisim.goals.found import Occurrence
 from tuisim.goals.provenance import provenance_of

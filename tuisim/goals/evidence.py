@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
@@ -12,6 +11,7 @@ from tuisim.config.mat_cache import open_field
 from tuisim.core.conditions import ValueCondition, ValueSource
 from tuisim.core.field import Field
 from tuisim.core.profile import NS_PER_S
+from tuisim.data_class import dataclass
 from tuisim.protocol import End, Ended, Unended
 from tuisim.runs.frames import column_values, held, tick_times_s
 from tuisim.runs.records import SAMPLE_STREAMS, OutputRow, Stream

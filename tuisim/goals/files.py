@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ from tuisim.config.files import Location
 from tuisim.config.folders import programs_folder, user_path
 from tuisim.config.worlds import WorldFile, means_world, world_from_table
 from tuisim.core.values import shown
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest, see_page
 from tuisim.goals.key_lines import line_of_key
 from tuisim.goals.picture import PictureTable, draw_from_table

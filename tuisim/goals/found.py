@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from tuisim.data_class import dataclass
 from tuisim.goals.evidence import EvidencePoint
 
 

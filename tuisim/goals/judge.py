@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, assert_never
 
 from tuisim.core.field import Field
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.goals import calls, output, pen_trace, places, readings
 from tuisim.goals.evidence import START, Evidence, EvidencePoint, EvidenceSpan, JudgedRun

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 from enum import StrEnum
 
+from tuisim.data_class import dataclass
 from tuisim.goals.spec import Goal
 
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -18,6 +17,7 @@ from msgspec import Meta
 from tuisim.config import mat_image
 from tuisim.config.folders import user_path
 from tuisim.core.spec import BACKGROUND_FITS, FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.goals.spec import MAX_PLACES, DrawCondition, Share, X, Y
 

@@ -7,7 +7,6 @@ To add a kind of condition: its class and a line in `CONDITIONS` here, and its f
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from keyword import iskeyword
 from typing import Annotated, ClassVar
@@ -16,6 +15,7 @@ from msgspec import Meta
 
 from tuisim.core.conditions import ValueCondition, ValueSource, comparison_form, run_condition_in
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, require_regex
 
 MAX_GOALS = 200

@@ -9,11 +9,11 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
 from pathlib import Path
 
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest
 
 _PAGES = Path(__file__).resolve().parent / "pages"

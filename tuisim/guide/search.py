@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cache
 from math import log
 
+from tuisim.data_class import dataclass
 from tuisim.guide.catalogue import pages
 from tuisim.guide.tables import markdown_of
 

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from typing import cast
 
+from tuisim.data_class import dataclass
 from tuisim.guide.catalogue import Page
 
 TABLES: Mapping[str, str] = {

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TypeAlias, assert_never
 
 from tuisim.core.conditions import NUMBER
+from tuisim.data_class import dataclass
 from tuisim.lessons.spec import (
     BreakCheck,
     Check,

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,7 @@ from tuisim.config.files import Location
 from tuisim.config.folders import user_path
 from tuisim.config.worlds import WorldFile, world_from_table
 from tuisim.core.values import shown
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.goals.files import goals_from_list, line_in_errors
 from tuisim.lessons import telling

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, field, replace
 from datetime import UTC, datetime
 from enum import StrEnum
 from pathlib import Path
@@ -12,6 +12,7 @@ from typing import Any
 
 from tuisim.atomic import make_private_folder, replacing
 from tuisim.config.folders import home_folder
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, counted
 from tuisim.lessons.spec import Lesson
 from tuisim.regular_file import read_regular

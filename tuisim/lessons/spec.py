@@ -6,7 +6,7 @@ To add a kind of check: its class and a line in `CHECKS` here, and a case in `is
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, TypeAlias
@@ -14,6 +14,7 @@ from typing import Annotated, Any, ClassVar, TypeAlias
 from msgspec import Meta
 
 from tuisim.config.options import OPTION_PANELS
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest, require_regex
 from tuisim.goals.spec import Goal, Range
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from tuisim.batch.pool import run_many
 from tuisim.batch.task import Result, Task
@@ -11,6 +10,7 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import settings_of
 from tuisim.config.program_file import parse_program
 from tuisim.config.program_settings import program_settings
+from tuisim.data_class import dataclass
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.lessons.spec import Lesson, LessonStep, OtherWorld, QuestionCheck, RunCheck, Way
 from tuisim.runs.handle import RunOptions

@@ -34,6 +34,22 @@ def texts_array(texts: Sequence[str]) -> pa.Array:
     return pa.StringArray.from_buffers(len(texts), pa.py_buffer(ends), pa.py_buffer(b"".join(encoded)))
 
 
+def table_of(columns: Mapping[str, Any]) -> pa.Table:
+    """Return columns as a table as if they came from a frame: lists of texts, or arrays of numbers, NaN as nulls."""
+    return pa.table({name: _column(cells) for name, cells in columns.items()})
+
+
+def _column(cells: Any) -> pa.Array:
+    if isinstance(cells, list):
+        return texts_array(cells).cast(pa.large_string())
+    numbers = np.ascontiguousarray(cells)
+    # Not `pa.array`, which imports pandas.
+    known = None
+    if numbers.dtype.kind == "f" and np.isnan(numbers).any():
+        known = pa.py_buffer(np.packbits(~np.isnan(numbers), bitorder="little"))
+    return pa.Array.from_buffers(pa.from_numpy_dtype(numbers.dtype), len(numbers), [known, pa.py_buffer(numbers)])
+
+
 def numbers_of(column: pa.ChunkedArray) -> FloatArray:
     """Return a numeric column as floats, shape (n,), NaN for nulls. Copied only if necessary."""
     if not pa.types.is_floating(column.type) or pa.types.is_float16(column.type):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache
 from math import sqrt
 from types import MappingProxyType
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tuisim.core.css_colors import css_names
+from tuisim.data_class import dataclass
 from tuisim.errors import counted
 from tuisim.logs.columns import numeric_columns
 from tuisim.logs.plateaus import Plateau, Search, plateaus

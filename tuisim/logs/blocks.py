@@ -6,12 +6,13 @@ import bz2
 import codecs
 import zlib
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from gzip import GzipFile
 from typing import Any, Protocol
 
 import pyarrow as pa
 
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError
 from tuisim.logs.warnings import Notes
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError, among
 from tuisim.logs.arrow import PER_S, numbers_of
 from tuisim.logs.dates import in_usual_form, order_is_guessed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -17,6 +17,7 @@ from tuisim.core.geometry import Pose
 from tuisim.core.sensors import owners
 from tuisim.core.spec import RobotSpec, RunSpec
 from tuisim.core.tree import from_plain
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, LogError, among
 from tuisim.logs.columns import is_numeric, numeric_columns
 from tuisim.logs.expressions import FUNCTIONS, Functions, evaluate, names_in

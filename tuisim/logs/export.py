@@ -179,18 +179,19 @@ def typed_frame(table: LogTable) -> pd.DataFrame:
     return frame
 
 
-def log_metadata(table: str, frame: pd.DataFrame, runs: Sequence[StoredRun]) -> dict[str, Any]:
+def log_metadata(table: str, columns: Iterable[str], runs: Sequence[StoredRun]) -> dict[str, Any]:
     """Return the metadata of a log: units, and program, seed, robot, world and profile of each run.
 
     They are equal for identical runs: no id, no time of day, no path.
 
     Args:
         table: `samples` or `telemetry`.
+        columns: The names of its columns.
         runs: Its runs, in the order of the `run` column.
     """
     return {
-        **table_metadata(table, frame),
-        "units": {name: unit for name in frame.columns if (unit := _unit(name))},
+        **table_metadata(table, columns),
+        "units": {name: unit for name in columns if (unit := _unit(name))},
         "runs": [
             {
                 "run": ordinal,
@@ -207,9 +208,9 @@ def log_metadata(table: str, frame: pd.DataFrame, runs: Sequence[StoredRun]) -> 
     }
 
 
-def table_metadata(table: str, frame: pd.DataFrame) -> dict[str, Any]:
-    """Return what the metadata of every table have: their format, what the table is, and its columns."""
-    return {"format": LOG_FORMAT, "table": table, "columns": list(frame.columns)}
+def table_metadata(table: str, columns: Iterable[str]) -> dict[str, Any]:
+    """Return what the metadata of every table have: their format, what the table is, and its columns' names."""
+    return {"format": LOG_FORMAT, "table": table, "columns": list(columns)}
 
 
 def _unit(column: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from math import isfinite
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError, among
 from tuisim.logs.arrow import numbers_of, whole_numbers, whole_numbers_of
 from tuisim.logs.columns import ROW, Layout, seconds_of

@@ -9,7 +9,6 @@ import stat
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from time import monotonic
@@ -17,6 +16,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 import pyarrow as pa
 
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError
 from tuisim.logs import arrow
 from tuisim.logs.blocks import (
@@ -38,7 +38,7 @@ from tuisim.logs.text_tables import CsvReader, JsonReader, PrintedReader, export
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
 from tuisim.regular_file import read_regular
-from tuisim.runs.frames import damage_note, samples_frame, telemetry_frame
+from tuisim.runs.frames import damage_note, sample_columns, telemetry_columns
 from tuisim.runs.run_folder import StoredRun
 
 if TYPE_CHECKING:
@@ -324,7 +324,7 @@ def log_of_runs(runs: Sequence[StoredRun]) -> Log:
     Raises:
         LogError: a recording is damaged.
     """
-    return _log_of_frame("samples", runs, samples_frame(runs))
+    return _log_of_columns("samples", runs, sample_columns(runs))
 
 
 def telemetry_log(run: StoredRun) -> Log:
@@ -333,13 +333,13 @@ def telemetry_log(run: StoredRun) -> Log:
     Raises:
         LogError: the recording is damaged, or the mat no longer exists.
     """
-    return _log_of_frame("telemetry", [run], telemetry_frame(run))
+    return _log_of_columns("telemetry", [run], telemetry_columns(run))
 
 
-def _log_of_frame(kind: str, runs: Sequence[StoredRun], frame: pd.DataFrame) -> Log:
-    table = pa.Table.from_pandas(frame, preserve_index=False).replace_schema_metadata()
+def _log_of_columns(kind: str, runs: Sequence[StoredRun], columns: Mapping[str, Any]) -> Log:
+    table = arrow.table_of(columns)
     title = ", ".join(f"run {run.number or run.id}: {run.program.name}" for run in runs)
     found = [note for run in runs for note in run.notes]
     if kind == "telemetry":
         found += filter(None, map(damage_note, runs))
-    return Log(title, table, guess_columns(table), tuple(found), 0, log_metadata(kind, frame, runs))
+    return Log(title, table, guess_columns(table), tuple(found), 0, log_metadata(kind, columns, runs))

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
 
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError
 from tuisim.runs.arrays import FloatArray, IntArray
 

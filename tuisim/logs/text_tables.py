@@ -8,7 +8,6 @@ import json
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import islice, pairwise, takewhile
 from typing import Any, TypeGuard
 
@@ -17,6 +16,7 @@ import pyarrow.compute as pc
 import pyarrow.csv as pa_csv
 
 from tuisim.core.conditions import NUMBER
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError
 from tuisim.logs.arrow import texts_array, unique_names
 from tuisim.logs.blocks import Block

@@ -9,10 +9,10 @@ import os
 import re
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from tuisim.batch.task import Result
+from tuisim.data_class import dataclass
 from tuisim.errors import printable, shortened
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.goals.spec import AllOf

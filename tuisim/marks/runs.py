@@ -5,13 +5,14 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Generator, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from tuisim.batch.pool import run_many
 from tuisim.batch.task import Keep, Task
 from tuisim.core.spec import RunSpec
 from tuisim.core.tree import to_plain
+from tuisim.data_class import dataclass
 from tuisim.goals.spec import Goal
 from tuisim.marks.journal import Journal
 from tuisim.marks.outcome import Outcome, outcome_of

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tuisim.data_class import dataclass
 from tuisim.errors import counted, printable
 from tuisim.goals.spec import Goal
 from tuisim.logs.export import export_frame

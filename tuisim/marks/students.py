@@ -6,10 +6,11 @@ import os
 import shutil
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from tuisim.config.program_file import FILE_FIELDS, ProgramSource, names_file, read_program
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, listed, printable, see_page
 from tuisim.runs.child.isolation import MOST_BYTES, MOST_FILES
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 
 from tuisim.core.profile import NS_PER_S
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, LogError
 from tuisim.protocol import Unended
 from tuisim.runs.run_folder import StoredRun

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tuisim.charts.files import check_format, png_of, svg_of, write_whole
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.movies import image_files
 from tuisim.movies.clip import ClipPanel, Recorded, Shot, shot_count, shots_of

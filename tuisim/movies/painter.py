@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,6 +23,7 @@ from tuisim.charts.layout import (
     shortened,
 )
 from tuisim.charts.sample_chart import sample_chart
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, printable
 from tuisim.movies.clip import ClipMoment, ClipPanel, Recorded
 from tuisim.movies.pictures import MovingWorld, SensorArrays

@@ -9,7 +9,6 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from contextlib import closing
-from dataclasses import dataclass
 from functools import partial
 from itertools import groupby, islice
 from types import FrameType
@@ -17,6 +16,7 @@ from typing import Any, TypeVar
 
 from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.spec import RunSpec
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, counted
 from tuisim.notebook.display import Scene, Stage, start_record
 from tuisim.notebook.image_log import IMAGE_DATA, SENT_DATA, ArrayReader, ImageLog, asked_side

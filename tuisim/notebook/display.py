@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any
 
 from IPython.core.getipython import get_ipython
@@ -21,6 +21,7 @@ from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.sensors import readings
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
+from tuisim.data_class import dataclass
 from tuisim.notebook.image_log import arrays_at
 from tuisim.runs.samples import Sample
 from tuisim.runs.views import TickRecord, instant_of

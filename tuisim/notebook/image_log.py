@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from tuisim.data_class import dataclass
 from tuisim.runs.records import Stream
 
 if TYPE_CHECKING:

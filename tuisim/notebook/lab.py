@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.notebook import eds, old_formats
 from tuisim.notebook.image_log import ImageLog

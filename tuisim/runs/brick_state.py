@@ -11,9 +11,10 @@ import base64
 import json
 import zlib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import assert_never
 
+from tuisim.data_class import dataclass
 from tuisim.runs.records import OutputRow, Stream
 
 DISPLAY_WIDTH, DISPLAY_HEIGHT = 178, 128

@@ -8,16 +8,16 @@ from __future__ import annotations
 
 import fcntl
 import os
-import secrets
 import shutil
 import sqlite3
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
 
 from tuisim.atomic import make_private_folder, private
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError, shortened
 from tuisim.protocol import RUN_STATES, RunState
 
@@ -179,7 +179,7 @@ class Catalogue:
             # Another process may have done it in the meantime.
             if _is_sound(self._path):
                 return
-            fresh = self._path.with_name(f".{CATALOGUE_FILE}.{secrets.token_hex(4)}.tmp")
+            fresh = self._path.with_name(f".{CATALOGUE_FILE}.{os.urandom(4).hex()}.tmp")
             try:
                 # SQLite creates the files beside it with the same permissions.
                 os.close(private(str(fresh), os.O_CREAT | os.O_EXCL | os.O_RDWR))

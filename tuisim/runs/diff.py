@@ -5,11 +5,12 @@ from __future__ import annotations
 import difflib
 import shlex
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from itertools import takewhile, zip_longest
 from typing import TYPE_CHECKING, Any, assert_never
 
 from tuisim.core.tree import to_plain
+from tuisim.data_class import dataclass
 from tuisim.runs.records import TEXT_STREAMS, OutputRow, Stream, line_of
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import samples_of

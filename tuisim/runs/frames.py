@@ -1,4 +1,4 @@
-"""Recordings as pandas frames: printed samples, and the telemetry of every tick with the readings of every sensor.
+"""Recordings as columns and pandas frames: printed samples, and telemetry of every tick with readings of every sensor.
 
 The readings are computed from the telemetry. They equal those of `core.sensors` bit by bit: what `sensor_arrays` can
 is measured at all ticks at once, everything else tick by tick with the same functions.
@@ -45,6 +45,18 @@ _MOST = 1e15
 
 
 def samples_frame(runs: Iterable[StoredRun]) -> pd.DataFrame:
+    """Return the samples of one or more runs as a frame, see `sample_columns`.
+
+    Raises:
+        LogError: a recording is damaged.
+    """
+    import pandas as pd
+
+    columns = sample_columns(runs)
+    return pd.DataFrame({**columns, "variable": pd.Series(columns["variable"], dtype="str")})
+
+
+def sample_columns(runs: Iterable[StoredRun]) -> dict[str, Any]:
     """Return the samples of one or more runs, in the order of the runs and of printing.
 
     Columns, as SAMPLE_COLUMNS: `index` timedelta64[ns] since the first sample of its run was
@@ -56,17 +68,16 @@ def samples_frame(runs: Iterable[StoredRun]) -> pd.DataFrame:
         LogError: a recording is damaged.
     """
     import numpy as np
-    import pandas as pd
 
     parts = [_samples_of_run(run, ordinal) for ordinal, run in enumerate(runs, 1)]
     joined: dict[str, Any] = {}
     for name in SAMPLE_COLUMNS:
         if name == "variable":
-            joined[name] = pd.Series([text for part in parts for text in part[name]], dtype="str")
+            joined[name] = [text for part in parts for text in part[name]]
         else:
             empty = {"index": np.empty(0, "m8[ns]"), "run": np.empty(0, np.int64), "line": np.empty(0, np.int64)}
             joined[name] = np.concatenate([empty.get(name, np.empty(0)), *(part[name] for part in parts)])
-    return pd.DataFrame(joined)
+    return joined
 
 
 def _samples_of_run(run: StoredRun, ordinal: int) -> dict[str, Any]:
@@ -92,6 +103,17 @@ def _samples_of_run(run: StoredRun, ordinal: int) -> dict[str, Any]:
 
 
 def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
+    """Return the telemetry of a run as a frame, see `telemetry_columns`.
+
+    Raises:
+        LogError: a recording is damaged, or the mat no longer exists.
+    """
+    import pandas as pd
+
+    return pd.DataFrame(telemetry_columns(run, field))
+
+
+def telemetry_columns(run: StoredRun, field: Field | None = None) -> dict[str, Array]:
     """Return one row per tick, including tick 0 (the start); damaged records are omitted, see `damage_note`.
 
     Columns: `time` in s, simulated; MOTION_COLUMNS; those of every mounted sensor, such as
@@ -104,13 +126,11 @@ def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
     Raises:
         LogError: a recording is damaged, or the mat no longer exists.
     """
-    import pandas as pd
-
     records = _sound(run.telemetry.array())
     mat = open_mat(run) if field is None else field
     exported = measured_names(columns_of(run.spec.robot))
     values = column_values(exported, records, run.spec, run.actions, mat)
-    return pd.DataFrame({"time": tick_times_s(records, run.spec), **values, "line": records["line"].astype("i8")})
+    return {"time": tick_times_s(records, run.spec), **values, "line": records["line"].astype("i8")}
 
 
 def column_values(

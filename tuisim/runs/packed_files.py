@@ -8,7 +8,6 @@ length, its last record, and a checksum of its bytes.
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass
 from pathlib import Path
 from struct import Struct
 from struct import error as StructError
@@ -16,6 +15,7 @@ from typing import BinaryIO
 
 from tuisim.atomic import replacing, sweep
 from tuisim.core.tick_record import TICK_RECORD
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError
 from tuisim.regular_file import open_regular
 from tuisim.runs.records import (

@@ -16,13 +16,13 @@ import os
 import resource
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 from enum import IntEnum, StrEnum
 from pathlib import Path
 from struct import Struct
 
 from tuisim.atomic import private
 from tuisim.core.tick_record import TICK_RECORD
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError
 
 HEADER_BYTES = 64

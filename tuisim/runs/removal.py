@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import secrets
 import shutil
 from contextlib import suppress
 from pathlib import Path
@@ -44,7 +43,7 @@ def _remove_by_layers(folder: Path) -> None:
             for inner in list(os.scandir(entry.path)):
                 if inner.is_dir(follow_symlinks=False):
                     os.chmod(inner.path, _OWNER)
-                    os.rename(inner.path, folder / secrets.token_hex())
+                    os.rename(inner.path, folder / os.urandom(32).hex())
                 else:
                     os.unlink(inner.path)
             os.rmdir(entry.path)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
+from tuisim.data_class import dataclass
 from tuisim.errors import TuisimError
 from tuisim.protocol import BEFORE_NEXT_TICK, Ended, Inspected, LineHistory, Paused
 from tuisim.runs.removal import remove_tree

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -17,6 +17,7 @@ from tuisim.core.noise import LIGHT_LAW
 from tuisim.core.profile import NS_PER_S, MotorLaw, due_ns, law_of_earlier
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tree import from_plain, to_plain
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, LogError, TuisimError, shortened
 from tuisim.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
 from tuisim.regular_file import read_regular

@@ -6,9 +6,10 @@ Pure Python: the child imports it.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import Any
 
+from tuisim.data_class import dataclass
 from tuisim.protocol import UserAction
 
 DEFAULT_TIME_LIMIT_S = 600.0

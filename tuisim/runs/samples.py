@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tuisim.core.conditions import NUMBER, ValueCondition, ValueSource
+from tuisim.data_class import dataclass
 from tuisim.runs.records import SAMPLE_STREAMS, OutputRow, Stream
 
 if TYPE_CHECKING:

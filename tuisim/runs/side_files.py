@@ -12,12 +12,13 @@ import stat
 from binascii import crc32
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from tuisim.atomic import private
 from tuisim.core.spec import NoiseSpec
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError, TuisimError
 from tuisim.protocol import SetNoise, UserAction
 from tuisim.regular_file import read_regular

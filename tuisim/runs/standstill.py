@@ -6,7 +6,7 @@ It is found in the recording alone: a motor runs, no wheel turns, and the robot 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,7 @@ from tuisim.core.motors import STANDSTILL_DEG
 from tuisim.core.profile import NS_PER_S, due_ns
 from tuisim.core.spec import RunSpec
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
+from tuisim.data_class import dataclass
 from tuisim.errors import counted
 from tuisim.runs.views import TelemetryView
 

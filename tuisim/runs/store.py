@@ -9,14 +9,13 @@ from __future__ import annotations
 import fcntl
 import os
 import reprlib
-import secrets
 import shutil
 import subprocess
 import sys
 import threading
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, field, replace
 from datetime import UTC, datetime
 from operator import index
 from pathlib import Path
@@ -26,6 +25,7 @@ from tuisim.atomic import make_private_folder, private
 from tuisim.config.folders import home_folder
 from tuisim.core.profile import NS_PER_S, due_ns
 from tuisim.core.spec import RunSpec
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError
 from tuisim.protocol import RUN_STATES, End, Ended, Unended
 from tuisim.regular_file import of_the_machine, open_regular
@@ -61,8 +61,7 @@ _COUNT_A_LISTING_BYTES = 8 << 20
 """Bytes of output in which samples are counted on each listing; the rest waits for the next listing."""
 
 COMPACT_TICKS = 6000
-"""A run of at least this many ticks is packed in a separate process as soon as it is over; shorter runs gain
-little."""
+"""A run of at least this many ticks is packed in a separate process as soon as it is over; others gain little."""
 
 PACKER_LOCK_FILE = "packer.lock"
 PACKERS: list[threading.Thread] = []
@@ -331,7 +330,7 @@ class RunStore:
             The id of the run, its folder, and the descriptor of the lock.
         """
         while True:
-            run_id = f"{now:%Y%m%dT%H%M%S}-{secrets.token_hex(3)}"
+            run_id = f"{now:%Y%m%dT%H%M%S}-{os.urandom(3).hex()}"
             folder = self.folder(run_id)
             try:
                 make_private_folder(self._runs)
@@ -530,7 +529,7 @@ def _copy_files(folder: Path, place: Path) -> None:
 def _delete(folder: Path) -> None:
     """Delete a run folder; of a symbolic link only the link."""
     # Renamed first: a partly deleted run must not look like a run.
-    removed = folder.with_name(f".{folder.name}.{secrets.token_hex(4)}{REMOVED}")
+    removed = folder.with_name(f".{folder.name}.{os.urandom(4).hex()}{REMOVED}")
     os.replace(folder, removed)
     if removed.is_symlink():
         removed.unlink()

@@ -13,7 +13,6 @@ from __future__ import annotations
 import os
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import islice
 from math import hypot
 from mmap import MAP_ANONYMOUS, MAP_PRIVATE, mmap
@@ -27,6 +26,7 @@ from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import END_FLAGS, TICK_FIELDS, TICK_RECORD
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError, counted
 from tuisim.regular_file import of_the_machine, open_regular
 from tuisim.runs.brick_state import DRAWN_STREAMS, is_sound

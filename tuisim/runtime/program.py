@@ -12,10 +12,10 @@ import sys
 import types
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import NoReturn
 
 from tuisim.core.profile import NS_PER_S
+from tuisim.data_class import dataclass
 from tuisim.errors import LogError, NotSimulated
 from tuisim.protocol import NO_ANSWER, Answer, End, InputWanted
 from tuisim.runs.records import Stream

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tree import from_plain, put_all
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.runs.run_options import RunOptions
 from tuisim.runtime import wallclock

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import types
 from collections.abc import Callable
-from dataclasses import dataclass
 from sys import _getframe
 from typing import TYPE_CHECKING, Any, Protocol
 
 from tuisim.core.field import Field
 from tuisim.core.profile import MS, NS_PER_S
 from tuisim.core.simulation import Simulation
+from tuisim.data_class import dataclass
 from tuisim.protocol import CLEANUP_S, End, Message, MotorRegisters, Reply, ReplyWanted, Spoke
 from tuisim.runs.records import Stream
 from tuisim.runtime import wallclock

@@ -7,9 +7,9 @@ import linecache
 import os
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
+from tuisim.data_class import dataclass
 from tuisim.errors import counted
 from tuisim.runtime import wallclock
 from tuisim.runtime.modules import OWN_FILES, is_own

@@ -21,6 +21,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from tuisim import data_class
 from tuisim.core import noise
 from tuisim.runtime.child import Child
 from tuisim.runtime.run_config import config_of
@@ -53,6 +54,7 @@ def serve(socket_fd: int) -> Child | None:
     for name in _NEEDED_LATER:
         import_module(name)
     noise.prepare()
+    data_class.prepare()
     command = sys.orig_argv[: sys.orig_argv.index("--warm")]
     prepared = None
     while True:

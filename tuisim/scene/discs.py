@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ import numpy.typing as npt
 from tuisim.core.css_colors import Rgb
 from tuisim.core.field import disc_mask
 from tuisim.core.spec import ColorSensorSpec
+from tuisim.data_class import dataclass
 from tuisim.terminal.pixels import Pixels
 
 if TYPE_CHECKING:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from tuisim.core.css_colors import Rgb
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import RobotOutline, outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, BeaconSpec, Obstacle, RobotSpec
+from tuisim.data_class import dataclass
 from tuisim.scene.mat import MatPictures
 from tuisim.scene.mono_robot import draw_mono_robot
 from tuisim.scene.pen import PenTrace, trace_pixels, visible_on

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import groupby
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy.typing as npt
 from tuisim.core.css_colors import Rgb, css_rgb
 from tuisim.core.spec import PenSpec, RobotSpec, RunSpec
 from tuisim.core.tick_record import FLAG_PEN_DOWN
+from tuisim.data_class import dataclass
 from tuisim.runs.arrays import FloatArray, world_points_mm
 from tuisim.scene.view import Viewport
 from tuisim.terminal.pixels import Pixels

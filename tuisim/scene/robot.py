@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +10,7 @@ import numpy.typing as npt
 from tuisim.core.css_colors import Rgb
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import RobotOutline
+from tuisim.data_class import dataclass
 from tuisim.runs.arrays import FloatArray
 from tuisim.scene.view import Viewport
 from tuisim.terminal.pixels import Pixels

@@ -7,7 +7,6 @@ would disconnect or exchange the device is refused with a message that names it.
 from __future__ import annotations
 
 import errno
-from dataclasses import dataclass
 from functools import partial
 
 from tuisim.core.brick_motor import BrickMotor
@@ -21,6 +20,7 @@ from tuisim.core.spec import (
     OUTPUT_PORTS,
     RobotSpec,
 )
+from tuisim.data_class import dataclass
 from tuisim.errors import NotSimulated
 from tuisim.shim.device_files import DeviceFiles, SimDevice, refuse
 from tuisim.shim.leds import LED_CLASS, Lights, led_name

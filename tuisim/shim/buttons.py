@@ -9,10 +9,10 @@ import stat
 import struct
 import types
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 from tuisim.core.profile import MS, NS_PER_S
+from tuisim.data_class import dataclass
 from tuisim.protocol import BUTTONS
 from tuisim.shim.files.entries import DeviceFile, OpenFile, refuse_ioctl
 from tuisim.shim.session import DeviceSession

@@ -12,9 +12,10 @@ import sys
 import types
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache, wraps
 from typing import TYPE_CHECKING, Any
+
+from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
     from PIL.Image import Image as Picture

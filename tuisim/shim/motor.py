@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from functools import partial
 
 from tuisim.core.brick_motor import BrickMotor
@@ -12,6 +11,7 @@ from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.motors import MEDIUM_MAX_SPEED_DPS, POSITION, STOPPED, TIMED
 from tuisim.core.profile import MS
 from tuisim.core.servo.motor import ServoMotor
+from tuisim.data_class import dataclass
 from tuisim.errors import NotSimulated
 from tuisim.protocol import MotorRegisters
 from tuisim.shim.device_files import NumberWriter, Reader, SimDevice, Writer, plain, refuse

@@ -5,12 +5,12 @@ from __future__ import annotations
 import errno
 import struct
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, NoReturn
 
 from tuisim.core.sensors import SENSORS, color, gyro, infrared, touch, ultrasonic
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, InfraredSpec, TouchSpec, UltrasonicSpec
+from tuisim.data_class import dataclass
 from tuisim.shim.device_files import SimDevice, Writer, refuse
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.unsupported.devices import foreign_mode

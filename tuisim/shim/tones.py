@@ -7,9 +7,9 @@ import math
 import os
 import shlex
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from tuisim.core.profile import MS
+from tuisim.data_class import dataclass
 from tuisim.errors import counted
 from tuisim.shim.device_files import plain
 

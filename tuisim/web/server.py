@@ -8,7 +8,6 @@ import logging
 import signal
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
 
@@ -18,6 +17,7 @@ from aiohttp.http import HttpProcessingError
 from aiohttp.typedefs import Handler, Middleware
 from textual_serve.download_manager import DownloadManager
 
+from tuisim.data_class import dataclass
 from tuisim.errors import SIGNALLED, ConfigError, counted
 from tuisim.web.gate import Gate
 from tuisim.web.session import END_WITHIN_S, WebSession

@@ -12,7 +12,7 @@ from tuisim.analysis.source import LogRequest
 from tuisim.app.action import key_bindings
 from tuisim.app.analyser.actions.keys import ACTIONS
 from tuisim.app.analyser.screen import LogScreen
-from tuisim.app.background import leave
+from tuisim.app.background import enter, leave
 from tuisim.app.terminal_app import TerminalApp, picture_mode_at_start
 from tuisim.errors import TuisimError
 from tuisim.terminal.picture_mode import PictureMode
@@ -75,8 +75,7 @@ def run_analyser(request: LogRequest) -> int:
     Raises:
         LogError: there is no such log, or it cannot be read.
     """
-    # Modules imported by now stay until the end: exclude them from garbage collection.
-    gc.freeze()
+    enter()
     app = AnalyserApp(request, picture_mode_at_start(None, AUTO))
     app.run()
     if app.failure is not None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -17,6 +16,7 @@ from tuisim.app.plot_view import PlotView
 from tuisim.charts.canvas import BRAILLE, xy_lines
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.charts.traces import Traces
+from tuisim.data_class import dataclass
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.picture import MOST_POINTS
 from tuisim.terminal.picture_mode import shows_ascii

@@ -6,7 +6,7 @@ To add a pane: write its two functions and add a line to `PANES`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from functools import partial
 from math import isfinite, nan
 from textwrap import wrap
@@ -21,6 +21,7 @@ from tuisim.analysis.model import Model
 from tuisim.analysis.table import AT_ONCE
 from tuisim.app import background
 from tuisim.app.snapshot import end_label
+from tuisim.data_class import dataclass
 from tuisim.errors import TuisimError, counted
 from tuisim.logs.bands import Band
 from tuisim.logs.plateaus import Search, plateaus, plateaus_in_subprocess

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,6 +24,7 @@ from tuisim.config.profiles import load_profile
 from tuisim.config.robots import ROBOTS, load_robot, ports_of
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.data_class import dataclass
 from tuisim.errors import TuisimError
 from tuisim.logs.export import is_companion
 from tuisim.scene.mat import shrink

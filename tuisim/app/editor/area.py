@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import ClassVar
 
@@ -24,6 +23,7 @@ from textual.widgets.text_area import Edit, EditResult, Selection
 
 from tuisim.app.editor import text_lines
 from tuisim.app.editor.syntax import KINDS, Colouring
+from tuisim.data_class import dataclass
 from tuisim.terminal.textual_internals import columns_to_tab_stop, line_at_row
 
 # A `TextArea` treats these characters as line ends, Python does not: they are replaced by substitutes.

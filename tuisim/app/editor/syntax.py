@@ -11,9 +11,9 @@ import keyword
 import re
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from tuisim.config.program_file import parse_program
+from tuisim.data_class import dataclass
 from tuisim.errors import TuisimError
 
 Span = tuple[int, int, str]

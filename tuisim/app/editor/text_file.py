@@ -12,12 +12,13 @@ import stat
 import time
 import tokenize
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 
 from tuisim.atomic import make_private_folder, replacing
 from tuisim.config.folders import home_folder, programs_folder
 from tuisim.config.program_file import MAX_PROGRAM_BYTES
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.regular_file import read_regular
 from tuisim.source import decode_source

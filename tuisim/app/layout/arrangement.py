@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from math import ceil
 from typing import Any
@@ -27,6 +27,7 @@ from tuisim.app.layout.tree import (
 from tuisim.app.panels import PANELS, PanelPlace, TerminalSize
 from tuisim.config.preferences import keep, preference
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.data_class import dataclass
 
 MIN_STRIP_COLS = 36
 """A panel of the bottom strip is not made narrower than this to fit another one next to it."""

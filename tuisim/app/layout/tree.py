@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import StrEnum
 from itertools import accumulate, pairwise
 
 from tuisim.app.panels import PANELS
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.data_class import dataclass
 
 EDGES = 2
 """Rows or columns that the two edges of a panel take."""

@@ -9,10 +9,11 @@ file that shows it needs a line in `OPTIONS`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from importlib import import_module
 from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
+
+from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
     from tuisim.app.setup.next_run import NextRun

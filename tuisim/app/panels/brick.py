@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 from typing import ClassVar
 
@@ -13,6 +12,7 @@ from textual.timer import Timer
 
 from tuisim.app.render.brick import BrickPicture, draw_brick
 from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot
+from tuisim.data_class import dataclass
 from tuisim.protocol import BUTTONS
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.pacer import Throttle

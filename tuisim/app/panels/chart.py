@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import ClassVar
 
@@ -16,6 +16,7 @@ from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.charts import axes
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.charts.traces import Trace, Traces
+from tuisim.data_class import dataclass
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.pacer import Throttle
 from tuisim.terminal.picture_mode import shows_ascii

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from bisect import bisect_left, bisect_right
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import ClassVar, assert_never
 
@@ -21,6 +20,7 @@ from tuisim.app.editor.area import FIND, LINE, CodeArea, EditorCommand, FindBar
 from tuisim.app.editor.text_lines import LineMap, places
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import RunPhase, Snapshot
+from tuisim.data_class import dataclass
 from tuisim.source import source_lines
 
 LIT_GAP_S = 0.1

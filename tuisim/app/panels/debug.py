@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import linecache
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from textual.binding import Binding, BindingType
@@ -12,6 +12,7 @@ from textual.message import Message
 from tuisim.app.panels import PANELS
 from tuisim.app.render.debug import DebugView, debug_lines
 from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
+from tuisim.data_class import dataclass
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.text_runs import Line
 

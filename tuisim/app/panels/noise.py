@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from textual import on
@@ -14,6 +13,7 @@ from textual.widgets import Input, Label, Static
 from tuisim.app.form import EntryPanel, NumberInput, Slider
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.values import Whole, WrongValue, values_of
+from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
@@ -17,6 +17,7 @@ from textual.widgets.option_list import Option
 
 from tuisim.app.form import EntryPanel, reason, typed_number
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, ObstacleError
 
 if TYPE_CHECKING:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import ClassVar
 
 from rich.cells import cell_len, chop_cells
@@ -21,6 +20,7 @@ from textual.widgets import Input, Static
 
 from tuisim.app.action import with_keys_of
 from tuisim.app.snapshot import RunPhase, Snapshot
+from tuisim.data_class import dataclass
 from tuisim.errors import counted
 from tuisim.runs.records import OutputRow, Stream, line_of
 

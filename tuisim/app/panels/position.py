@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from textual import on
@@ -16,6 +15,7 @@ from tuisim.app.form import FormPanel, NumberInput
 from tuisim.core.geometry import Pose, shown_heading_deg
 from tuisim.core.spec import START_VALUES
 from tuisim.core.values import WrongValue
+from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from textual import on
@@ -18,6 +17,7 @@ from tuisim.app.form import Choice, Row
 from tuisim.app.setup.fields import FieldGroup, FormField, find, sections, step
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import Snapshot
+from tuisim.data_class import dataclass
 
 _LINKS = (
     (("robot", "Robots"), ("save-robot", "Save")),

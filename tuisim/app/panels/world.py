@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -22,6 +22,7 @@ from tuisim.charts.axes import time_limits
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec
+from tuisim.data_class import dataclass
 from tuisim.runs.records import Mark
 from tuisim.scene.mono_robot import body, pointer
 from tuisim.scene.painter import ScenePainter, SceneState

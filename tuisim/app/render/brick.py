@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -13,6 +12,7 @@ from rich.style import Style
 
 from tuisim import palette
 from tuisim.core.css_colors import Rgb
+from tuisim.data_class import dataclass
 from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, ROW_BYTES, BrickState, TextScreen
 from tuisim.scene.discs import shrunk
 from tuisim.terminal.text_runs import Run

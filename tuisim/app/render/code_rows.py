@@ -6,8 +6,9 @@ import io
 import textwrap
 import tokenize
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from tuisim.data_class import dataclass
 from tuisim.source import source_lines
 
 _INDENT = "  "

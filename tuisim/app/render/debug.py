@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import assert_never
 
@@ -13,6 +12,7 @@ from rich.style import Style
 
 from tuisim import palette
 from tuisim.app.snapshot import RunPhase
+from tuisim.data_class import dataclass
 from tuisim.protocol import FrameState, Inspected, Paused, PauseReason, Variable
 from tuisim.terminal.text_runs import Line, cut
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import assert_never
 
 from rich.style import Style
 
 from tuisim import palette
+from tuisim.data_class import dataclass
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.goals.spec import ConditionKind, Goal
 from tuisim.terminal.text_runs import Line, cut

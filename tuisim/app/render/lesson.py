@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
 
 from rich.style import Style
@@ -12,6 +11,7 @@ from rich.style import Style
 from tuisim import palette
 from tuisim.app.panels import PANELS
 from tuisim.app.render.code_rows import code_rows
+from tuisim.data_class import dataclass
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.lessons.markdown import markdown_lines
 from tuisim.lessons.progress import StepState

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -29,6 +29,7 @@ from tuisim.core.spec import (
     UltrasonicSpec,
 )
 from tuisim.core.values import OFF, ON, Number, Numbers, Value, WrongValue, values_of
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, RobotError
 
 SWITCHED = (ON, OFF)

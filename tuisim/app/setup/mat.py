@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,6 +9,7 @@ from tuisim.config import mat_cache, mats
 from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.field import Field
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
+from tuisim.data_class import dataclass
 from tuisim.runs.run_folder import StoredRun, mat_files
 
 MatKey = tuple[str, str, frozenset[int]]

@@ -7,7 +7,7 @@ one mat or preset do not outlast it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 from tuisim.config.build import build_run_spec, settings_from
@@ -20,6 +20,7 @@ from tuisim.config.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
 from tuisim.core import tree
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec
+from tuisim.data_class import dataclass
 from tuisim.errors import BackgroundError
 from tuisim.source import Program
 

@@ -10,7 +10,6 @@ from pathlib import Path
 
 from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.model import Model
-from tuisim.analysis.report import check_report, default_name, write_report
 from tuisim.analysis.source import LogRequest, OpenedLog, opening
 from tuisim.charts.files import CHART_FORMATS, Size, format_of, limits_in_words, parse_size, save_chart
 from tuisim.commands.echo import echo, echo_drawn, echo_error
@@ -116,6 +115,9 @@ def report(arguments: Arguments) -> int:
         LogError: the log cannot be read, or there is no such variable.
         ExportError: the file cannot be written.
     """
+    # Imported on demand: a chart needs no pictures and movies.
+    from tuisim.analysis.report import check_report, default_name, write_report
+
     if not arguments.words:
         raise ConfigError("no log given", "a file, `-`, or a stored run such as `last`", key="report")
     if arguments.out:

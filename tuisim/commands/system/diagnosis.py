@@ -6,9 +6,9 @@ Pure: `doctor` looks at the machine, and these functions judge what it found.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 
+from tuisim.data_class import dataclass
 from tuisim.terminal.picture_options import CellSet
 
 SMALLEST, COMFORTABLE = (60, 18), (80, 24)

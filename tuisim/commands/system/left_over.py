@@ -7,12 +7,12 @@ import stat
 import time
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 from tuisim.atomic import LEFT_OVER_S, PART_SUFFIX
 from tuisim.config.folders import cache_folder
+from tuisim.data_class import dataclass
 from tuisim.runs.catalogue import CATALOGUE_FILE
 from tuisim.runs.removal import remove_tree
 from tuisim.runs.run_folder import RUN_FILE

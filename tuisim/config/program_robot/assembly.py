@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 from tuisim.config.program_robot.kinds import with_others, with_tools
@@ -28,6 +28,7 @@ from tuisim.core.spec import (
     TouchSpec,
     UltrasonicSpec,
 )
+from tuisim.data_class import dataclass
 from tuisim.errors import RobotError
 
 KINDS: Mapping[type, DeviceKind] = {

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from tuisim.config.program_robot.source import Module
+from tuisim.data_class import dataclass
 
 
 @dataclass(frozen=True, slots=True)

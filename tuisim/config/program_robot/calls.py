@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Protocol
 
 from tuisim.config.program_robot.scopes import Scope
 from tuisim.config.program_robot.values import SourceCollection, Value
+from tuisim.data_class import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from tuisim.config.program_robot import library
 from tuisim.config.program_robot.calls import Call, argument_of
@@ -24,6 +24,7 @@ from tuisim.config.program_robot.values import (
     SourceModule,
     Value,
 )
+from tuisim.data_class import dataclass
 from tuisim.source import LIBRARIES
 
 MAX_VALUES = 24

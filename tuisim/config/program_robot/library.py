@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 
 from tuisim.core.profile import Library
 from tuisim.core.spec import INPUT_PORTS, OUTPUT_PORTS
+from tuisim.data_class import dataclass
 
 COURSE_MODULE = "ev3dev2_glue"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from tuisim.config.program_robot import library
 from tuisim.config.program_robot.evaluation import Evaluation
@@ -13,6 +13,7 @@ from tuisim.config.program_robot.mentions import Mentions, Pair, Where
 from tuisim.config.program_robot.scopes import FUNCTIONS, Bound, Scope
 from tuisim.config.program_robot.values import Instance, OwnClass, OwnFunction, Value
 from tuisim.config.program_robot.words import means_forwards
+from tuisim.data_class import dataclass
 
 _USUAL_REACH_DEG = 180.0
 _MARGIN_DEG = 45.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from tuisim.config.program_robot import library
 from tuisim.config.program_robot.calls import Call, argument_node, argument_of
@@ -23,6 +23,7 @@ from tuisim.config.program_robot.values import (
     Value,
 )
 from tuisim.core.profile import Library
+from tuisim.data_class import dataclass
 
 _ROUNDS = 3
 """How often the calls are looked up: each time more is known about what is called."""

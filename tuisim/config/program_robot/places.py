@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 from tuisim.config.program_robot.library import DeviceKind
 from tuisim.config.program_robot.mentions import Mention
 from tuisim.config.program_robot.words import Side, side_of
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, InfraredSpec, SensorSpec, TouchSpec, UltrasonicSpec
+from tuisim.data_class import dataclass
 
 _BUMPER_MM = 60.0
 """How far a bumper is ahead of the axle, before the front of the robot."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from tuisim.config.program_robot.mentions import Mentions, Where
 from tuisim.config.program_robot.scopes import Bound, Parameter, Scope
 from tuisim.config.program_robot.words import means_diameter, means_girth, means_spacing, unit_mm
+from tuisim.data_class import dataclass
 
 _DIAMETERS_MM = (15.0, 120.0)
 _SPACINGS_MM = (50.0, 350.0)

@@ -5,11 +5,12 @@ from __future__ import annotations
 import ast
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from tuisim.config.files import read_bytes
 from tuisim.core.profile import Library
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.source import LIBRARIES, PYBRICKS, Program, decode_source
 

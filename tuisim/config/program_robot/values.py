@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import ast
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TypeAlias
 
 from tuisim.config.program_robot.scopes import Function, Scope
+from tuisim.data_class import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 from tuisim.config.program_robot.library import DeviceKind
 from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.config.program_robot.words import Side, means_tool, side_of
 from tuisim.core.spec import NO_PORT, OUTPUT_PORTS, RobotSpec
+from tuisim.data_class import dataclass
 
 _USUAL = (("outB", "outC"), ("outA", "outD"), ("outA", "outB"), ("outC", "outD"), ("outA", "outC"), ("outB", "outD"))
 """Pairs of ports, those that robots have most often first."""

@@ -9,7 +9,6 @@ test walk these tables.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import Any
 
@@ -27,6 +26,7 @@ from tuisim.core.spec import (
     UltrasonicSpec,
 )
 from tuisim.core.state import Instant
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
 from math import cos, radians, sin
 from typing import TYPE_CHECKING
@@ -13,6 +12,7 @@ from tuisim.core.field import OUTSIDE_DISC_RGB, Field, disc_pixels, disc_weights
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.noise import noisy_channel, noisy_sums, reading_noise, stream
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, RunSpec
+from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
     from tuisim.core.state import Instant

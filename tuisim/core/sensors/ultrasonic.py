@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from tuisim.core.columns import Column
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.noise import stream
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec, UltrasonicSpec, WorldSpec
+from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
     from tuisim.core.field import Field

@@ -7,11 +7,12 @@ Sources: Pybricks 2.0.0, `lib/pbio/src/{servo,control,drivebase}.c` and `extmod/
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import pi
 
 from tuisim.core.profile import MotorLaw
 from tuisim.core.servo.trajectory import divided
+from tuisim.data_class import dataclass
 
 COUNTS_PER_DEG = 2
 """Counts of a motor's encoder per degree."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import resource
-import secrets
 import select
 import signal
 import subprocess
@@ -221,7 +220,7 @@ def mark(pid: int) -> int:
     Returns:
         The mark; 0 if that is not supported.
     """
-    wanted = 1 << 62 | secrets.randbits(56)
+    wanted = 1 << 62 | int.from_bytes(os.urandom(7))
     try:
         resource.prlimit(pid, FILE_LOCKS, (wanted, wanted))
     # Not Linux, exited already, or a limit is set.

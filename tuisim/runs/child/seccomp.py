@@ -10,7 +10,8 @@ import errno
 import os
 import platform
 import struct
-from dataclasses import dataclass
+
+from tuisim.data_class import dataclass
 
 _LOAD, _EQUAL, _AT_LEAST, _BITS, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
 """Instructions of a classic BPF program: load a word; jump if equal, at least, or if bits are set; return."""

@@ -9,10 +9,10 @@ import threading
 import types
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import Any
 
 from tuisim.core.sensors import reader_of
+from tuisim.data_class import dataclass
 from tuisim.protocol import FrameState, Inspect, Inspected, ThreadState, Variable, Watched
 from tuisim.runtime.debugger.fork import apart
 from tuisim.runtime.debugger.tracer import Tracer

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import types
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import assert_never
 
+from tuisim.data_class import dataclass
 from tuisim.protocol import LineStep
 from tuisim.runtime.scheduler import ScheduledThread
 

@@ -7,10 +7,10 @@ import sys
 import types
 from collections.abc import AsyncIterator, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import Any, NoReturn
 
 from tuisim.core.profile import NS_PER_S
+from tuisim.data_class import dataclass
 from tuisim.errors import NotSimulated
 from tuisim.shim.buttons import (
     DEVICE_NAME,

@@ -6,9 +6,9 @@ import errno
 import os
 import select
 import stat
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from tuisim.data_class import dataclass
 from tuisim.errors import NotSimulated
 
 if TYPE_CHECKING:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import errno
 import sys
 from collections.abc import Callable, Generator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, ClassVar, Generic, TypeVar
 
 from tuisim.core.servo.motor import ServoMotor
+from tuisim.data_class import dataclass
 from tuisim.shim.display import Screen
 from tuisim.shim.leds import Lights
 from tuisim.shim.power import Battery

@@ -9,8 +9,9 @@ import os
 import re
 import sys
 from collections.abc import Callable, Generator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from tuisim.data_class import dataclass
 from tuisim.shim.console import Terminal
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.shell.syntax import NOT_THERE, NotUnderstood, ShellLine, read_line

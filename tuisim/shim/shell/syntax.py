@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from dataclasses import dataclass
+
+from tuisim.data_class import dataclass
 
 PLAYER = "aplay"
 """The only command behind a pipe."""

@@ -10,12 +10,13 @@ from __future__ import annotations
 import sys
 import types
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from functools import wraps
 from importlib.machinery import ModuleSpec
 from typing import Any, NoReturn
 
 from tuisim.core.profile import Library
+from tuisim.data_class import dataclass
 from tuisim.errors import NotSimulated
 
 
