@@ -42,3 +42,34 @@ def test_ends_when_nobody_waits_for_it() -> None:
 
 def test_it_imports_the_package_of_this_process() -> None:
     assert plateaus_module.__file__ == str(plateaus_module._PACKAGE_FOLDER / "tuisim" / "logs" / "plateaus.py")
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_steps_between_pieces_are_those_of_least_squares(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    edge, gap = int(rng.integers(1, 13)), int(rng.integers(0, 3))
+    stop = edge + gap + int(rng.integers(1, 13))
+    values = rng.normal(0.0, 1.0, stop) + 50.0
+    values[rng.random(stop) < 0.2] += 1000.0
+    before, after = np.array([[0, edge]]), np.array([[edge + gap, stop]])
+    lines = [plateaus_module._lines(values, pieces, 1.0) for pieces in (before, after)]
+    step, spread = plateaus_module._steps_between(lines[0], lines[1], before[:, 1])
+
+    kept = [~plateaus_module._strays(values[None, start:end], 1.0)[0] for start, end in ((0, edge), (edge + gap, stop))]
+    at = np.concatenate((np.flatnonzero(kept[0]), edge + gap + np.flatnonzero(kept[1])))
+    model = np.stack((np.ones(len(at)), at - edge, at >= edge), axis=1).astype(np.float64)
+    inverse = np.linalg.pinv(model)
+    assert step == pytest.approx([float(inverse[2] @ values[at])])
+    assert spread == pytest.approx([float(np.linalg.norm(inverse[2]))])
+
+
+@pytest.mark.parametrize(("name", "number"), [("_FEW_STARTS", 0), ("_FEW_STARTS", 10**6), ("_AT_ONCE", 1)])
+def test_how_much_is_looked_at_together_changes_nothing(
+    name: str, number: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rng = np.random.default_rng(5)
+    values = np.repeat(rng.uniform(0.0, 100.0, 40), rng.integers(2, 60, 40))
+    values += rng.normal(0.0, 0.5, len(values)) + 40.0 * (rng.random(len(values)) < 0.02)
+    found = plateaus(values)
+    monkeypatch.setattr(plateaus_module, name, number)
+    assert plateaus(values) == found
