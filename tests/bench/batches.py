@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Iterator
@@ -13,7 +11,7 @@ from pathlib import Path
 from statistics import median, quantiles
 
 from tests.bench.figures import Figure
-from tests.bench.processes import app_environment
+from tests.bench.processes import command_used
 from tests.bench.references import Ratio, forks, start_wall_s, starts, usual
 from tests.bench.running import begin, started_by_itself
 from tests.bench.sampling import Effort, measured
@@ -72,19 +70,11 @@ def _command(count: int, jobs: int) -> Batch:
         program, table = Path(folder, "program.py"), Path(folder, "rows.csv")
         program.write_text(f"# %%sim_magic_preloaded -b Grey_bands\n{PROGRAM}")
         words = ["batch", program, "--seeds", f"0..{count - 1}", "--jobs", jobs, "--out", table]
-        script = (
-            "import resource, subprocess, sys\n"
-            "subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL)\n"
-            "used = resource.getrusage(resource.RUSAGE_CHILDREN)\n"
-            "print(used.ru_maxrss, used.ru_utime + used.ru_stime)\n"
-        )
-        command = [sys.executable, "-I", "-c", script, sys.executable, "-m", "tuisim", *map(str, words)]
         begun = time.perf_counter()
-        done = subprocess.run(command, env=app_environment(), capture_output=True, text=True, check=True)
+        used = command_used(*map(str, words))
         elapsed_s = time.perf_counter() - begun
         assert len(table.read_text().splitlines()) == count + 1
-    peak_kb, used_s = map(float, done.stdout.split())
-    return Batch(count / elapsed_s, measured(used_s) / count, peak_kb / 1024)
+    return Batch(count / elapsed_s, measured(used.cpu_s) / count, used.peak_mb)
 
 
 def _until_moved_s(keeps_warm: bool) -> float:

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -74,3 +75,27 @@ def command_cpu_s(*words: str, environment: Mapping[str, str] | None = None) -> 
         check=True,
     )
     return children_cpu_s() - before
+
+
+@dataclass(frozen=True, slots=True)
+class Used:
+    """What a command has cost, with all processes that it has waited for."""
+
+    cpu_s: float
+    peak_mb: float
+    """Of its largest process."""
+
+
+def command_used(*words: str) -> Used:
+    """Run `tuisim` with some words to its end and return what it has cost."""
+    # A process counts the memory of the one that has started it, which is a small one here.
+    script = (
+        "import resource, subprocess, sys\n"
+        "subprocess.run(sys.argv[1:], check=True, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)\n"
+        "used = resource.getrusage(resource.RUSAGE_CHILDREN)\n"
+        "print(used.ru_maxrss, used.ru_utime + used.ru_stime)\n"
+    )
+    command = [sys.executable, "-I", "-c", script, sys.executable, "-m", "tuisim", *words]
+    done = subprocess.run(command, env=app_environment(), capture_output=True, text=True, check=True)
+    peak_kb, used_s = map(float, done.stdout.split())
+    return Used(used_s, peak_kb / 1024)
