@@ -9,6 +9,7 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from tests.bench.back import back
+from tests.bench.bands import bands
 from tests.bench.batches import batches
 from tests.bench.cells import cells
 from tests.bench.crowded import crowded
@@ -53,6 +54,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "recording": recording,
     "variables": variables,
     "logs": logs,
+    "bands": bands,
     "listing": listing,
     "wire": wire,
     "batch": batches,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
@@ -13,7 +11,7 @@ from pathlib import Path
 from statistics import median, quantiles
 
 from tests.bench.figures import Figure
-from tests.bench.processes import app_environment
+from tests.bench.processes import command_used
 from tests.bench.references import Ratio, forks, start_wall_s, starts, usual
 from tests.bench.running import begin, started_by_itself
 from tests.bench.sampling import Effort, measured
@@ -35,21 +33,6 @@ STARTS = 20
 MOST, MOST_NOISY = 1.4, 1.8
 """Of the CPU time of `python -c pass`: what a run costs with all that is started for it."""
 NOISE = ("--set", "noise.light=10", "--set", "noise.motor=20")
-
-COUNTED = """\
-import ctypes, os, resource, subprocess, sys
-# PR_SET_CHILD_SUBREAPER: this process inherits what others leave, and with it the time of all whose end they saw.
-assert not ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)
-subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL)
-while True:
-    try:
-        os.wait()
-    except ChildProcessError:
-        break
-used = resource.getrusage(resource.RUSAGE_CHILDREN)
-print(used.ru_maxrss, used.ru_utime + used.ru_stime)
-"""
-"""Runs a command; prints the memory of its largest process, and the CPU time of all that it has started."""
 
 
 def batches(effort: Effort) -> Iterator[Figure]:
@@ -91,13 +74,11 @@ def _command(count: int, jobs: int, more: Sequence[str] = ()) -> Batch:
         program, table = Path(folder, "program.py"), Path(folder, "rows.csv")
         program.write_text(f"# %%sim_magic_preloaded -b Grey_bands\n{PROGRAM}")
         words = ["batch", program, "--seeds", f"0..{count - 1}", "--jobs", jobs, "--out", table, *more]
-        command = [sys.executable, "-I", "-c", COUNTED, sys.executable, "-m", "tuisim", *map(str, words)]
         begun = time.perf_counter()
-        done = subprocess.run(command, env=app_environment(), capture_output=True, text=True, check=True)
+        used = command_used(*map(str, words))
         elapsed_s = time.perf_counter() - begun
         assert len(table.read_text().splitlines()) == count + 1
-    peak_kb, used_s = map(float, done.stdout.split())
-    return Batch(count / elapsed_s, measured(used_s) / count, peak_kb / 1024)
+    return Batch(count / elapsed_s, measured(used.cpu_s) / count, used.peak_mb)
 
 
 def _until_moved_s(keeps_warm: bool) -> float:

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -75,3 +76,37 @@ def command_cpu_s(*words: str, environment: Mapping[str, str] | None = None) -> 
         check=True,
     )
     return children_cpu_s() - before
+
+
+COUNTED = """\
+import ctypes, os, resource, subprocess, sys
+# PR_SET_CHILD_SUBREAPER: this process inherits what others leave, and with it the time of all whose end they saw.
+assert not ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)
+subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL)
+while True:
+    try:
+        os.wait()
+    except ChildProcessError:
+        break
+used = resource.getrusage(resource.RUSAGE_CHILDREN)
+print(used.ru_maxrss, used.ru_utime + used.ru_stime)
+"""
+"""Runs a command; prints the memory of its largest process, and the CPU time of all that it has started."""
+
+
+@dataclass(frozen=True, slots=True)
+class Used:
+    """What a command has cost, with all processes that it has started."""
+
+    cpu_s: float
+    peak_mb: float
+    """Of its largest process."""
+
+
+def command_used(*words: str) -> Used:
+    """Run `tuisim` with some words to its end and return what it has cost."""
+    # A process counts the memory of the one that has started it, which is a small one here.
+    command = [sys.executable, "-I", "-c", COUNTED, sys.executable, "-m", "tuisim", *words]
+    done = subprocess.run(command, env=app_environment(), capture_output=True, text=True, check=True)
+    peak_kb, used_s = map(float, done.stdout.split())
+    return Used(used_s, peak_kb / 1024)

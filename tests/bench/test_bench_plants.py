@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.bench import back, batches, frames, listing, recording, run_key, stops, variables
+from tests.bench import back, bands, batches, frames, listing, recording, run_key, stops, variables
 from tests.bench.__main__ import BENCHES
 from tests.bench.figures import Figure
 from tests.bench.plants import (
@@ -107,6 +107,11 @@ def test_slow_trajectories_are_seen() -> None:
 
 def test_slow_obstacles_are_seen() -> None:
     assert_each_worse("crowded", in_runs(CROWDED.format(turns=2000)))
+
+
+def test_slow_and_large_bands_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bands, "ROWS", 100_000)
+    assert_each_worse("bands", in_commands(LARGE.format(megabytes=800) + SLOW.format(turns=300)))
 
 
 @pytest.mark.parametrize("bench", ["help", "commands", "imports", "first-paint"])

@@ -7,7 +7,7 @@ import pyarrow as pa
 import pytest
 
 from tuisim.core.noise import clamping
-from tuisim.logs.bands import band_report, greys, in_words, light_noise, light_scale, nearest_grey, without_clamping
+from tuisim.logs.bands import band_report, greys, in_words, light_noise, light_scale, nearest_greys, without_clamping
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
 
@@ -15,7 +15,7 @@ from tuisim.logs.log import Log
 @pytest.mark.parametrize("value", [0, 3, 10, 128, 240, 250, 255])
 @pytest.mark.parametrize("noise", [5, 20, 128])
 def test_clamping_is_undone(value: int, noise: int) -> None:
-    mean_percent = (value + clamping(noise).shift[value]) / 2.55
+    mean_percent = np.array([(value + clamping(noise).shift[value]) / 2.55])
     assert without_clamping(mean_percent, noise) == pytest.approx(value / 2.55, abs=0.8 if noise < 128 else 4.0)
 
 
@@ -27,9 +27,9 @@ def test_greys_have_names() -> None:
         "pale grey",
         "white",
     }
-    grey = nearest_grey(86.0)
-    assert grey is not None and grey.name == "pale grey"
-    assert nearest_grey(9.0) is None
+    pale, none = nearest_greys(np.array([86.0, 9.0]))
+    assert pale is not None and pale.name == "pale grey"
+    assert none is None
 
 
 @pytest.mark.parametrize(

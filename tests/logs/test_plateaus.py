@@ -5,11 +5,13 @@ from __future__ import annotations
 import sys
 import tempfile
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
 
 from tuisim.errors import LogError
+from tuisim.logs import pieces as pieces_module
 from tuisim.logs import plateaus as plateaus_module
 from tuisim.logs.plateaus import plateaus, plateaus_in_subprocess
 
@@ -42,3 +44,18 @@ def test_ends_when_nobody_waits_for_it() -> None:
 
 def test_it_imports_the_package_of_this_process() -> None:
     assert plateaus_module.__file__ == str(plateaus_module._PACKAGE_FOLDER / "tuisim" / "logs" / "plateaus.py")
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "number"),
+    [(plateaus_module, "_FEW_STARTS", 0), (plateaus_module, "_FEW_STARTS", 10**6), (pieces_module, "_AT_ONCE", 1)],
+)
+def test_how_much_is_looked_at_together_changes_nothing(
+    module: ModuleType, name: str, number: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rng = np.random.default_rng(5)
+    values = np.repeat(rng.uniform(0.0, 100.0, 40), rng.integers(2, 60, 40))
+    values += rng.normal(0.0, 0.5, len(values)) + 40.0 * (rng.random(len(values)) < 0.02)
+    found = plateaus(values)
+    monkeypatch.setattr(module, name, number)
+    assert plateaus(values) == found

@@ -58,6 +58,8 @@ class Model:
         """Visible time range, None for all."""
         self.alignment = TIME
         self._reports: dict[str, BandReport] = {}
+        self._bands: dict[str, tuple[Band, ...]] = {}
+        """The bands of the reports, by variable."""
         self._reported: tuple[list[BandReport], list[Band]] = ([], [])
         """Cache of the bands of the latest reports."""
         self.events = Events()
@@ -272,7 +274,7 @@ class Model:
         """Search variables for bands. Slow for a long log: call it in a thread, with a search in another process."""
         for name in names:
             report = band_report(self.log, name, search)
-            self._words[name], self._reports[name] = in_words(report), report
+            self._words[name], self._bands[name], self._reports[name] = in_words(report), report.bands, report
 
     def reports(self) -> list[BandReport]:
         """Return the band reports of the visible variables."""
@@ -286,7 +288,7 @@ class Model:
         """Return the bands of the visible variables that have been searched."""
         reports = self.reports()
         if reports != self._reported[0]:
-            self._reported = reports, [band for report in reports for band in report.bands]
+            self._reported = reports, [band for report in reports for band in self._bands[report.variable]]
         return self._reported[1]
 
     def measured(self) -> Limits | None:

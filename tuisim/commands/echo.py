@@ -16,7 +16,7 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from itertools import zip_longest
+from itertools import repeat, zip_longest
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Self, TextIO
@@ -50,13 +50,26 @@ def echo_json(data: Any, *, flush: bool = False) -> None:
         print(_json(data), flush=flush)
 
 
+def echo_json_list(items: Iterable[Any]) -> None:
+    """Write one JSON list to stdout, streamed item by item."""
+    with progress_hidden(sys.stdout):
+        _stream_json(items)
+        sys.stdout.write("\n")
+
+
 def echo_json_head(key: str, items: Iterable[Any], rest: Mapping[str, Any]) -> None:
     """Write one JSON object to stdout: a list under a key, streamed item by item, then the other keys."""
     with progress_hidden(sys.stdout):
-        sys.stdout.write(f'{{"{key}": [')
-        for number, item in enumerate(items):
-            sys.stdout.write((", " if number else "") + _json(item))
-        sys.stdout.write("], " + _json(rest).removeprefix("{") + "\n")
+        sys.stdout.write(f'{{"{key}": ')
+        _stream_json(items)
+        sys.stdout.write(", " + _json(rest).removeprefix("{") + "\n")
+
+
+def _stream_json(items: Iterable[Any]) -> None:
+    sys.stdout.write("[")
+    for number, item in enumerate(items):
+        sys.stdout.write((", " if number else "") + _json(item))
+    sys.stdout.write("]")
 
 
 def finite(row: Mapping[Any, Any]) -> dict[Any, Any]:
@@ -142,31 +155,49 @@ _GOOD_CELLS, _LEAST_CELLS = 20, 8
 
 
 def table(heads: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    """Return rows of text under their heads, with aligned columns; columns of numbers are right-aligned.
+    """Return rows of text under their heads, as `table_lines` has them; columns of numbers are right-aligned."""
+    columns = list(zip(*rows, strict=True)) if rows else [()] * len(heads)
+    right = [bool(rows) and all(isinstance(cell, int | float) for cell in column) for column in columns]
+    return "\n".join(table_lines(heads, [list(map(str, column)) for column in columns], right))
+
+
+def echo_table(heads: Sequence[str], columns: Sequence[Sequence[str]], right: Sequence[bool]) -> None:
+    """Write the lines of a table to stdout; the arguments are those of `table_lines`."""
+    _print(table_lines(heads, columns, right), sys.stdout)
+
+
+def table_lines(heads: Sequence[str], columns: Sequence[Sequence[str]], right: Sequence[bool]) -> Iterator[str]:
+    """Yield columns of text under their heads, aligned.
 
     In a terminal that is too narrow for it, the longest texts are broken between words; if that is not enough, heads of
     several words take a line for each, and the gaps are narrower. Only if nothing else helps words are cut. Numbers and
     dates stay whole.
+
+    Args:
+        heads: One for each column.
+        columns: Texts, the same number in each column.
+        right: Which columns are right-aligned.
     """
-    right = [bool(rows) and all(isinstance(row[at], int | float) for row in rows) for at in range(len(heads))]
-    body = [[printable(str(cell)) for cell in row] for row in rows]
+    body = [column if "".join(column).isprintable() else list(map(printable, column)) for column in columns]
     room = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
-    columns = list(zip(*body, strict=True)) if body else [()] * len(heads)
-    figures = [all(cell.strip()[:1].isdecimal() for cell in column if cell) for column in columns]
-    longest = [max((len(word) for cell in column for word in cell.split()), default=0) for column in columns]
-    found = ""
     above = _stacked(heads)
     for lines, gap, least in (([[*heads]], "  ", _GOOD_CELLS), (above, "  ", _GOOD_CELLS), (above, " ", _LEAST_CELLS)):
-        cells = [*lines, *body]
-        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-        if room is not None:
-            widths = _cut_to(room, widths, figures, gap, [max(least, length) for length in longest])
-            if least == _LEAST_CELLS:
-                widths = _cut_to(room, widths, figures, gap, [least] * len(heads))
-        found = _aligned([line for row in cells for line in _wrapped(row, widths)], widths, right, gap)
+        cells = [[*head, *column] for head, column in zip(zip(*lines, strict=True), body, strict=True)]
+        widths = [max(map(len, column)) for column in cells]
         if room is None or _total(widths, gap) <= room:
             break
-    return found
+        figures = [all(cell.strip()[:1].isdecimal() for cell in column if cell) for column in body]
+        longest = [max((len(word) for cell in column for word in cell.split()), default=0) for column in body]
+        widths = _cut_to(room, widths, figures, gap, [max(least, length) for length in longest])
+        if least == _LEAST_CELLS:
+            widths = _cut_to(room, widths, figures, gap, [least] * len(heads))
+        rows = zip(*cells, strict=True)
+        cells = [[*column] for column in zip(*(line for row in rows for line in _wrapped(row, widths)), strict=True)]
+        if _total(widths, gap) <= room:
+            break
+    pads = [str.rjust if at_right else str.ljust for at_right in right]
+    padded = [map(pad, column, repeat(width)) for pad, column, width in zip(pads, cells, widths, strict=True)]
+    return (line.rstrip() for line in map(gap.join, zip(*padded, strict=True)))
 
 
 def _stacked(heads: Sequence[str]) -> list[list[str]]:
@@ -203,16 +234,6 @@ def _cut_to(room: int, widths: Sequence[int], figures: Sequence[bool], gap: str,
             break
         widths[max(texts, key=widths.__getitem__)] -= 1
     return widths
-
-
-def _aligned(cells: Sequence[Sequence[str]], widths: Sequence[int], right: Sequence[bool], gap: str) -> str:
-    return "\n".join(
-        gap.join(
-            cell.rjust(width) if at_right else cell.ljust(width)
-            for cell, width, at_right in zip(line, widths, right, strict=True)
-        ).rstrip()
-        for line in cells
-    )
 
 
 SHOWN_AFTER_S = 1.0

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from functools import cache
-from math import sqrt
+from collections.abc import Mapping, Sequence
+from functools import cache, cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tuisim.core.css_colors import css_names
 from tuisim.data_class import dataclass
 from tuisim.errors import counted
 from tuisim.logs.columns import numeric_columns
-from tuisim.logs.plateaus import Plateau, Search, plateaus
-from tuisim.runs.arrays import FloatArray
+from tuisim.logs.plateaus import FIELDS, Search, plateaus
+from tuisim.runs.arrays import FloatArray, IntArray
 
 if TYPE_CHECKING:
     from tuisim.logs.log import Log, Series
@@ -47,34 +47,40 @@ def greys() -> Mapping[int, Grey]:
     return {value: Grey(name, 100.0 * value / FULL) for value, name in sorted(found.items())}
 
 
-def nearest_grey(percent: float) -> Grey | None:
-    """Return the grey nearest to a level of 0 to 100 %, None if none is within NEAR_PERCENT."""
-    best = min(greys().values(), key=lambda grey: abs(grey.percent - percent))
-    return best if abs(best.percent - percent) <= NEAR_PERCENT else None
+def nearest_greys(percents: FloatArray) -> list[Grey | None]:
+    """Return the grey nearest to each level of 0 to 100 %, None if none is within NEAR_PERCENT."""
+    named = list(greys().values())
+    nearest = np.zeros(len(percents), np.int64)
+    least = np.full(len(percents), np.inf)
+    for at, grey in enumerate(named):
+        apart = np.abs(grey.percent - percents)
+        nearest[apart < least] = at
+        least = np.minimum(least, apart)
+    nearest[least > NEAR_PERCENT] = -1
+    return [None if at < 0 else named[at] for at in nearest.tolist()]
 
 
-def without_clamping(percent: float, noise: int) -> float:
-    """Return the true level from the mean of noisy pixels.
+def without_clamping(percents: FloatArray, noise: int) -> FloatArray:
+    """Return the true levels from the means of noisy pixels.
 
     Noise is uniform within ±`noise`, and values outside 0 to 255 are clamped, so that
     near both ends the mean is too far inside. The mean of a pixel of value 255 - u, u
     below the noise, is 255 - (noise + u)² / (4 noise).
 
     Args:
-        percent: Mean level, 0 to 100.
+        percents: Mean levels, 0 to 100.
         noise: Light noise of the run, 0 to 128.
     """
     if not noise:
-        return percent
-    value = percent * FULL / 100.0
-    return 100.0 * _unclamped(FULL - _unclamped(FULL - value, noise), noise) / FULL
+        return percents
+    values = percents * FULL / 100.0
+    return 100.0 * _unclamped(FULL - _unclamped(FULL - values, noise), noise) / FULL
 
 
-def _unclamped(below: float, noise: int) -> float:
-    """Undo the clamping at one end; `below` is the distance from it."""
-    if below >= noise:
-        return below
-    return max(0.0, 2.0 * sqrt(noise * max(below, 0.0)) - noise)
+def _unclamped(below: FloatArray, noise: int) -> FloatArray:
+    """Undo the clamping at one end; `below` are the distances from it."""
+    undone = np.maximum(0.0, 2.0 * np.sqrt(noise * np.maximum(below, 0.0)) - noise)
+    return np.where(below >= noise, below, undone)
 
 
 NAN = float("nan")
@@ -116,15 +122,34 @@ class Band:
     last_row: int
 
 
-@dataclass(frozen=True, slots=True)
+Column = NDArray[Any] | Sequence[str]
+
+
+@dataclass(frozen=True, eq=False)
 class BandReport:
     """The bands of one variable."""
 
     variable: str
-    bands: tuple[Band, ...]
+    columns: Mapping[str, Column]
+    """The fields of the bands by name, in their order: numbers as arrays, texts as lists, each of shape (n,)."""
     transitions: int
     """Samples on edges, which belong to no band."""
     total: int
+
+    @property
+    def count(self) -> int:
+        """Number of bands."""
+        return len(self.columns["number"])
+
+    @cached_property
+    def bands(self) -> tuple[Band, ...]:
+        """The bands one by one; a long log has a hundred thousand, which take long to make."""
+        return tuple(map(Band, *map(items_of, self.columns.values())))
+
+
+def items_of(column: Column) -> Sequence[Any]:
+    """Return the items of a column as Python's own objects."""
+    return column.tolist() if isinstance(column, np.ndarray) else column
 
 
 def band_report(log: Log, name: str, search: Search = plateaus) -> BandReport:
@@ -134,44 +159,45 @@ def band_report(log: Log, name: str, search: Search = plateaus) -> BandReport:
         LogError: there is no such variable.
     """
     series = log.series(name)
-    found = search(series.values)
-    driven = driven_mm(log, series)
+    found = np.array(search(series.values), FIELDS)
     scale, noise = light_scale(series.values), light_noise(log.metadata, series.run)
-    bands = tuple(_band(series, number, plateau, driven, scale, noise) for number, plateau in enumerate(found, 1))
-    total = int(np.isfinite(series.values).sum())
-    return BandReport(name, bands, total - sum(band.samples for band in bands), total)
-
-
-def _band(series: Series, number: int, plateau: Plateau, driven: FloatArray | None, scale: float, noise: int) -> Band:
-    first, last = plateau.start, plateau.stop - 1
-    start_mm = stop_mm = width_mm = NAN
-    if driven is not None:
-        before, after = max(first - 1, 0), min(last + 1, len(driven) - 1)
-        start_mm, stop_mm = float(driven[first]), float(driven[last])
-        width_mm = float(driven[last] + driven[after] - driven[first] - driven[before]) / 2.0
-    true_level, grey = plateau.level, None
+    finite = np.append(0, np.cumsum(np.isfinite(series.values)))
+    first, last, level = found["start"], found["stop"] - 1, found["level"]
+    samples = finite[last + 1] - finite[first]
+    true_level = level
+    greys_near: list[Grey | None] = [None] * len(found)
     if scale:
-        percent = without_clamping(plateau.level * scale, noise)
-        true_level = percent / scale if noise else plateau.level
-        grey = nearest_grey(percent)
-    return Band(
-        variable=series.name,
-        number=number,
-        start_s=float(series.time_s[first]),
-        stop_s=float(series.time_s[last]),
-        samples=int(np.isfinite(series.values[first : plateau.stop]).sum()),
-        level=plateau.level,
-        spread=plateau.spread,
-        strays=plateau.strays,
-        grey=grey.name if grey else "",
-        grey_percent=grey.percent if grey else NAN,
-        true_level=true_level,
-        start_mm=start_mm,
-        stop_mm=stop_mm,
-        width_mm=width_mm,
-        first_row=int(series.rows[first]),
-        last_row=int(series.rows[last]),
-    )
+        percents = without_clamping(level * scale, noise)
+        true_level = percents / scale if noise else level
+        greys_near = nearest_greys(percents)
+    columns = {
+        "variable": [series.name] * len(found),
+        "number": np.arange(1, len(found) + 1),
+        "start_s": series.time_s[first],
+        "stop_s": series.time_s[last],
+        "samples": samples,
+        "level": level,
+        "spread": found["spread"],
+        "strays": found["strays"],
+        "grey": [grey.name if grey else "" for grey in greys_near],
+        "grey_percent": np.array([grey.percent if grey else NAN for grey in greys_near]),
+        "true_level": true_level,
+        **_places(driven_mm(log, series), first, last),
+        "first_row": series.rows[first],
+        "last_row": series.rows[last],
+    }
+    total = int(finite[-1])
+    return BandReport(name, columns, total - int(samples.sum()), total)
+
+
+def _places(driven: FloatArray | None, first: IntArray, last: IntArray) -> dict[str, FloatArray]:
+    """Return where bands begin and end, and their widths, from the first and the last sample of each."""
+    if driven is None:
+        return dict.fromkeys(("start_mm", "stop_mm", "width_mm"), np.full(len(first), NAN))
+    before, after = np.maximum(first - 1, 0), np.minimum(last + 1, len(driven) - 1)
+    start_mm, stop_mm = driven[first], driven[last]
+    width_mm = (stop_mm + driven[after] - start_mm - driven[before]) / 2.0
+    return {"start_mm": start_mm, "stop_mm": stop_mm, "width_mm": width_mm}
 
 
 def light_scale(values: FloatArray) -> float:
@@ -195,7 +221,7 @@ def driven_mm(log: Log, series: Series) -> FloatArray | None:
     """Return the distance driven at each sample, shape (n,); None if the log has no positions."""
     if not {"x_mm", "y_mm"} <= set(numeric_columns(log.table.schema)) or not len(series.rows):
         return None
-    x_mm, y_mm = (log.numbers(name)[series.rows] for name in ("x_mm", "y_mm"))
+    x_mm, y_mm = (log.numbers_at(name, series.rows) for name in ("x_mm", "y_mm"))
     if not (np.isfinite(x_mm).all() and np.isfinite(y_mm).all()):
         return None
     return distance_mm(x_mm, y_mm)
@@ -210,15 +236,16 @@ def distance_mm(x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
 
 def in_words(report: BandReport) -> str:
     """Return the levels of a report in words, for people."""
-    levels: dict[str, list[Band]] = {}
-    for band in report.bands:
-        levels.setdefault(band.grey or f"{band.true_level:.4g}", []).append(band)
+    levels: dict[str, list[tuple[str, float, int]]] = {}
+    for band in zip(*(items_of(report.columns[name]) for name in ("grey", "true_level", "samples")), strict=True):
+        levels.setdefault(band[0] or f"{band[1]:.4g}", []).append(band)
     said = []
-    for grey, bands in levels.items():
-        samples = sum(band.samples for band in bands)
-        level = sum(band.true_level * band.samples for band in bands) / samples
+    for bands in levels.values():
+        samples = sum(count for *_, count in bands)
+        level = sum(true_level * count for _, true_level, count in bands) / samples
         times = f" ({len(bands)}x)" if len(bands) > 1 else f" ({ONE_SAMPLE})" if samples == 1 else ""
-        said.append(f"{level:.2f}{f' {grey}' if bands[0].grey else ''}{times}")
+        grey = bands[0][0]
+        said.append(f"{level:.2f}{' ' * bool(grey)}{grey}{times}")
     known = f"{counted(len(levels), 'level')}{': ' * bool(said)}{', '.join(said)}"
     edges = f"{report.transitions} of {report.total} samples {'lies' if report.transitions == 1 else 'lie'} on edges"
     return f"{report.variable}: {known}; {edges}"

@@ -153,6 +153,13 @@ class Log:
         """Names of the series, in order of first appearance; with several runs followed by ` #` and its number."""
         return (*self._members(), *self.derived)
 
+    @property
+    def sampled_names(self) -> tuple[str, ...]:
+        """Names of the series that have samples."""
+        members = self._members() if self.rows else {}
+        derived = [name for name, series in self.derived.items() if len(series.rows)]
+        return (*(name for name, member in members.items() if _has_rows(member)), *derived)
+
     def _members(self) -> Mapping[str, Member]:
         kept = self._kept
         if kept.members is None:
@@ -211,6 +218,10 @@ class Log:
         if column not in self._kept.numbers:
             self._kept.numbers[column] = numbers_of(self.table.column(column))
         return self._kept.numbers[column]
+
+    def numbers_at(self, column: str, rows: IntArray) -> FloatArray:
+        """Return the numbers of a column in some rows, as `numbers`, but without keeping those of the others."""
+        return numbers_of(self.table.column(column).take(pa.array(rows)))
 
     def with_layout(self, layout: Layout) -> Log:
         """Return the same log with another layout."""

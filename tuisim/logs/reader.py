@@ -264,7 +264,7 @@ def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterat
             if data.lstrip().startswith((b"{", b"[")):
                 cutter = LineCutter(notes, MAX_DOCUMENT_BYTES)
         read += len(data)
-        if size and len(data) == BLOCK_BYTES and data.count(0) == len(data):
+        if size and len(data) == BLOCK_BYTES and not data.strip(b"\0"):
             read = _after_hole(cast("BinaryIO", handle), read)
         block = cutter.feed(data) if data else cutter.finish()
         block, held = (block if held is None else held.followed_by(block)), None

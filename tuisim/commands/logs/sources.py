@@ -153,12 +153,12 @@ def names_of(log: Log, arguments: Arguments) -> tuple[str, ...]:
         LogError: there is no such variable.
     """
     wanted: Sequence[str] = arguments.variable
-    with_rows = [name for name in log.names if len(log.series(name).rows)]
+    with_rows = log.sampled_names
     if not with_rows:
         hint = f"its columns are {listed(log.table.column_names)}"
         raise LogError("no numeric column", hint, file=log.title)
     if not wanted:
-        return tuple(with_rows)
+        return with_rows
     found: list[str] = []
     for word in wanted:
         matching = [name for name in with_rows if name == word or name.partition(" #")[0] == word]

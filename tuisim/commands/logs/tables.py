@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
+from math import isnan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from tuisim.analysis.events import THRESHOLD_FORM, Threshold, threshold_of
-from tuisim.commands.echo import CsvOut, Figure, echo_json, echo_lines, echo_wrapped, echo_written, finite, table
+from tuisim.commands.echo import (
+    CsvOut,
+    echo_json,
+    echo_json_list,
+    echo_lines,
+    echo_table,
+    echo_wrapped,
+    echo_written,
+    finite,
+)
 from tuisim.commands.logs.sources import names_of, open_sources, the_source
 from tuisim.config.command_line import Arguments
 from tuisim.core.conditions import Operator
 from tuisim.errors import ConfigError
 from tuisim.logs import signals
 from tuisim.logs.arrow import unique_names
-from tuisim.logs.bands import band_report, in_words
+from tuisim.logs.bands import BandReport, Column, band_report, in_words, items_of
 from tuisim.logs.columns import numeric_columns
 from tuisim.logs.csv_cells import write_csv
 from tuisim.logs.derived import reckoned_series
@@ -50,22 +60,35 @@ def summary(arguments: Arguments) -> int:
 
 def bands(arguments: Arguments) -> int:
     """Print the plateaus of every variable: level, name, times, width."""
-    rows: list[dict[str, Any]] = []
-    notes = []
-    for log in open_sources(arguments):
-        for name in names_of(log, arguments):
-            report = band_report(log, name)
-            rows += [{"log": log.title, **asdict(band)} for band in report.bands]
-            notes.append(in_words(report))
+    titles: list[str] = []
+    reports: list[BandReport] = []
+    for title, report in _reports(arguments):
+        titles += [title] * report.count
+        reports.append(report)
     formats = {
         "variable": "", "number": "", "start_s": ".2f", "stop_s": ".2f", "samples": "", "level": ".2f",
         "true_level": ".2f", "spread": ".2f", "grey": "", "width_mm": ".0f",
     }  # fmt: skip
-    show_rows(rows, arguments, formats)
+    columns = {name: _joined([report.columns[name] for report in reports]) for name in reports[0].columns}
+    show_columns({"log": titles, **columns}, arguments, formats)
     if not arguments.json and not arguments.out:
-        for note in notes:
-            echo_wrapped(note)
+        for report in reports:
+            echo_wrapped(in_words(report))
     return 0
+
+
+def _reports(arguments: Arguments) -> Iterator[tuple[str, BandReport]]:
+    """Yield the bands of every variable, with the title of its log."""
+    for log in open_sources(arguments):
+        for name in names_of(log, arguments):
+            yield log.title, band_report(log, name)
+
+
+def _joined(columns: Sequence[Column]) -> Column:
+    """Return columns one after the other."""
+    if isinstance(columns[0], np.ndarray):
+        return np.concatenate(columns)
+    return [item for column in columns for item in column]
 
 
 def events(arguments: Arguments) -> int:
@@ -240,22 +263,34 @@ def diff(arguments: Arguments) -> int:
 
 
 def show_rows(rows: Sequence[Mapping[str, Any]], arguments: Arguments, formats: Mapping[str, str]) -> None:
-    """Print or write rows that all have the same keys.
+    """Print or write rows that all have the same keys; the other arguments are those of `show_columns`."""
+    show_columns({name: [row[name] for row in rows] for name in (rows[0] if rows else ())}, arguments, formats)
+
+
+def show_columns(columns: Mapping[str, Column], arguments: Arguments, formats: Mapping[str, str]) -> None:
+    """Print or write columns of the same length.
 
     Args:
-        rows: Values by column.
+        columns: Values by the name of the column.
         arguments: `json` and `out` select the format.
         formats: Columns of the table, and their format specs, such as `.2f`.
     """
+    if not any(map(len, columns.values())):
+        columns = dict.fromkeys(formats, np.empty(0, object))
     if arguments.out:
         import pandas as pd
 
-        write_frame(pd.DataFrame(list(rows), columns=list(rows[0]) if rows else list(formats)), arguments)
+        write_frame(pd.DataFrame(columns), arguments)
     elif arguments.json:
-        echo_json([finite(row) for row in rows])
+        rows = zip(*map(items_of, columns.values()), strict=True)
+        echo_json_list(finite(dict(zip(columns, row, strict=True))) for row in rows)
     else:
         heads = [name.upper().replace("_", " ") for name in formats]
-        echo_lines(table(heads, [[_written(row[name], how) for name, how in formats.items()] for row in rows]))
+        echo_table(
+            heads,
+            [_texts(columns[name], how) for name, how in formats.items()],
+            [_are_numbers(columns[name]) for name in formats],
+        )
 
 
 def show_frame(frame: pd.DataFrame, arguments: Arguments) -> None:
@@ -282,5 +317,17 @@ def write_frame(frame: pd.DataFrame, arguments: Arguments) -> None:
     echo_written(arguments.out)
 
 
-def _written(value: Any, how: str) -> Any:
-    return Figure(value, how) if how and isinstance(value, float) else value
+def _are_numbers(column: Column) -> bool:
+    if isinstance(column, np.ndarray):
+        return len(column) > 0
+    return len(column) > 0 and all(isinstance(item, int | float) for item in column)
+
+
+def _texts(column: Column, how: str) -> list[str]:
+    """Return the cells of a column; a number that is missing is empty."""
+    if not how:
+        return list(map(str, items_of(column)))
+    return [
+        str(item) if not isinstance(item, float) else "" if isnan(item) else format(item, how)
+        for item in items_of(column)
+    ]

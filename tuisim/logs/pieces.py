@@ -1,0 +1,207 @@
+"""Pieces of a log: spans of samples, the strays among them, and which pieces continue others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from tuisim.runs.arrays import FloatArray, IntArray
+
+MIN_SAMPLES = 2
+"""Fewest samples of a plateau; one more with noise, one at the ends of the log."""
+
+STRAY_SAMPLES = 2
+"""Most samples in a row that count as strays."""
+
+FAR = 5.0
+"""A sample farther off than this number of standard deviations is a stray."""
+
+NEAR_SAMPLES = 12
+"""Samples on each side of a cut from which a drift is estimated."""
+
+CERTAINTY = 4.0
+"""Smallest step in standard deviations."""
+
+_AT_ONCE = 100_000
+"""Most samples of pieces that are looked at together, but for a longer piece: they fit in the caches of a processor."""
+
+Pieces = IntArray
+"""Spans of a log in order, shape (n, 2): their starts, and their stops."""
+
+BoolArray = NDArray[np.bool_]
+
+
+def lengths_of(pieces: Pieces) -> IntArray:
+    """Return the number of samples of each piece."""
+    return pieces[:, 1] - pieces[:, 0]
+
+
+def of_one_length(values: FloatArray, pieces: Pieces) -> Iterator[tuple[IntArray, FloatArray]]:
+    """Yield the pieces of each length, not too many at once: their indices, and their samples, shape (m, length)."""
+    lengths = lengths_of(pieces)
+    order = np.argsort(lengths, kind="stable")
+    for alike in np.split(order, np.flatnonzero(np.diff(lengths[order])) + 1) if len(order) else ():
+        length = int(lengths[alike[0]])
+        windows = sliding_window_view(values, length)
+        count = max(1, _AT_ONCE // length)
+        for first in range(0, len(alike), count):
+            some = alike[first : first + count]
+            yield some, windows[pieces[some, 0]]
+
+
+def without_strays(values: FloatArray, pieces: Pieces, least_step: float, sigma: float) -> Pieces:
+    """Join pieces that only a few strays separate."""
+    after = np.searchsorted(pieces[:, 1], pieces[:, 0] + STRAY_SAMPLES, side="right")
+    at = np.arange(1, len(pieces))
+    at = at[(at < after[at]) & (after[at] < len(pieces))]
+    # At least two on either side: an edge is no stray.
+    return _joined_at(values, pieces, np.stack((at, after[at]), axis=1), MIN_SAMPLES, least_step, sigma)
+
+
+def joined(values: FloatArray, pieces: Pieces, least_step: float, sigma: float) -> Pieces:
+    """Join neighbours that drift into each other, with at most a stray between them."""
+    at = 1 + np.flatnonzero(pieces[1:, 0] - pieces[:-1, 1] <= STRAY_SAMPLES)
+    return _joined_at(values, pieces, np.stack((at, at), axis=1), STRAY_SAMPLES + 1, least_step, sigma)
+
+
+def _joined_at(
+    values: FloatArray, pieces: Pieces, seams: IntArray, least_samples: int, least_step: float, sigma: float
+) -> Pieces:
+    """Join pieces at the seams across which the log goes on, the first ones first.
+
+    Args:
+        values: The log.
+        pieces: Its pieces.
+        seams: Shape (n, 2): a piece, and the one at or after it that may continue the one before it.
+        least_samples: Fewest samples on either side.
+        least_step: The smallest step between levels.
+        sigma: Standard deviation of the noise.
+    """
+    left, right = pieces[seams[:, 0] - 1], pieces[seams[:, 1]]
+    firsts = np.arange(len(pieces))
+    goes_on, unsure = np.zeros(len(seams), bool), np.ones(len(seams), bool)
+    # If what is before a seam was itself joined to what is before it, more samples tell how it goes on.
+    while unsure.any():
+        goes_on[unsure] = _go_on(values, left[unsure], right[unsure], least_samples, least_step, sigma)
+        firsts = _firsts(len(pieces), seams[goes_on])
+        nearest = left[:, 1] - NEAR_SAMPLES
+        starts = pieces[firsts[seams[:, 0] - 1], 0]
+        unsure = np.maximum(starts, nearest) != np.maximum(left[:, 0], nearest)
+        left[:, 0] = starts
+    heads = np.flatnonzero(firsts == np.arange(len(pieces)))
+    tails = np.append(heads[1:], len(pieces)) - 1
+    return np.stack((pieces[heads, 0], pieces[tails, 1]), axis=1)
+
+
+def _firsts(count: int, seams: IntArray) -> IntArray:
+    """Return for each piece the first one of those that it is joined to; a seam inside an earlier one is none."""
+    taken = []
+    reached = -1
+    for at, after in seams.tolist():
+        if at > reached:
+            taken.append((at, after + 1))
+            reached = after
+    starts, stops = np.array(taken, np.int64).reshape(-1, 2).T
+    joined = np.cumsum(np.bincount(starts, minlength=count + 1) - np.bincount(stops, minlength=count + 1))[:count]
+    firsts: IntArray = np.maximum.accumulate(np.where(joined, 0, np.arange(count)))
+    return firsts
+
+
+def _go_on(
+    values: FloatArray, left: Pieces, right: Pieces, least_samples: int, least_step: float, sigma: float
+) -> BoolArray:
+    """Return which pieces continue those on their left: a common drift explains the step between them."""
+    goes_on = np.minimum(lengths_of(left), lengths_of(right)) >= least_samples
+    before, after = left[goes_on], right[goes_on]
+    before[:, 0] = np.maximum(before[:, 0], before[:, 1] - NEAR_SAMPLES)
+    after[:, 1] = np.minimum(after[:, 1], after[:, 0] + NEAR_SAMPLES)
+    step, spread = _steps_between(_lines(values, before, sigma), _lines(values, after, sigma), before[:, 1])
+    goes_on[goes_on] = np.abs(step) <= np.maximum(least_step, CERTAINTY * sigma * spread)
+    return goes_on
+
+
+class _Lines(NamedTuple):
+    """What a straight line through the samples of each piece needs, without strays; each of shape (n,)."""
+
+    samples: FloatArray
+    place: FloatArray
+    """Mean position."""
+    level: FloatArray
+    """Mean value."""
+    width: FloatArray
+    """Sum of the squared distances from the mean position."""
+    rise: FloatArray
+    """Sum of the products of the distances from both means."""
+
+
+def _lines(values: FloatArray, pieces: Pieces, sigma: float) -> _Lines:
+    lines = _Lines(*np.empty((5, len(pieces))))
+    for some, part in of_one_length(values, pieces):
+        kept = (~strays(part, sigma)).astype(np.float64)
+        at = np.arange(part.shape[1], dtype=np.float64)
+        samples = kept.sum(axis=1)
+        place = kept @ at / samples
+        level = _row_sums(kept, part) / samples
+        apart = kept * (at - place[:, None])
+        lines.samples[some], lines.place[some], lines.level[some] = samples, pieces[some, 0] + place, level
+        lines.width[some] = _row_sums(apart, apart)
+        lines.rise[some] = _row_sums(apart, part - level[:, None])
+    return lines
+
+
+def _row_sums(left: FloatArray, right: FloatArray) -> FloatArray:
+    """Return the sum of the products in each row; faster than a product that is summed up."""
+    sums: FloatArray = np.einsum("ij,ij->i", left, right)
+    return sums
+
+
+def _steps_between(before: _Lines, after: _Lines, edges: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return the steps of least squares between pieces of the same drift, and their deviations in units of the noise.
+
+    Args:
+        before: The pieces before the steps.
+        after: The pieces after them.
+        edges: Where the pieces before the steps stop.
+    """
+    apart = after.place - before.place
+    width = before.width + after.width
+    lone = width == 0.0
+    safe_width = np.where(lone, 1.0, width)
+    step = after.level - before.level - apart * (before.rise + after.rise) / safe_width
+    spread = np.sqrt(1.0 / before.samples + 1.0 / after.samples + apart * apart / safe_width)
+    if lone.any():
+        # Of the many solutions for one sample on each side, the one with the smallest numbers.
+        step[lone], spread[lone] = _lone_steps(
+            np.stack((before.place[lone], after.place[lone]), axis=1) - edges[lone, None],
+            np.stack((before.level[lone], after.level[lone]), axis=1),
+        )
+    return step, spread
+
+
+def _lone_steps(places: FloatArray, levels: FloatArray) -> tuple[FloatArray, FloatArray]:
+    ones, after = np.ones_like(places), np.broadcast_to([0.0, 1.0], places.shape)
+    rows = np.linalg.pinv(np.stack((ones, places, after), axis=2))[:, 2]
+    return (rows * levels).sum(axis=1), np.sqrt((rows * rows).sum(axis=1))
+
+
+def strays(part: FloatArray, sigma: float) -> BoolArray:
+    """Return which samples of levels are strays, shape (m, length) as the samples."""
+    length = part.shape[1]
+    half = length // 2
+    rest = part
+    if half >= 4:
+        slope = (medians(part[:, -half:]) - medians(part[:, :half])) / (length - half)
+        rest = part - slope[:, None] * np.arange(length)
+    off: BoolArray = np.abs(rest - medians(rest)[:, None]) > FAR * sigma
+    return off & ~off.all(axis=1, keepdims=True)
+
+
+def medians(part: FloatArray) -> FloatArray:
+    """Return the median of each row; numpy's own takes ten times longer for short rows."""
+    ordered = np.sort(part, axis=1)
+    middle = part.shape[1] // 2
+    return ordered[:, middle] if part.shape[1] % 2 else (ordered[:, middle - 1] + ordered[:, middle]) / 2.0
