@@ -38,7 +38,7 @@ NOISE = ("--set", "noise.light=10", "--set", "noise.motor=20")
 def batches(effort: Effort) -> Iterator[Figure]:
     """Yield what the runs of whole commands cost, the memory of their processes, and the time until a run has moved."""
     few, many = (300, 1000) if effort.repeats < 5 else (1000, 10_000)
-    runs = ((few, 1, (), None), (few, 2, (), None), (many, 2, (), MOST), (few, 2, NOISE, MOST_NOISY))
+    runs = ((few, 1, (), None), (few, 2, (), None), (many, 2, (), MOST), (many, 2, NOISE, MOST_NOISY))
     for count, jobs, words, most in runs:
         done = _command(round(count * effort.simulated), jobs, words)
         name = f"{count:,} runs, {jobs} jobs{', noise' if words else ''}"

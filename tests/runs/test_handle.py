@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from tests.running import PATIENCE_S, Start
@@ -23,3 +25,14 @@ def test_a_child_that_goes_while_its_events_are_read_has_not_crashed(
     ended = handle.wait(PATIENCE_S)
     assert ended is not None
     assert ended.end == "finished"
+
+
+def test_who_follows_a_run_sees_all_of_it_however_short_it_is(start: Start) -> None:
+    handle = start("print('bye')")
+    handle._look_at_s = math.inf
+    for view in (handle.telemetry, handle.output):
+        view.read_on()
+        view.holds = True
+    ended = handle.wait(PATIENCE_S)
+    assert ended is not None
+    assert ([row.text for row in handle.output.all_rows()], handle.telemetry.count) == (["bye"], ended.tick + 1)

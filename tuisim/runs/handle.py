@@ -231,7 +231,8 @@ class RunHandle:
                 case Ended():
                     self._announced, self._announced_at = event, time.monotonic()
         now_s = time.monotonic()
-        is_due = now_s >= self._look_at_s
+        # A view that holds is one that somebody follows: only this lets it go on.
+        is_due = now_s >= self._look_at_s or self.telemetry.holds or self.output.holds
         if is_due or self._events.falsified or (exited and self._has_looked):
             self._look_for_falsified()
         if is_due:
