@@ -1,0 +1,166 @@
+"""Help while typing: the list of names, the signature of the call at the cursor, and names that are not defined."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+
+from rich.text import Text
+from textual.timer import Timer
+
+from tuisim.app.editor import completion
+from tuisim.app.editor.area import CodeArea
+from tuisim.app.editor.candidate_list import signature_text
+from tuisim.app.editor.names import unknown_names
+from tuisim.terminal.text_runs import cut
+
+CHECK_AFTER_S = 0.5
+"""Names are checked when nothing has been typed for this long."""
+ASK_AFTER_S = 0.15
+"""Likewise for the signature."""
+MOST_LINES = 5000
+"""Longer texts are not checked: it would hold up the keys."""
+
+
+class Assistant:
+    """What helps in one text.
+
+    Args:
+        area: The text, with its list of names.
+        changed: Called when there is something else to say.
+    """
+
+    def __init__(self, area: CodeArea, changed: Callable[[], None]) -> None:
+        self._area, self._changed = area, changed
+        self._path = ""
+        self._signature: completion.Signature | None = None
+        self._check_timer: Timer | None = None
+        self._ask_timer: Timer | None = None
+        self._is_asking = self._asks_again = False
+
+    def said(self, width: int) -> Text:
+        """Return what there is to say at the cursor, in at most so many cells."""
+        row, column = self._area.cursor_location
+        unknown = next((one for one in self._area.unknown if one.row == row and one.start <= column <= one.end), None)
+        if unknown is not None:
+            whole, hint = unknown.message, unknown.hint or unknown.message
+            return Text(cut(whole if len(whole) <= width else hint, width))
+        return signature_text(self._signature, width) if self._signature else Text()
+
+    def program_changed(self, path: str) -> None:
+        """Forget all about another program, and check the names of this one.
+
+        Args:
+            path: Of its file, or its name.
+        """
+        self._path, self._signature = path, None
+        self._area.candidates.close()
+        self._area.set_unknown(())
+        self.check_names()
+
+    def text_changed(self) -> None:
+        """Follow an edit."""
+        self._check_timer = self._restarted(self._check_timer, CHECK_AFTER_S, self.check_names)
+
+    def cursor_moved(self) -> None:
+        """Follow the cursor."""
+        self._filter()
+        row, column = self._area.cursor_location
+        if self._area.typing and completion.in_call(self._area.document.lines, row, column):
+            self._ask_timer = self._restarted(self._ask_timer, ASK_AFTER_S, self.ask_signature)
+        else:
+            self._signature = None
+        self._changed()
+
+    def _restarted(self, timer: Timer | None, after_s: float, call: Callable[[], None]) -> Timer:
+        if timer is not None:
+            timer.stop()
+        return self._area.set_timer(after_s, call)
+
+    def stop(self) -> None:
+        """End what only helps while typing."""
+        self._area.candidates.close()
+        self._signature = None
+
+    # Names
+
+    def check_names(self) -> None:
+        """Look for names that are not defined, and mark them."""
+        if self._area.document.line_count > MOST_LINES:
+            return
+        found = unknown_names(self._area.program_text, self._path)
+        if found is not None:
+            self._area.set_unknown(found)
+            self._changed()
+
+    # Signature
+
+    def ask_signature(self) -> None:
+        """Look up the function whose arguments are at the cursor."""
+        if self._is_asking:
+            self._asks_again = True
+        elif self._area.typing:
+            self._is_asking = True
+            self._area.run_worker(self._ask())
+
+    async def _ask(self) -> None:
+        try:
+            found = await asyncio.to_thread(completion.signature, *self._place())
+        finally:
+            self._is_asking = False
+        if self._asks_again:
+            self._asks_again = False
+            self.ask_signature()
+        row, column = self._area.cursor_location
+        if self._area.typing and completion.in_call(self._area.document.lines, row, column):
+            self._signature = found
+            self._changed()
+
+    def _place(self) -> tuple[str, str, int, int]:
+        return self._area.program_text, self._path, *self._area.cursor_location
+
+    # Completion
+
+    def complete(self) -> None:
+        """Complete the word before the cursor: put in what is left of the only name, or open the list."""
+        self._area.run_worker(self._complete(), group="completion", exclusive=True)
+
+    async def _complete(self) -> None:
+        place = self._place()
+        found = await asyncio.to_thread(completion.candidates, *place)
+        _, _, row, start = place
+        start -= len(self._word_at(row, start) or "")
+        at_row, column = self._area.cursor_location
+        typed = self._area.document.get_line(row)[start:column] if at_row == row else None
+        if typed is None or column < start or (typed and not typed.isidentifier()) or not self._area.typing:
+            # The cursor has left the word.
+            return
+        if not found:
+            self._area.insert_indent()
+            return
+        begin = [one for one in found if one.name.lower().startswith(typed.lower())]
+        if len(begin) == 1:
+            self.put_in(begin[0].name)
+        else:
+            self._area.candidates.open(found, (row, start), typed, self._area.place_on_screen(typed))
+
+    def _word_at(self, row: int, column: int) -> str | None:
+        return completion.word_before(self._area.document.get_line(row), column)
+
+    def put_in(self, name: str) -> None:
+        """Replace the word before the cursor with a name."""
+        row, column = self._area.cursor_location
+        word = self._word_at(row, column) or ""
+        self._area.replace(name, (row, column - len(word)), (row, column), maintain_selection_offset=False)
+
+    def _filter(self) -> None:
+        """Follow what is typed while the list is open."""
+        candidates = self._area.candidates
+        if not candidates.is_open:
+            return
+        row, column = self._area.cursor_location
+        word = self._word_at(row, column)
+        if word is None or (row, column - len(word)) != candidates.begin:
+            candidates.close()
+        else:
+            candidates.filter(word, self._area.place_on_screen(word))
