@@ -141,3 +141,11 @@ async def test_in_a_narrow_panel_the_hint_is_what_stays() -> None:
     async with CodeApp().run_test(size=(40, 12)) as pilot:
         code, _ = await alone(pilot, "tank_drve.on(1)\n")
         await until(pilot, lambda: str(code.border_subtitle) == "did you mean `tank_drive`?")
+
+
+async def test_unknown_attributes_are_marked_once_names_were_looked_up(home: Path) -> None:
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        code, area = await listed(pilot, "tank_drive.onn(1)\ntank_drive.o")
+        await pilot.press("enter")
+        code._assistant.check_names()
+        await until(pilot, lambda: [one.name for one in area.unknown] == ["onn"])

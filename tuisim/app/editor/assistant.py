@@ -10,8 +10,9 @@ from textual.timer import Timer
 
 from tuisim.app.editor import completion
 from tuisim.app.editor.area import CodeArea
+from tuisim.app.editor.attributes import AttributeCheck
 from tuisim.app.editor.candidate_list import signature_text
-from tuisim.app.editor.names import unknown_names
+from tuisim.app.editor.names import UnknownName, unknown_names
 from tuisim.terminal.text_runs import cut
 
 CHECK_AFTER_S = 0.5
@@ -33,6 +34,9 @@ class Assistant:
     def __init__(self, area: CodeArea, changed: Callable[[], None]) -> None:
         self._area, self._changed = area, changed
         self._path = ""
+        self._attribute_check = AttributeCheck(completion.members)
+        self._names: tuple[UnknownName, ...] = ()
+        self._attributes: tuple[UnknownName, ...] = ()
         self._signature: completion.Signature | None = None
         self._check_timer: Timer | None = None
         self._ask_timer: Timer | None = None
@@ -55,7 +59,8 @@ class Assistant:
         """
         self._path, self._signature = path, None
         self._area.candidates.close()
-        self._area.set_unknown(())
+        self._names = self._attributes = ()
+        self._mark()
         self.check_names()
 
     def text_changed(self) -> None:
@@ -90,8 +95,21 @@ class Assistant:
             return
         found = unknown_names(self._area.program_text, self._path)
         if found is not None:
-            self._area.set_unknown(found)
-            self._changed()
+            self._names = found
+            self._mark()
+        if completion.is_ready():
+            self._area.run_worker(self._check_attributes(), group="attributes", exclusive=True)
+
+    async def _check_attributes(self) -> None:
+        text, path = self._area.program_text, self._path
+        found = await asyncio.to_thread(self._attribute_check.unknown_attributes, text, path)
+        if (text, path) == (self._area.program_text, self._path):
+            self._attributes = found
+            self._mark()
+
+    def _mark(self) -> None:
+        self._area.set_unknown((*self._names, *self._attributes))
+        self._changed()
 
     # Signature
 

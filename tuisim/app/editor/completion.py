@@ -38,6 +38,10 @@ _COURSE = "from tuisim.shim.names.course import ColorSensor\n"
 _PYBRICKS = "tuisim.shim.pybricks."
 _NOT_OF_THE_BRICK = frozenset({"KIND", "ENDINGS", "SETTINGS_WHILE_ACTIVE", "brick", "device_port", "port", "sign"})
 """Names that only the simulated classes of Pybricks have."""
+_GENERAL = frozenset({"ev3dev2", "ev3dev2.sensor"})
+"""Modules of the classes that all devices of `ev3dev2` share, which few programs use."""
+_OF_THE_COURSE = frozenset({"reflected_light_intensity_pc", "full_reflected_light_intensity"})
+"""Attributes that colour sensors have while a program runs, however they were made."""
 _UNUSUAL = frozenset({"mro"})
 _EXTENSIONS = [path for path in sys.path if path.endswith("lib-dynload")]
 _asking = Lock()
@@ -125,6 +129,37 @@ def signature(text: str, path: str, row: int, column: int) -> Signature | None:
         return Signature(found[0].name, tuple(_parameter(one) for one in found[0].params), found[0].index)
 
 
+def members(text: str, path: str, row: int, column: int) -> frozenset[str] | None:
+    """Return all names after the dot behind an object of a library; None if they are not all known.
+
+    Args:
+        text, path: As for `candidates`.
+        row: From 0.
+        column: From 0, of the dot after a name.
+    """
+    with _asking:
+        script, first = _script(text, path)
+        kinds: list[Any] = _answer(lambda: script.infer(first + row + 1, column - 1), [])
+        if len(kinds) != 1 or not _is_of_library(kinds[0]):
+            return None
+        names: list[Completion] = _answer(lambda: script.complete(first + row + 1, column + 1), [])
+        found = frozenset(one.name for one in names)
+        # Some classes make their attributes when they are asked for them.
+        return None if not found or "__getattr__" in found else found | _OF_THE_COURSE
+
+
+def _is_of_library(kind: Any) -> bool:
+    top = str(kind.full_name or kind.module_name).partition(".")[0]
+    return (kind.type == "instance" and top in ("ev3dev2", "tuisim")) or (
+        kind.type == "module" and top in sys.stdlib_module_names
+    )
+
+
+def is_ready() -> bool:
+    """Return whether it has been asked before, so that it answers at once."""
+    return "jedi" in sys.modules
+
+
 def _answer(ask: Callable[[], Result], otherwise: Result) -> Result:
     """Return what Jedi answers."""
     try:
@@ -159,15 +194,23 @@ def _script(text: str, path: str) -> tuple[Script, int]:
 def _is_meant(one: Completion, word: str) -> bool:
     if one.name.startswith("_") and not word.startswith("_"):
         return False
-    if one.name in _NOT_OF_THE_BRICK and (one.module_name == "builtins" or one.module_name.startswith(_PYBRICKS)):
+    # A property of a class is one of Python's.
+    if one.name in _NOT_OF_THE_BRICK and _module_of(one).startswith((_PYBRICKS, "builtins")):
         return False
     return one.name not in _UNUSUAL or one.name == word
 
 
+def _module_of(one: Completion) -> str:
+    """Return the module in which a name is defined."""
+    places: list[Any] = _answer(one.goto, [])
+    return str(places[0].module_name) if places else ""
+
+
 def _rank(one: Completion, word: str) -> tuple[bool, ...]:
-    """Return what sorts a candidate: names in the case that is typed first, private ones and constants last."""
+    """Return what sorts a candidate: names in the case that is typed first; private, constant and general ones last."""
     is_constant = one.name.isupper() and one.type == "statement"
-    return not one.name.startswith(word), one.name.startswith("_"), is_constant
+    is_private, is_general = one.name.startswith("_"), _module_of(one) in _GENERAL
+    return not one.name.startswith(word), is_private, is_constant, is_general
 
 
 def _described(one: Completion) -> Candidate:

@@ -9,13 +9,14 @@ import re
 import sys
 import types
 import warnings
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import cache
 
 from tuisim.config.program_file import parse_unfinished
 from tuisim.config.program_robot.course import global_names
+from tuisim.errors import did_you_mean
 from tuisim.source import PRELUDE_TEXTS, source_lines
 
 MOST_MENDED = 3
@@ -42,11 +43,14 @@ class UnknownName:
     """Columns, from 0."""
     hint: str = ""
     """What may have been meant."""
+    owner: str = ""
+    """What does not have it, if it is an attribute."""
 
     @property
     def message(self) -> str:
         """What is wrong, and the hint."""
-        return f"`{self.name}` is not defined{': ' if self.hint else ''}{self.hint}"
+        wrong = f"`{self.owner}` has no `{self.name}`" if self.owner else f"`{self.name}` is not defined"
+        return f"{wrong}{': ' if self.hint else ''}{self.hint}"
 
 
 @dataclass(slots=True)
@@ -68,7 +72,7 @@ def unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:
         name: Of its file.
     """
     program = parse_unfinished(text, name)
-    tree, guessed = _mended(source_lines(program.text))
+    tree, guessed = readable_tree(program.text)
     if tree is None or _defines_unseen_names(tree):
         return None
     found = _Found()
@@ -82,16 +86,18 @@ def unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:
     own = found.defined | guessed | _prelude_names(program.prelude)
     lines = program.text.split("\n")
     known = own | _BUILTINS | _OF_EVERY_MODULE
-    places = ((word, _columns(lines, place)) for place, word in sorted(found.loaded.items()) if word not in known)
-    return tuple(
-        UnknownName(word, row, start, end, _hint(word, lines[row][end : end + 1], own, found.within))
-        for word, (row, start, end) in places
-        if lines[row][start:end] == word
-    )
+    unknown = []
+    for (line, *columns), word in sorted(found.loaded.items()):
+        start, end = (column_of(lines[line - 1], column) for column in columns)
+        if word not in known and lines[line - 1][start:end] == word:
+            hint = _hint(word, lines[line - 1][end : end + 1], own, found.within)
+            unknown.append(UnknownName(word, line - 1, start, end, hint))
+    return tuple(unknown)
 
 
-def _mended(lines: Sequence[str]) -> tuple[ast.Module | None, set[str]]:
+def readable_tree(text: str) -> tuple[ast.Module | None, set[str]]:
     """Return the tree of a program, without lines that are not Python yet, and the words of these lines."""
+    lines = source_lines(text)
     kept, words = list(lines), set[str]()
     for _ in range(MOST_MENDED + 1):
         try:
@@ -146,12 +152,9 @@ def _search(code: types.CodeType, found: _Found, is_module: bool = True) -> None
             _search(inner, found, is_module=False)
 
 
-def _columns(lines: Sequence[str], place: tuple[int, int, int]) -> tuple[int, int, int]:
-    """Return a place in the code as row, first and last column, in characters."""
-    line, *columns = place
-    data = lines[line - 1].encode()
-    start, end = (len(data[:column].decode(errors="ignore")) for column in columns)
-    return line - 1, start, end
+def column_of(line: str, byte: int | None) -> int:
+    """Return the column in characters of a place that Python tells in bytes."""
+    return len(line.encode()[:byte].decode(errors="ignore"))
 
 
 @cache
@@ -173,14 +176,14 @@ def _hint(name: str, follows: str, own: set[str], within: Mapping[str, str]) -> 
         return f"`import {name}`"
     if function := within.get(name):
         return f"it exists only inside `{function}`"
-    if close := next(_close(name, own | within.keys()), None) or next(_close(name, _BUILTINS), None):
-        return f"did you mean `{close}`?"
+    if close := closest(name, own | within.keys()) or closest(name, _BUILTINS):
+        return did_you_mean([f"`{close}`"])
     if module := _modules().get(name):
         return f"`from {module} import {name}`"
     return "put `# %%sim_magic_preloaded` into line 1" if name in _prelude_names("preloaded") else ""
 
 
-def _close(name: str, names: Set[str]) -> Iterator[str]:
-    """Yield names like a name; case does not matter."""
+def closest(name: str, names: Set[str]) -> str:
+    """Return the name that is most like a name, empty if none is; case does not matter."""
     by_lower = {known.lower(): known for known in sorted(names) if not known.startswith("_") or name.startswith("_")}
-    return (by_lower[lower] for lower in get_close_matches(name.lower(), by_lower, 1, _LIKENESS))
+    return next((by_lower[lower] for lower in get_close_matches(name.lower(), by_lower, 1, _LIKENESS)), "")

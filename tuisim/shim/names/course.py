@@ -14,6 +14,11 @@ class ColorSensor(lego.ColorSensor):  # type: ignore[misc]
         return 0.0
 
     @property
+    def reflected_light_intensity(self) -> int:
+        """Reflected red light, 0 to 255 as in the course; 0 to 100 under the profile `ev3`."""
+        return 0
+
+    @property
     def full_reflected_light_intensity(self) -> float:
         """Mean of the reflected red, green and blue light in percent."""
         return 0.0
