@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -24,7 +25,7 @@ from textual.widgets.text_area import Edit, EditResult, Selection
 
 from tuisim.app.editor import text_lines
 from tuisim.app.editor.candidate_list import CandidateList
-from tuisim.app.editor.completion import word_before
+from tuisim.app.editor.completion import Candidate, candidates, word_before
 from tuisim.app.editor.names import UnknownName
 from tuisim.app.editor.syntax import KINDS, Colouring
 from tuisim.protocol import Variable
@@ -61,7 +62,6 @@ class EditorCommand(StrEnum):
     """What the keys of the text ask the code panel for."""
 
     TYPE = "type"
-    COMPLETE = "complete"
     STOP_TYPING = "stop_typing"
     FIND = "find"
     LINE = "line"
@@ -107,6 +107,8 @@ class CodeArea(TextArea):
         self._colouring = Colouring()
         self._breaks: Mapping[int, str] = {}
         self._lit = self._error = 0
+        self.path = ""
+        """Of the program's file, or its name."""
         self.candidates = CandidateList()
         """The list of names; it takes its keys from here."""
         self._unknown: tuple[UnknownName, ...] = ()
@@ -316,15 +318,18 @@ class CodeArea(TextArea):
     def action_go_to_end(self, end: bool) -> None:
         self.move_cursor(self.document.end if end else (0, 0))
 
-    def on_key(self, event: events.Key) -> None:
+    async def on_key(self, event: events.Key) -> None:
         if not self.typing:
             if event.key == "enter":
                 self._done(event)
                 self.post_message(self.Wanted(EditorCommand.TYPE))
             return
+        # What was typed just before may not have been reported yet.
+        self.follow_word()
         if self.candidates.is_open and event.key in self.candidates.KEYS:
             self._done(event)
-            self.candidates.take_key(event.key)
+            if name := self.candidates.take_key(event.key):
+                self.put_in(name)
         elif event.key == "enter":
             self._done(event)
             row, column = min(self.selection)
@@ -335,11 +340,7 @@ class CodeArea(TextArea):
             self.delete((row, column - blanks), (row, column), maintain_selection_offset=False)
         elif event.key == "tab" and self.selection.is_empty:
             self._done(event)
-            row, column = self.cursor_location
-            if word_before(self.document.get_line(row), column) is None:
-                self.insert_indent()
-            else:
-                self.post_message(self.Wanted(EditorCommand.COMPLETE))
+            await self._complete()
         elif change := _CHANGES.get(event.key):
             self._done(event)
             self._change_lines(change)
@@ -359,14 +360,51 @@ class CodeArea(TextArea):
         row, column = self.cursor_location
         return text_lines.blanks_to_delete(self.document.get_line(row)[:column])
 
-    def insert_indent(self) -> None:
-        """Put in blanks up to the next tab stop."""
-        self.insert_text(" " * columns_to_tab_stop(self))
+    # Completion
 
-    def place_on_screen(self, word: str) -> Offset:
-        """Return where the word begins that ends at the cursor."""
+    async def _complete(self) -> None:
+        """Complete the word before the cursor, list what may follow, or indent; keys that are typed meanwhile wait."""
+        place = self.cursor_location
+        found: tuple[Candidate, ...] = ()
+        if self._word() is not None:
+            found = await asyncio.to_thread(candidates, self.program_text, self.path, *place)
+        word = self._word()
+        if self.cursor_location != place or not self.selection.is_empty or not self.typing:
+            # Something else has moved the cursor, such as the mouse.
+            return
+        if len(found) == 1:
+            self.put_in(found[0].name)
+        elif found and word is not None:
+            row, column = place
+            self.candidates.open(found, (row, column - len(word)), word, self._place_of(word))
+        else:
+            self.insert_text(" " * columns_to_tab_stop(self))
+
+    def _word(self) -> str | None:
+        """Return the word that ends at the cursor, as `word_before`."""
+        row, column = self.cursor_location
+        return word_before(self.document.get_line(row), column)
+
+    def _place_of(self, word: str) -> Offset:
+        """Return where on the screen the word begins that ends at the cursor."""
         x, y = self.cursor_screen_offset
         return Offset(x - cell_len(word), y)
+
+    def put_in(self, name: str) -> None:
+        """Replace the word before the cursor with a name."""
+        row, column = self.cursor_location
+        word = self._word() or ""
+        self.replace(name, (row, column - len(word)), (row, column), maintain_selection_offset=False)
+
+    def follow_word(self) -> None:
+        """Shorten the list of names to the word that is typed now, or close it."""
+        if not self.candidates.is_open:
+            return
+        word, (row, column) = self._word(), self.cursor_location
+        if word is None or (row, column - len(word)) != self.candidates.begin:
+            self.candidates.close()
+        else:
+            self.candidates.filter(word, self._place_of(word))
 
     def on_blur(self) -> None:
         """Close the list of names."""

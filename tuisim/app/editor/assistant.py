@@ -1,4 +1,4 @@
-"""Help while typing: the list of names, the signature of the call at the cursor, and names that are not defined."""
+"""Help while typing: the signature of the call at the cursor, and names that are not defined."""
 
 from __future__ import annotations
 
@@ -33,7 +33,6 @@ class Assistant:
 
     def __init__(self, area: CodeArea, changed: Callable[[], None]) -> None:
         self._area, self._changed = area, changed
-        self._path = ""
         self._attribute_check = AttributeCheck(completion.members)
         self._names: tuple[UnknownName, ...] = ()
         self._attributes: tuple[UnknownName, ...] = ()
@@ -57,7 +56,7 @@ class Assistant:
         Args:
             path: Of its file, or its name.
         """
-        self._path, self._signature = path, None
+        self._area.path, self._signature = path, None
         self._area.candidates.close()
         self._names = self._attributes = ()
         self._mark()
@@ -69,7 +68,7 @@ class Assistant:
 
     def cursor_moved(self) -> None:
         """Follow the cursor."""
-        self._filter()
+        self._area.follow_word()
         row, column = self._area.cursor_location
         if self._area.typing and completion.in_call(self._area.document.lines, row, column):
             self._ask_timer = self._restarted(self._ask_timer, ASK_AFTER_S, self.ask_signature)
@@ -93,7 +92,7 @@ class Assistant:
         """Look for names that are not defined, and mark them."""
         if self._area.document.line_count > MOST_LINES:
             return
-        found = unknown_names(self._area.program_text, self._path)
+        found = unknown_names(self._area.program_text, self._area.path)
         if found is not None:
             self._names = found
             self._mark()
@@ -101,9 +100,9 @@ class Assistant:
             self._area.run_worker(self._check_attributes(), group="attributes", exclusive=True)
 
     async def _check_attributes(self) -> None:
-        text, path = self._area.program_text, self._path
+        text, path = self._area.program_text, self._area.path
         found = await asyncio.to_thread(self._attribute_check.unknown_attributes, text, path)
-        if (text, path) == (self._area.program_text, self._path):
+        if (text, path) == (self._area.program_text, self._area.path):
             self._attributes = found
             self._mark()
 
@@ -135,50 +134,4 @@ class Assistant:
             self._changed()
 
     def _place(self) -> tuple[str, str, int, int]:
-        return self._area.program_text, self._path, *self._area.cursor_location
-
-    # Completion
-
-    def complete(self) -> None:
-        """Complete the word before the cursor: put in what is left of the only name, or open the list."""
-        self._area.run_worker(self._complete(), group="completion", exclusive=True)
-
-    async def _complete(self) -> None:
-        place = self._place()
-        found = await asyncio.to_thread(completion.candidates, *place)
-        _, _, row, start = place
-        start -= len(self._word_at(row, start) or "")
-        at_row, column = self._area.cursor_location
-        typed = self._area.document.get_line(row)[start:column] if at_row == row else None
-        if typed is None or column < start or (typed and not typed.isidentifier()) or not self._area.typing:
-            # The cursor has left the word.
-            return
-        if not found:
-            self._area.insert_indent()
-            return
-        begin = [one for one in found if one.name.lower().startswith(typed.lower())]
-        if len(begin) == 1:
-            self.put_in(begin[0].name)
-        else:
-            self._area.candidates.open(found, (row, start), typed, self._area.place_on_screen(typed))
-
-    def _word_at(self, row: int, column: int) -> str | None:
-        return completion.word_before(self._area.document.get_line(row), column)
-
-    def put_in(self, name: str) -> None:
-        """Replace the word before the cursor with a name."""
-        row, column = self._area.cursor_location
-        word = self._word_at(row, column) or ""
-        self._area.replace(name, (row, column - len(word)), (row, column), maintain_selection_offset=False)
-
-    def _filter(self) -> None:
-        """Follow what is typed while the list is open."""
-        candidates = self._area.candidates
-        if not candidates.is_open:
-            return
-        row, column = self._area.cursor_location
-        word = self._word_at(row, column)
-        if word is None or (row, column - len(word)) != candidates.begin:
-            candidates.close()
-        else:
-            candidates.filter(word, self._area.place_on_screen(word))
+        return self._area.program_text, self._area.path, *self._area.cursor_location

@@ -91,7 +91,7 @@ class CandidateList(Widget):
 
     @dataclass
     class Chosen(Message):
-        """Posted for the name that is to be put in."""
+        """Posted for the name that was clicked."""
 
         name: str
 
@@ -101,6 +101,7 @@ class CandidateList(Widget):
         self._shown: tuple[Candidate, ...] = ()
         self._chosen = 0
         self._width = 0
+        self._word = ""
         self.begin = (0, 0)
         """Row and column of the word that is completed."""
 
@@ -124,6 +125,9 @@ class CandidateList(Widget):
 
     def filter(self, word: str, place: Offset) -> None:
         """Show only the candidates that begin with a word; without any, or if only the word itself is left, close."""
+        if word == self._word and self.is_open:
+            return
+        self._word = word
         begin = [one for one in self._candidates if one.name.lower().startswith(word.lower())]
         if not begin or [one.name for one in begin] == [word]:
             self.close()
@@ -140,24 +144,22 @@ class CandidateList(Widget):
         self._candidates = self._shown = ()
         self.display = False
 
-    def take_key(self, key: str) -> None:
-        """Do what one of `KEYS` does."""
+    def take_key(self, key: str) -> str:
+        """Do what one of `KEYS` does; return the name that is to be put in, empty if none is yet."""
+        name = ""
         match key:
             case "escape":
                 self.close()
             case "enter" | "tab":
-                self._choose(self._chosen)
+                name = self._shown[self._chosen].name
+                self.close()
             case "pageup" | "pagedown":
                 by = MOST_ROWS if key == "pagedown" else -MOST_ROWS
                 self._chosen = min(max(0, self._chosen + by), len(self._shown) - 1)
             case _:
                 self._chosen = (self._chosen + (1 if key == "down" else -1)) % len(self._shown)
         self.refresh()
-
-    def _choose(self, at: int) -> None:
-        name = self._shown[at].name
-        self.close()
-        self.post_message(self.Chosen(name))
+        return name
 
     def render_line(self, y: int) -> Strip:
         """Return one row."""
@@ -171,7 +173,9 @@ class CandidateList(Widget):
         event.prevent_default()
         first = first_shown(self._chosen, len(self._shown), min(MOST_ROWS, len(self._shown)))
         if event.y < min(MOST_ROWS, len(self._shown)):
-            self._choose(first + event.y)
+            name = self._shown[first + event.y].name
+            self.close()
+            self.post_message(self.Chosen(name))
 
     def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
         """Choose the next name."""

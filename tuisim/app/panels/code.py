@@ -329,7 +329,7 @@ class Code(Vertical):
 
     def on_candidate_list_chosen(self, event: CandidateList.Chosen) -> None:
         event.stop()
-        self._assistant.put_in(event.name)
+        self._area.put_in(event.name)
 
     def action_want(self, command: str) -> None:
         self.post_message(self.Wanted(ProgramCommand(command)))
@@ -343,8 +343,6 @@ class Code(Vertical):
         match event.command:
             case EditorCommand.TYPE:
                 self.start_typing()
-            case EditorCommand.COMPLETE:
-                self._assistant.complete()
             case EditorCommand.STOP_TYPING:
                 self.stop_typing()
             case EditorCommand.FIND:
