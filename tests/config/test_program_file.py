@@ -6,7 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from tuisim.config.program_file import find_magic, find_program, parse_program, prelude_for, programs, read_program
+from tuisim.config.program_file import (
+    find_magic,
+    find_program,
+    parse_program,
+    parse_unfinished,
+    prelude_for,
+    programs,
+    read_program,
+)
 from tuisim.errors import ConfigError
 
 
@@ -102,3 +110,20 @@ def test_what_is_no_program_is_told(name: str, data: bytes | None, said: str, tm
         read_program(path)
     if name == "bytes.py":
         assert read_program(path, as_python=True).program.text == "x = '\udcff'\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "prelude"),
+    [
+        ("tank_dr", "preloaded"),
+        ("tank_drive.on(", "preloaded"),
+        ("# %%sim_magic\ntank_dr", "none"),
+        ("# %%sim_magic_preloaded -x\n", "preloaded"),
+        ("import ev3dev2\ntank_dr", "none"),
+        ("from pybricks.hubs import (", "none"),
+    ],
+    ids=["no name yet", "not Python yet", "magic", "unfinished magic", "library", "unfinished import"],
+)
+def test_a_program_that_is_edited_has_the_names_that_it_may_use(text: str, prelude: str) -> None:
+    program = parse_unfinished(text, "p.py")
+    assert (program.text, program.prelude) == (text, prelude)

@@ -193,8 +193,8 @@ _ALWAYS = ("help", "quit", "leave")
 FIELD_KEYS: tuple[KeyWord, ...] = (("enter", "apply"), ("esc", "leave"), ("tab", "next"))
 """Keys of a text field, where letters are not keys."""
 TYPING_KEYS: tuple[KeyWord, ...] = (
-    ("esc", "done"), ("^s", "save"), ("^r", "run"), ("^f", "find"), ("^g", "line"), ("^z", "undo"), ("^y", "redo"),
-    ("^/", "comment"),
+    ("esc", "done"), ("^s", "save"), ("^r", "run"), ("^f", "find"), ("tab", "complete"), ("^g", "line"),
+    ("^z", "undo"), ("^y", "redo"), ("^/", "comment"),
 )  # fmt: skip
 """Keys while the user types in the program."""
 

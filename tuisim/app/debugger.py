@@ -398,7 +398,9 @@ class DebugController:
         self._app.draw(force=True)
 
     def show(self) -> None:
-        """Update the debug panel."""
+        """Update the debug panel, and the values in the code panel."""
+        if code := self._panel_area.code:
+            code.show_pause(self.view)
         if panel := self._panel_area.debug:
             panel.show_pause(self.view, self.busy)
 

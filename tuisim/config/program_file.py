@@ -150,13 +150,13 @@ def prelude_for(text: str, path: str = "") -> str:
 
     It is `none` if the program imports the library, or uses no name of a prelude.
     """
+    if imports_library(text):
+        return "none"
     try:
-        if _imports_library(ast.parse(text)):
-            return "none"
         used, defined = global_names(text)
     # Errors of the program are reported when it runs; here a search must do.
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return "none" if _IMPORT.search(text) else "preloaded"
+        return "preloaded"
     _, ready = global_names(PRELUDE_TEXTS["preloaded"])
     if not (used - defined) & (ready | _READS_ANY_NAME):
         return "none"
@@ -168,7 +168,13 @@ def prelude_for(text: str, path: str = "") -> str:
     return "preloaded"
 
 
-def _imports_library(tree: ast.AST) -> bool:
+def imports_library(text: str) -> bool:
+    """Return whether a program imports a library for a brick."""
+    try:
+        tree = ast.parse(text)
+    # As above.
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return _IMPORT.search(text) is not None
     for node in ast.walk(tree):
         match node:
             case ast.Import(names=names) if any(alias.name.split(".")[0] in LIBRARIES for alias in names):
@@ -193,6 +199,18 @@ def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
         text = "\n".join(lines) + ("\n" if text.endswith(("\n", "\r")) else "")
     prelude = str(magic.options.get("preload", magic.prelude))
     return ProgramSource(Program(name, text, prelude, path), magic.options, has_magic=True)
+
+
+def parse_unfinished(text: str, name: str) -> Program:
+    """Return a program that is being edited, with the prelude that it has, or would have if it used a name of it."""
+    try:
+        source = parse_program(text, name)
+    except ConfigError:
+        # Its magic line is not finished.
+        return Program(name, text, "preloaded")
+    if source.has_magic or imports_library(text):
+        return source.program
+    return replace(source.program, prelude="preloaded")
 
 
 def find_program(word: str) -> Path:

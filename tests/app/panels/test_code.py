@@ -6,8 +6,12 @@ import pytest
 
 from tests.app.app_help import until
 from tests.app.code_help import CodeApp, alone
-from tests.app.panel_help import screen_text
+from tests.app.panel_help import moment, screen_text
 from tuisim.app.panels.code import Code
+from tuisim.app.snapshot import PauseView, RunPhase
+from tuisim.core.geometry import Pose
+from tuisim.core.state import Instant
+from tuisim.protocol import FrameState, Inspected, Paused, Variable
 
 Keys = list[str]
 
@@ -68,3 +72,66 @@ async def test_no_text_is_changed_by_being_shown(text: str) -> None:
     async with CodeApp().run_test(size=(40, 8)) as pilot:
         _, area = await alone(pilot, text)
         assert area.program_text == text
+
+
+LOOP = "total = 0\nfor n in range(9):\n    total = total + n * 100000000000\n    print(total)\n"
+
+
+def pause(*variables: Variable) -> PauseView:
+    stack = (FrameState("<module>", 4, ""),)
+    return PauseView(Paused(321, 0, 4), Inspected(321, 0, "", 0, "", (), stack, variables, (), ()), False)
+
+
+PAUSE = pause(Variable("total", "int", "100000000000", True), Variable("n", "int", "1", False))
+
+
+@pytest.mark.parametrize(
+    ("width", "rows"),
+    [
+        (70, ["total = 0", "for n in range(9):  n = 1", "total = total + n * 100000000000  total = 100000000000"]),
+        (48, ["total = 0", "for n in range(9):  n = 1", "total = total + n * 100000000000  tota…"]),
+        (44, ["total = 0", "for n in range(9):  n = 1", "total = total + n * 100000000000"]),
+    ],
+    ids=["fits", "cut", "no room"],
+)
+async def test_values_stand_behind_the_lines_that_assign_them(width: int, rows: list[str]) -> None:
+    app = CodeApp()
+    async with app.run_test(size=(width, 12)) as pilot:
+        code, area = await alone(pilot, LOOP)
+        code.set_running(LOOP)
+        code.show(moment(state=RunPhase.PAUSED, line=4))
+        code.show_pause(PAUSE)
+        await pilot.pause()
+        assert [area.render_line(y).text[5:].strip() for y in range(3)] == rows
+        assert {area.render_line(y).cell_length for y in range(4)} == {width}
+        assert area.program_text == LOOP
+
+
+@pytest.mark.parametrize("then", ["go on", "another instant", "another run"])
+async def test_values_of_another_instant_are_not_shown(then: str) -> None:
+    app = CodeApp()
+    async with app.run_test(size=(70, 12)) as pilot:
+        code, area = await alone(pilot, LOOP)
+        code.set_running(LOOP)
+        code.show(moment(state=RunPhase.PAUSED, line=4))
+        code.show_pause(PAUSE)
+        assert "n = 1" in area.render_line(1).text
+        match then:
+            case "go on":
+                code.show_pause(None)
+            case "another instant":
+                code.show(moment(state=RunPhase.PAUSED, line=4, instant=Instant(322, Pose(0, 0, 0), 0, 0, 0, 0)))
+            case _:
+                code.set_running(None)
+        assert "n = 1" not in area.render_line(1).text
+
+
+async def test_values_follow_their_lines_in_an_edited_text() -> None:
+    app = CodeApp()
+    async with app.run_test(size=(70, 12)) as pilot:
+        code, area = await alone(pilot, LOOP)
+        code.set_running(LOOP)
+        code.show(moment(state=RunPhase.PAUSED, line=4))
+        code.show_pause(PAUSE)
+        await pilot.press("enter", "ctrl+home", "number_sign", "enter")
+        await until(pilot, lambda: area.render_line(2).text.rstrip().endswith("range(9):  n = 1"))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from typing import ClassVar
 
@@ -15,15 +16,20 @@ from textual import events
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal
-from textual.geometry import Region
+from textual.geometry import Offset, Region
 from textual.message import Message
 from textual.strip import Strip
 from textual.widgets import Input, Static, TextArea
 from textual.widgets.text_area import Edit, EditResult, Selection
 
 from tuisim.app.editor import text_lines
+from tuisim.app.editor.candidate_list import CandidateList
+from tuisim.app.editor.completion import Candidate, candidates, word_before
+from tuisim.app.editor.names import UnknownName
 from tuisim.app.editor.syntax import KINDS, Colouring
 from tuisim.data_class import dataclass
+from tuisim.protocol import Variable
+from tuisim.terminal.text_runs import Line, cut_line
 from tuisim.terminal.textual_internals import columns_to_tab_stop, line_at_row
 
 # A `TextArea` treats these characters as line ends, Python does not: they are replaced by substitutes.
@@ -32,6 +38,9 @@ _GUARD = {ord(char): 0xF700 + at for at, char in enumerate(_BREAKS)}
 _UNGUARD = {stand_in: char for char, stand_in in _GUARD.items()}
 _UNSHOWN = re.compile(r"[\x00-\x08\x0a-\x1f\x7f-\x9f\uf700-\uf707]")
 
+VALUE_GAP, LEAST_VALUE = 2, 5
+"""Cells between a line and the values behind it, and the fewest for these."""
+
 EDITOR_KEYS = (
     ("Enter", "Start editing; Escape ends it"),
     ("ctrl+s", "Save the program"),
@@ -39,7 +48,8 @@ EDITOR_KEYS = (
     ("ctrl+f F3 ⇧F3", "Find, next, previous"),
     ("ctrl+g", "Go to a line"),
     ("ctrl+home ctrl+end", "Start, end of the text"),
-    ("tab ⇧tab", "Indent, outdent; backspace removes an indent"),
+    ("tab", "After part of a name or a dot: complete it, or list what may follow"),
+    ("tab ⇧tab", "Elsewhere: indent, outdent; backspace removes an indent"),
     ("ctrl+/", "Comment or uncomment lines"),
     ("ctrl+z ctrl+y", "Undo, redo"),
     ("ctrl+a", "Select all"),
@@ -67,7 +77,8 @@ class CodeArea(TextArea):
     ALLOW_SELECT = False
     DEFAULT_CSS = "CodeArea { height: 1fr; border: none; padding: 0; overflow-x: hidden; &:focus { border: none; } }"
     COMPONENT_CLASSES: ClassVar[set[str]] = {
-        "code--number-column", "code--lit", "code--error", "code--break", *(f"code--{kind}" for kind in KINDS),
+        "code--number-column", "code--lit", "code--error", "code--break", "code--unknown", "code--value",
+        "code--changed", *(f"code--{kind}" for kind in KINDS),
     }  # fmt: skip
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+f", "want('find')", "Find", show=False),
@@ -96,6 +107,12 @@ class CodeArea(TextArea):
         self._colouring = Colouring()
         self._breaks: Mapping[int, str] = {}
         self._lit = self._error = 0
+        self.path = ""
+        """Of the program's file, or its name."""
+        self.candidates = CandidateList()
+        """The list of names; it takes its keys from here."""
+        self._unknown: tuple[UnknownName, ...] = ()
+        self._values: Mapping[int, Sequence[Variable]] = {}
         super().__init__(
             read_only=True, show_line_numbers=True, compact=True, highlight_cursor_line=False, soft_wrap=False
         )
@@ -145,6 +162,10 @@ class CodeArea(TextArea):
         text = Text(_UNSHOWN.sub("·", line), end="", no_wrap=True)
         for start, end, kind in self._colouring.of(self.document.lines, line_index):
             text.stylize(self._component(kind), start, end)
+        for one in self._unknown:
+            # The text may have been edited since it was checked.
+            if one.row == line_index and line[one.start : one.end] == one.name:
+                text.stylize(self._component("unknown"), one.start, one.end)
         return text
 
     def _component(self, kind: str) -> Style:
@@ -186,6 +207,25 @@ class CodeArea(TextArea):
             before, self._lit = self._lit, line
             self._refresh_line(before)
             self._refresh_line(line)
+
+    @property
+    def unknown(self) -> Sequence[UnknownName]:
+        """The names that are marked as not defined."""
+        return self._unknown
+
+    def set_unknown(self, names: tuple[UnknownName, ...]) -> None:
+        """Mark names as not defined."""
+        if names != self._unknown:
+            self._unknown = names
+            # Its lines are drawn anew.
+            self.notify_style_update()
+            self.refresh()
+
+    def set_values(self, values: Mapping[int, Sequence[Variable]]) -> None:
+        """Show the values of variables behind lines, from 1."""
+        if values != self._values:
+            self._values = values
+            self.refresh()
 
     def _rows_of(self, line: int) -> range:
         if not 1 <= line <= self.document.line_count:
@@ -236,11 +276,26 @@ class CodeArea(TextArea):
         room = self.scrollable_content_region.width - gutter
         if cell_len(text.text.rstrip()) > room and not (self.typing and line_index == self.cursor_location[0]):
             text = Strip.join([text.crop(0, room - 1), Strip([Segment("…", number_style)], 1)])
+        elif values := self._values.get(line):
+            text = self._with_values(text, values, room, Style(bgcolor=number_style.bgcolor))
         run_mark = {"error": "✗", "lit": "▶"}.get(lit, " ") if section == 0 else " "
         number = f"{line if section == 0 else '':>{gutter - 3}}"
         mark = self._breaks.get(line, " ") if section == 0 else " "
         head = [Segment(mark, number_style + self._component("break")), Segment(f"{run_mark}{number} ", number_style)]
         return Strip.join([Strip(head, gutter), text])
+
+    def _with_values(self, text: Strip, values: Sequence[Variable], room: int, ground: Style) -> Strip:
+        """Return a row with the values of variables behind its text, as far as they fit."""
+        used = cell_len(text.text.rstrip()) + VALUE_GAP
+        left = room - used
+        if left < LEAST_VALUE:
+            return text
+        pieces: Line = []
+        for one in values:
+            style = self._component("changed" if one.changed else "value")
+            pieces.append((f"{', ' if pieces else ''}{one.name} = {' '.join(one.value.split())}", style + ground))
+        shown = [Segment(piece, style) for piece, style in cut_line(pieces, left)]
+        return Strip.join([text.crop(0, used), Strip(shown), text.crop(used + sum(one.cell_length for one in shown))])
 
     # Keys and mouse
 
@@ -264,13 +319,19 @@ class CodeArea(TextArea):
     def action_go_to_end(self, end: bool) -> None:
         self.move_cursor(self.document.end if end else (0, 0))
 
-    def on_key(self, event: events.Key) -> None:
+    async def on_key(self, event: events.Key) -> None:
         if not self.typing:
             if event.key == "enter":
                 self._done(event)
                 self.post_message(self.Wanted(EditorCommand.TYPE))
             return
-        if event.key == "enter":
+        # What was typed just before may not have been reported yet.
+        self.follow_word()
+        if self.candidates.is_open and event.key in self.candidates.KEYS:
+            self._done(event)
+            if name := self.candidates.take_key(event.key):
+                self.put_in(name)
+        elif event.key == "enter":
             self._done(event)
             row, column = min(self.selection)
             self.insert_text("\n" + text_lines.indent_after(self.document.get_line(row)[:column]))
@@ -280,7 +341,7 @@ class CodeArea(TextArea):
             self.delete((row, column - blanks), (row, column), maintain_selection_offset=False)
         elif event.key == "tab" and self.selection.is_empty:
             self._done(event)
-            self.insert_text(" " * columns_to_tab_stop(self))
+            await self._complete()
         elif change := _CHANGES.get(event.key):
             self._done(event)
             self._change_lines(change)
@@ -299,6 +360,56 @@ class CodeArea(TextArea):
         """Return how many blanks before the cursor backspace deletes, 0 if there is more than indentation."""
         row, column = self.cursor_location
         return text_lines.blanks_to_delete(self.document.get_line(row)[:column])
+
+    # Completion
+
+    async def _complete(self) -> None:
+        """Complete the word before the cursor, list what may follow, or indent; keys that are typed meanwhile wait."""
+        place = self.cursor_location
+        found: tuple[Candidate, ...] = ()
+        if self._word() is not None:
+            found = await asyncio.to_thread(candidates, self.program_text, self.path, *place)
+        word = self._word()
+        if self.cursor_location != place or not self.selection.is_empty or not self.typing:
+            # Something else has moved the cursor, such as the mouse.
+            return
+        if len(found) == 1:
+            self.put_in(found[0].name)
+        elif found and word is not None:
+            row, column = place
+            self.candidates.open(found, (row, column - len(word)), word, self._place_of(word))
+        else:
+            self.insert_text(" " * columns_to_tab_stop(self))
+
+    def _word(self) -> str | None:
+        """Return the word that ends at the cursor, as `word_before`."""
+        row, column = self.cursor_location
+        return word_before(self.document.get_line(row), column)
+
+    def _place_of(self, word: str) -> Offset:
+        """Return where on the screen the word begins that ends at the cursor."""
+        x, y = self.cursor_screen_offset
+        return Offset(x - cell_len(word), y)
+
+    def put_in(self, name: str) -> None:
+        """Replace the word before the cursor with a name."""
+        row, column = self.cursor_location
+        word = self._word() or ""
+        self.replace(name, (row, column - len(word)), (row, column), maintain_selection_offset=False)
+
+    def follow_word(self) -> None:
+        """Shorten the list of names to the word that is typed now, or close it."""
+        if not self.candidates.is_open:
+            return
+        word, (row, column) = self._word(), self.cursor_location
+        if word is None or (row, column - len(word)) != self.candidates.begin:
+            self.candidates.close()
+        else:
+            self.candidates.filter(word, self._place_of(word))
+
+    def on_blur(self) -> None:
+        """Close the list of names."""
+        self.candidates.close()
 
     def insert_text(self, text: str) -> None:
         """Replace the selection with a text."""

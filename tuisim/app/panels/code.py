@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from enum import StrEnum
 from typing import ClassVar, assert_never
 
+from rich.text import Text
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Vertical
@@ -17,9 +18,12 @@ from textual.widgets.text_area import Selection
 
 from tuisim.app.action import TYPING_KEYS, with_keys_of
 from tuisim.app.editor.area import FIND, LINE, CodeArea, EditorCommand, FindBar
+from tuisim.app.editor.assistant import Assistant
+from tuisim.app.editor.candidate_list import CandidateList
+from tuisim.app.editor.line_values import line_values
 from tuisim.app.editor.text_lines import LineMap, places
 from tuisim.app.panels import PANELS
-from tuisim.app.snapshot import RunPhase, Snapshot
+from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
 from tuisim.data_class import dataclass
 from tuisim.source import source_lines
 
@@ -28,6 +32,8 @@ LIT_GAP_S = 0.1
 
 _TITLE = PANELS["code"].title
 NOTHING_OPEN = "No program: {open} opens one, {new} creates one"
+_FRAME = 4
+"""Cells of the frame beside what it says."""
 _HINT_KEYS = 4
 """So many keys fit the frame."""
 
@@ -78,6 +84,7 @@ class Code(Vertical):
     def __init__(self) -> None:
         super().__init__()
         self._area = CodeArea()
+        self._assistant = Assistant(self._area, self._say)
         self._bar = FindBar()
         self._key: str | None = None
         self._shown = ""
@@ -91,10 +98,14 @@ class Code(Vertical):
         self._said = (_TITLE, "")
         self._error_words = ""
         """What is wrong in the line that is marked as an error, as far as it is known."""
+        self._pause: PauseView | None = None
+        self._tick = 0
+        """Of the instant in view."""
 
     def compose(self) -> ComposeResult:
         yield self._area
         yield self._bar
+        yield self._area.candidates
 
     # Display
 
@@ -133,12 +144,14 @@ class Code(Vertical):
             self._area.placeholder = "" if name else self._nothing_open
             self._area.load_program(text)
             self._area.scroll_to(y=0, animate=False, force=True)
+            self._assistant.program_changed(key)
             if not name:
                 self.stop_typing()
         elif text != self._shown:
             self._area.replace_program(text)
             # The error was in the former text.
             self._area.set_error(0)
+            self._assistant.text_changed()
         self._shown = text
         self.set_title(name)
 
@@ -160,7 +173,8 @@ class Code(Vertical):
         keys = "  ".join(f"{key} {does}" for key, does in TYPING_KEYS[:_HINT_KEYS]) if self.typing else ""
         words = self._error_words if self.error_line else ""
         told = words or "  ".join(filter(None, ["running text differs" if self.differs else "", keys]))
-        self.border_subtitle = told.replace("[", "\\[")
+        helped = Text() if words else self._assistant.said(self.size.width - _FRAME)
+        self.border_subtitle = helped if helped else told.replace("[", "\\[")
 
     def set_running(self, text: str | None, tells: bool = True) -> None:
         """Set the text of the run in view.
@@ -172,6 +186,7 @@ class Code(Vertical):
         self._run_lines, self._mapped = source_lines(text) if text is not None else None, None
         self._tells_run = tells
         self._say()
+        self._show_values()
 
     def set_marks(self, breaks: Mapping[int, str]) -> None:
         """Set the breakpoint markers: `●` a breakpoint, `○` a disabled one, `◆` one with a condition."""
@@ -216,6 +231,9 @@ class Code(Vertical):
         if in_run != self._in_run:
             self._in_run = in_run
             self._say()
+        if snapshot.instant.tick != self._tick:
+            self._tick = snapshot.instant.tick
+            self._show_values()
         line = snapshot.line if in_run else 0
         if line == self._line:
             return
@@ -244,6 +262,19 @@ class Code(Vertical):
         if self._mapped is None or self._mapped[0] != lines:
             self._mapped = list(lines), LineMap(self._run_lines, lines)
         return self._mapped[1].to_shown(line)
+
+    def show_pause(self, pause: PauseView | None) -> None:
+        """Show the values where the program is paused, behind the lines that assign them; None while it runs."""
+        self._pause = pause
+        self._show_values()
+
+    def _show_values(self) -> None:
+        pause, values = self._pause, {}
+        # Those of another instant are not shown.
+        if pause is not None and self._run_lines is not None and pause.paused.tick == self._tick:
+            of_run = line_values("\n".join(self._run_lines), pause.inspected)
+            values = {shown: found for line, found in of_run.items() if (shown := self._line_shown(line))}
+        self._area.set_values(values)
 
     def page(self, by: int) -> None:
         """Move the cursor a page down, or up if `by` is negative."""
@@ -276,6 +307,7 @@ class Code(Vertical):
     def _type(self, typing: bool) -> None:
         if typing != self.typing:
             self._area.read_only = not typing
+            self._assistant.stop()
             self._say()
             self.post_message(self.TypingChanged(typing))
 
@@ -286,8 +318,18 @@ class Code(Vertical):
             self._shown = text
             self._area.set_error(0)
             self.show_line(self._line)
+            self._show_values()
             self._say()
+            self._assistant.text_changed()
             self.post_message(self.Edited(text))
+
+    def on_text_area_selection_changed(self, event: TextArea.SelectionChanged) -> None:
+        event.stop()
+        self._assistant.cursor_moved()
+
+    def on_candidate_list_chosen(self, event: CandidateList.Chosen) -> None:
+        event.stop()
+        self._area.put_in(event.name)
 
     def action_want(self, command: str) -> None:
         self.post_message(self.Wanted(ProgramCommand(command)))

@@ -1,0 +1,151 @@
+"""The keys of the list, the signature and the marks while one types."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from textual.pilot import Pilot
+
+from tests.app.app_help import until
+from tests.app.code_help import CodeApp, alone
+from tests.app.panel_help import screen_text
+from tuisim.app.editor.area import CodeArea
+from tuisim.app.panels.code import Code
+
+SIZE = (80, 24)
+
+
+async def typed(pilot: Pilot[Any], text: str, before: str = "") -> tuple[Code, CodeArea]:
+    """Open a program, and type a text at its end."""
+    code, area = await alone(pilot, before)
+    await pilot.press("enter")
+    area.move_cursor(area.document.end)
+    area.insert_text(text)
+    await pilot.pause()
+    return code, area
+
+
+async def listed(pilot: Pilot[Any], text: str) -> tuple[Code, CodeArea]:
+    """Type a text with several names that may follow, and open their list."""
+    code, area = await typed(pilot, text)
+    await pilot.press("tab")
+    await until(pilot, lambda: area.candidates.is_open)
+    await pilot.pause()
+    return code, area
+
+
+async def test_the_only_name_is_put_in(home: Path) -> None:
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        _, area = await typed(pilot, "tank_drive.of")
+        await pilot.press("tab")
+        await until(pilot, lambda: area.program_text == "tank_drive.off")
+        assert not area.candidates.is_open
+
+
+@pytest.mark.parametrize(
+    ("keys", "text"),
+    [
+        (["enter"], "tank_drive.off"),
+        (["down", "tab"], "tank_drive.on"),
+        (["up", "enter"], "tank_drive.on_for_seconds"),
+        (["n", "underscore", "enter"], "tank_drive.on_for_degrees"),
+        (["n", "underscore", "backspace", "backspace", "enter"], "tank_drive.off"),
+        (["pagedown", "enter"], "tank_drive.on_for_seconds"),
+        (["escape"], "tank_drive.o"),
+        (["left_parenthesis"], "tank_drive.o("),
+        (["x"], "tank_drive.ox"),
+    ],
+    ids=["first", "next", "last", "filter", "filter and back", "page", "close", "other character", "no such name"],
+)
+async def test_keys_of_the_list(home: Path, keys: list[str], text: str) -> None:
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        _, area = await listed(pilot, "tank_drive.o")
+        await pilot.press(*keys)
+        await until(pilot, lambda: not area.candidates.is_open)
+        await pilot.pause()
+        assert area.program_text == text
+        assert area.typing
+
+
+async def test_the_list_shows_names_signatures_and_help(home: Path) -> None:
+    app = CodeApp()
+    async with app.run_test(size=SIZE) as pilot:
+        await listed(pilot, "tank_drive.o")
+        await pilot.press("down")
+        await until(pilot, lambda: "Start rotating" in "".join(screen_text(app)))
+        rows = "\n".join(screen_text(app))
+        assert "▸on(left_speed, right_speed)" in rows
+        assert " on_for_degrees(left_speed, right_speed, degrees, brake=True, block=True)" in rows
+
+
+async def test_a_click_chooses_a_name(home: Path) -> None:
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        _, area = await listed(pilot, "tank_drive.o")
+        await pilot.click(area.candidates, offset=(5, 2))
+        await until(pilot, lambda: area.program_text == "tank_drive.on_for_degrees")
+        assert area.has_focus
+
+
+async def test_the_list_follows_neither_the_cursor_nor_the_focus(home: Path) -> None:
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        _, area = await listed(pilot, "tank_drive.o")
+        await pilot.press("home")
+        await until(pilot, lambda: not area.candidates.is_open)
+        await pilot.press("end", "tab")
+        await until(pilot, lambda: area.candidates.is_open)
+        area.blur()
+        await until(pilot, lambda: not area.candidates.is_open)
+
+
+async def test_tab_indents_where_nothing_may_follow(home: Path) -> None:
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        _, area = await typed(pilot, "nothing_like_it")
+        await pilot.press("tab")
+        await until(pilot, lambda: area.program_text == "nothing_like_it ")
+
+
+async def test_the_frame_shows_the_signature_of_the_call(home: Path) -> None:
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        code, area = await typed(pilot, "tank_drive.on(1, ")
+        code._assistant.ask_signature()
+        await until(pilot, lambda: "right_speed" in str(code.border_subtitle))
+        assert str(code.border_subtitle) == "on(left_speed, [bold]right_speed[/bold])"
+        area.insert_text(")")
+        await until(pilot, lambda: "right_speed" not in str(code.border_subtitle))
+
+
+async def test_names_that_nobody_defined_are_marked_and_explained(home: Path) -> None:
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        code, area = await typed(pilot, "tank_drve.on(1)\n")
+        assert not area.unknown
+        code._assistant.check_names()
+        assert [one.name for one in area.unknown] == ["tank_drve"]
+        assert "did you mean" not in str(code.border_subtitle)
+        await pilot.press("up")
+        await until(pilot, lambda: "did you mean" in str(code.border_subtitle))
+        assert str(code.border_subtitle) == "`tank_drve` is not defined: did you mean `tank_drive`?"
+        area.replace("tank_drive", (0, 0), (0, 9))
+        code._assistant.check_names()
+        assert not area.unknown
+
+
+async def test_a_program_is_checked_when_it_is_opened() -> None:
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        _, area = await alone(pilot, "prnt('a')\n")
+        assert [one.name for one in area.unknown] == ["prnt"]
+
+
+async def test_in_a_narrow_panel_the_hint_is_what_stays() -> None:
+    async with CodeApp().run_test(size=(40, 12)) as pilot:
+        code, _ = await alone(pilot, "tank_drve.on(1)\n")
+        await until(pilot, lambda: str(code.border_subtitle) == "did you mean `tank_drive`?")
+
+
+async def test_unknown_attributes_are_marked_once_names_were_looked_up(home: Path) -> None:
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        code, area = await listed(pilot, "tank_drive.onn(1)\ntank_drive.o")
+        await pilot.press("enter")
+        code._assistant.check_names()
+        await until(pilot, lambda: [one.name for one in area.unknown] == ["onn"])

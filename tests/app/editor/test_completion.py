@@ -1,0 +1,172 @@
+"""What may follow at a place of a program, and the signature of a call."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import ROOT
+from tuisim.app.editor.completion import (
+    Candidate,
+    Signature,
+    candidates,
+    first_sentence,
+    in_call,
+    signature,
+    word_before,
+)
+
+EV3DEV2 = "from ev3dev2.motor import LargeMotor\nfrom ev3dev2.sensor.lego import TouchSensor\nm = LargeMotor()\n"
+PYBRICKS = """\
+from pybricks.hubs import EV3Brick
+from pybricks.ev3devices import Motor, ColorSensor
+from pybricks.parameters import Port, Color
+ev3 = EV3Brick()
+motor = Motor(Port.A)
+"""
+MEMBERS = json.loads((ROOT / "tests/shim/pybricks/api.json").read_text())["calls"]
+CLASSES = ("pybricks.ev3devices:Motor", "pybricks.ev3devices:GyroSensor", "pybricks.robotics:DriveBase")
+
+
+def at_end(text: str, path: str = "prog.py") -> tuple[Candidate, ...]:
+    return candidates(text, path, *place(text))
+
+
+def place(text: str) -> tuple[int, int]:
+    lines = text.split("\n")
+    return len(lines) - 1, len(lines[-1])
+
+
+def names(text: str) -> list[str]:
+    return [one.name for one in at_end(text)]
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("tank_drive.o", ["off", "on", "on_for_degrees", "on_for_rotations", "on_for_seconds"]),
+        ("col", ["colorLeft", "colorRight", "ColorSensor"]),
+        ("get_cl", ["get_clock"]),
+        ("print(colorLeft.refl", ["reflected_light_intensity", "reflected_light_intensity_pc"]),
+        ("# %%sim_magic_imports\ntank_d", []),
+        ("# %%sim_magic_preloaded -b\ntank_d", ["tank_drive"]),
+        (EV3DEV2 + "m.run_f", ["run_forever"]),
+        (EV3DEV2 + "tank_d", []),
+        (PYBRICKS + "ev3.s", ["screen", "speaker"]),
+        (PYBRICKS + "ColorSensor(Port.S1).", ["ambient", "color", "reflection", "rgb"]),
+        ("from pybricks.rob", ["robotics"]),
+        ("from pybricks.tools import w", ["wait"]),
+        ("def speed_of(wheel):\n    return wheel\n\nspee", ["speed_of", "SpeedPercent"]),
+        ("import ti", ["time", "timeit"]),
+        ("x = (1,\nif tank_drive.of", ["off"]),
+    ],
+    ids=[
+        "method", "prelude in any case", "clock", "of the course", "other prelude", "unfinished magic", "ev3dev2",
+        "no prelude", "Pybricks", "no inner names", "module", "from a module", "own function", "import", "broken text",
+    ],
+)  # fmt: skip
+def test_names_that_may_follow(home: Path, text: str, found: list[str]) -> None:
+    assert names(text) == found
+
+
+@pytest.mark.parametrize("name", CLASSES)
+def test_all_members_of_a_class_of_pybricks_are_there(home: Path, name: str) -> None:
+    module, _, made = name.partition(":")
+    members = {
+        member.removeprefix(f"{name}.").split(".")[0]
+        for member in MEMBERS
+        if member.startswith(f"{name}.") and "__" not in member
+    }
+    assert members <= set(names(f"from {module} import {made}\n{made}()."))
+
+
+@pytest.mark.parametrize("text", ["", "    ", "'tank_drive.o", "# tank_drive.o", "3.", "x ="])
+def test_nothing_may_follow(text: str) -> None:
+    assert names(text) == []
+
+
+def test_a_candidate_has_a_signature_and_help(home: Path) -> None:
+    found = {one.name: one for one in at_end("tank_drive.o")}
+    assert found["on"] == Candidate(
+        "on",
+        "(left_speed, right_speed)",
+        help="Start rotating the motors according to `left_speed` and `right_speed` forever",
+    )
+    assert at_end(PYBRICKS + "motor.run_t")[-1].signature == "(speed, time, then=Stop.HOLD, wait=True)"
+    assert [one.kind for one in at_end("colorLeft.reflected_light_intensity_p")] == ["property"]
+
+
+def test_constants_come_last(home: Path) -> None:
+    found = names(EV3DEV2 + "m.")
+    assert found.index("COMMAND_STOP") > found.index("wait_until")
+    assert found[-1].isupper()
+    assert not any(name.startswith("_") for name in found)
+
+
+def test_a_module_beside_the_program_is_read_and_not_run(home: Path, tmp_path: Path) -> None:
+    ran = tmp_path / "ran"
+    (tmp_path / "helper.py").write_text(f"def turn_left(): pass\nopen({str(ran)!r}, 'w')\n1 / 0\n")
+    found = at_end("import helper\nhelper.tu", str(tmp_path / "prog.py"))
+    assert [one.name for one in found] == ["turn_left"]
+    assert not ran.exists()
+
+
+def test_it_is_not_imported_before_it_is_asked() -> None:
+    code = "import sys, tuisim.app.app, tuisim.app.panels.code; print('jedi' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "False\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("tank_drive.on(", Signature("on", ("left_speed", "right_speed"), 0)),
+        ("tank_drive.on(SpeedPercent(5), ", Signature("on", ("left_speed", "right_speed"), 1)),
+        ("tank_drive.on(SpeedPercent(", Signature("SpeedPercent", ("percent", "desc=None"), 0)),
+        ("def add(a: int, b: int = 2) -> int:\n    return a\n\nadd(b=", Signature("add", ("a", "b=2"), 1)),
+        ("nothing(", None),
+    ],
+    ids=["method", "second", "inner", "own function", "unknown"],
+)
+def test_signature_of_a_call(home: Path, text: str, found: Signature | None) -> None:
+    assert signature(text, "prog.py", *place(text)) == found
+
+
+@pytest.mark.parametrize(
+    ("line", "column", "word"),
+    [
+        ("tank", 4, "tank"), ("tank", 2, "ta"), ("a.b", 3, "b"), ("a.", 2, ""), ("f().", 4, ""), ("x[1].", 5, ""),
+        ("'a'.", 4, ""), ("x = ", 4, None), ("    ", 4, None), ("# tank", 6, None), ("'tank", 5, None), ("1.", 2, None),
+        ("x12.", 4, ""), ("a..", 3, None),
+    ],
+)  # fmt: skip
+def test_the_word_that_is_typed(line: str, column: int, word: str | None) -> None:
+    assert word_before(line, column) == word
+
+
+@pytest.mark.parametrize(
+    ("lines", "is_in"),
+    [
+        (["f("], True), (["f(1, [2], "], True), (["f(", "  1,"], True), (["f()"], False), (["(1, "], False),
+        (["x = [1, "], False), (["f([1, "], True), (["print('(')"], False), (["# f("], False), (["f(g(1)"], True),
+    ],
+)  # fmt: skip
+def test_whether_a_place_is_in_a_call(lines: Sequence[str], is_in: bool) -> None:
+    assert in_call(lines, len(lines) - 1, len(lines[-1])) == is_in
+
+
+@pytest.mark.parametrize(
+    ("documentation", "first"),
+    [
+        ("Stop.  Then go.", "Stop"),
+        ("One\nline, e.g. here. More", "One line, e.g. here"),
+        ("Set ``on``\n\nMore", "Set `on`"),
+        ("", ""),
+    ],
+)
+def test_the_first_sentence(documentation: str, first: str) -> None:
+    assert first_sentence(documentation) == first

@@ -1,0 +1,137 @@
+"""Help while typing: the signature of the call at the cursor, and names that are not defined."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+
+from rich.text import Text
+from textual.timer import Timer
+
+from tuisim.app.editor import completion
+from tuisim.app.editor.area import CodeArea
+from tuisim.app.editor.attributes import AttributeCheck
+from tuisim.app.editor.candidate_list import signature_text
+from tuisim.app.editor.names import UnknownName, unknown_names
+from tuisim.terminal.text_runs import cut
+
+CHECK_AFTER_S = 0.5
+"""Names are checked when nothing has been typed for this long."""
+ASK_AFTER_S = 0.15
+"""Likewise for the signature."""
+MOST_LINES = 5000
+"""Longer texts are not checked: it would hold up the keys."""
+
+
+class Assistant:
+    """What helps in one text.
+
+    Args:
+        area: The text, with its list of names.
+        changed: Called when there is something else to say.
+    """
+
+    def __init__(self, area: CodeArea, changed: Callable[[], None]) -> None:
+        self._area, self._changed = area, changed
+        self._attribute_check = AttributeCheck(completion.members)
+        self._names: tuple[UnknownName, ...] = ()
+        self._attributes: tuple[UnknownName, ...] = ()
+        self._signature: completion.Signature | None = None
+        self._check_timer: Timer | None = None
+        self._ask_timer: Timer | None = None
+        self._is_asking = self._asks_again = False
+
+    def said(self, width: int) -> Text:
+        """Return what there is to say at the cursor, in at most so many cells."""
+        row, column = self._area.cursor_location
+        unknown = next((one for one in self._area.unknown if one.row == row and one.start <= column <= one.end), None)
+        if unknown is not None:
+            whole, hint = unknown.message, unknown.hint or unknown.message
+            return Text(cut(whole if len(whole) <= width else hint, width))
+        return signature_text(self._signature, width) if self._signature else Text()
+
+    def program_changed(self, path: str) -> None:
+        """Forget all about another program, and check the names of this one.
+
+        Args:
+            path: Of its file, or its name.
+        """
+        self._area.path, self._signature = path, None
+        self._area.candidates.close()
+        self._names = self._attributes = ()
+        self._mark()
+        self.check_names()
+
+    def text_changed(self) -> None:
+        """Follow an edit."""
+        self._check_timer = self._restarted(self._check_timer, CHECK_AFTER_S, self.check_names)
+
+    def cursor_moved(self) -> None:
+        """Follow the cursor."""
+        self._area.follow_word()
+        row, column = self._area.cursor_location
+        if self._area.typing and completion.in_call(self._area.document.lines, row, column):
+            self._ask_timer = self._restarted(self._ask_timer, ASK_AFTER_S, self.ask_signature)
+        else:
+            self._signature = None
+        self._changed()
+
+    def _restarted(self, timer: Timer | None, after_s: float, call: Callable[[], None]) -> Timer:
+        if timer is not None:
+            timer.stop()
+        return self._area.set_timer(after_s, call)
+
+    def stop(self) -> None:
+        """End what only helps while typing."""
+        self._area.candidates.close()
+        self._signature = None
+
+    # Names
+
+    def check_names(self) -> None:
+        """Look for names that are not defined, and mark them."""
+        if self._area.document.line_count > MOST_LINES:
+            return
+        found = unknown_names(self._area.program_text, self._area.path)
+        if found is not None:
+            self._names = found
+            self._mark()
+        if completion.is_ready():
+            self._area.run_worker(self._check_attributes(), group="attributes", exclusive=True)
+
+    async def _check_attributes(self) -> None:
+        text, path = self._area.program_text, self._area.path
+        found = await asyncio.to_thread(self._attribute_check.unknown_attributes, text, path)
+        if (text, path) == (self._area.program_text, self._area.path):
+            self._attributes = found
+            self._mark()
+
+    def _mark(self) -> None:
+        self._area.set_unknown((*self._names, *self._attributes))
+        self._changed()
+
+    # Signature
+
+    def ask_signature(self) -> None:
+        """Look up the function whose arguments are at the cursor."""
+        if self._is_asking:
+            self._asks_again = True
+        elif self._area.typing:
+            self._is_asking = True
+            self._area.run_worker(self._ask())
+
+    async def _ask(self) -> None:
+        try:
+            found = await asyncio.to_thread(completion.signature, *self._place())
+        finally:
+            self._is_asking = False
+        if self._asks_again:
+            self._asks_again = False
+            self.ask_signature()
+        row, column = self._area.cursor_location
+        if self._area.typing and completion.in_call(self._area.document.lines, row, column):
+            self._signature = found
+            self._changed()
+
+    def _place(self) -> tuple[str, str, int, int]:
+        return self._area.program_text, self._area.path, *self._area.cursor_location

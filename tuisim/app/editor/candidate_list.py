@@ -1,0 +1,188 @@
+"""The list of names that may stand at the cursor, over the text; and a signature as one line."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from rich.segment import Segment
+from rich.style import Style
+from rich.text import Text
+from textual import events
+from textual.geometry import Offset, Size
+from textual.message import Message
+from textual.strip import Strip
+from textual.widget import Widget
+
+from tuisim import palette
+from tuisim.app.editor.completion import Candidate, Signature
+from tuisim.data_class import dataclass
+from tuisim.terminal.text_runs import Line, cut, cut_line, first_shown
+
+MOST_ROWS = 8
+MOST_WIDTH = 76
+LEAST_WIDTH = 24
+_GROUND, _CHOSEN_GROUND = Style(bgcolor=palette.FIELD), Style(bgcolor=palette.CHOSEN, bold=True)
+_NAME, _SIGNATURE, _HELP = Style(color=palette.WHITE), Style(color=palette.PALE), Style(color=palette.YELLOW)
+_HELP_GROUND = Style(bgcolor=palette.RAISED)
+
+
+def list_lines(candidates: Sequence[Candidate], chosen: int, width: int) -> list[Line]:
+    """Return the rows of a list: the candidates around the chosen one, and the help for it."""
+    room = min(MOST_ROWS, len(candidates))
+    first = first_shown(chosen, len(candidates), room)
+    lines: list[Line] = []
+    for at, one in enumerate(candidates[first : first + room], start=first):
+        ground = _CHOSEN_GROUND if at == chosen else _GROUND
+        after = one.signature or (f" {one.kind}" if one.kind else "")
+        row = cut_line([("▸" if at == chosen else " ", _NAME), (one.name, _NAME), (after, _SIGNATURE)], width - 1)
+        lines.append(_padded([(text, style + ground) for text, style in row], width, ground))
+    count = f" {chosen + 1}/{len(candidates)} " if len(candidates) > room else " "
+    help_text = cut(candidates[chosen].help, width - 1 - len(count))
+    row = [(f" {help_text}".ljust(width - len(count)), _HELP + _HELP_GROUND), (count, _SIGNATURE + _HELP_GROUND)]
+    return [*lines, row]
+
+
+def _padded(line: Sequence[tuple[str, Style]], width: int, style: Style) -> Line:
+    return [*line, (" " * (width - sum(len(text) for text, _ in line)), style)]
+
+
+def list_width(candidates: Sequence[Candidate], room: int) -> int:
+    """Return the width of a list in cells, at most `room`."""
+    longest = max(max(len(one.name) + len(one.signature or one.kind), len(one.help)) for one in candidates)
+    return min(room, MOST_WIDTH, max(LEAST_WIDTH, longest + 3))
+
+
+def list_place(word: Offset, size: Size, screen: Size) -> Offset:
+    """Return where a list of a size stands: below the word, or above it if there is no room, all of it in view."""
+    below = word.y + 1
+    y = below if below + size.height <= screen.height else max(0, word.y - size.height)
+    return Offset(max(0, min(word.x - 1, screen.width - size.width - 1)), y)
+
+
+def signature_text(signature: Signature, width: int) -> Text:
+    """Return a signature with the present parameter in bold, shortened to a width around it."""
+    kept = range(len(signature.parameters))
+    middle = signature.index or 0
+    while len(text := _signature(signature, kept)) > width and len(kept) > 1:
+        # The parameters that are farther away go first.
+        kept = kept[1:] if middle - kept.start >= kept.stop - 1 - middle else kept[:-1]
+    text.truncate(max(width, 1), overflow="ellipsis")
+    return text
+
+
+def _signature(signature: Signature, kept: range) -> Text:
+    text = Text(f"{signature.name}(", end="", no_wrap=True)
+    words = [(signature.parameters[at], "bold" if at == signature.index else "") for at in kept]
+    before = [("…", "")] if kept.start else []
+    after = [("…", "")] if kept.stop < len(signature.parameters) else []
+    for at, (word, style) in enumerate([*before, *words, *after]):
+        text.append(", " if at else "")
+        text.append(word, style)
+    return text.append(")")
+
+
+class CandidateList(Widget):
+    """The list, over everything else on the screen; the keys come from the text."""
+
+    ALLOW_SELECT = False
+    DEFAULT_CSS = "CandidateList { overlay: screen; display: none; width: auto; height: auto; }"
+    KEYS: ClassVar[frozenset[str]] = frozenset({"up", "down", "pageup", "pagedown", "enter", "tab", "escape"})
+
+    @dataclass
+    class Chosen(Message):
+        """Posted for the name that was clicked."""
+
+        name: str
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._candidates: tuple[Candidate, ...] = ()
+        self._shown: tuple[Candidate, ...] = ()
+        self._chosen = 0
+        self._width = 0
+        self._word = ""
+        self.begin = (0, 0)
+        """Row and column of the word that is completed."""
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it is shown."""
+        return bool(self._shown)
+
+    def open(self, candidates: tuple[Candidate, ...], begin: tuple[int, int], word: str, place: Offset) -> None:
+        """Show candidates.
+
+        Args:
+            candidates: All of them.
+            begin: Row and column of the word that is completed.
+            word: What has been typed of it.
+            place: Where it begins on the screen.
+        """
+        self._candidates, self.begin = candidates, begin
+        self._width = list_width(candidates, self.screen.size.width - 2)
+        self.filter(word, place)
+
+    def filter(self, word: str, place: Offset) -> None:
+        """Show only the candidates that begin with a word; without any, or if only the word itself is left, close."""
+        if word == self._word and self.is_open:
+            return
+        self._word = word
+        begin = [one for one in self._candidates if one.name.lower().startswith(word.lower())]
+        if not begin or [one.name for one in begin] == [word]:
+            self.close()
+            return
+        self._shown, self._chosen = tuple(begin), 0
+        size = Size(self._width, min(len(begin), MOST_ROWS) + 1)
+        self.absolute_offset = list_place(place, size, self.screen.size)
+        self.styles.width, self.styles.height = size
+        self.display = True
+        self.refresh()
+
+    def close(self) -> None:
+        """Hide the list."""
+        self._candidates = self._shown = ()
+        self.display = False
+
+    def take_key(self, key: str) -> str:
+        """Do what one of `KEYS` does; return the name that is to be put in, empty if none is yet."""
+        name = ""
+        match key:
+            case "escape":
+                self.close()
+            case "enter" | "tab":
+                name = self._shown[self._chosen].name
+                self.close()
+            case "pageup" | "pagedown":
+                by = MOST_ROWS if key == "pagedown" else -MOST_ROWS
+                self._chosen = min(max(0, self._chosen + by), len(self._shown) - 1)
+            case _:
+                self._chosen = (self._chosen + (1 if key == "down" else -1)) % len(self._shown)
+        self.refresh()
+        return name
+
+    def render_line(self, y: int) -> Strip:
+        """Return one row."""
+        lines = list_lines(self._shown, self._chosen, self._width) if self._shown else []
+        segments = [Segment(text, style) for text, style in lines[y]] if y < len(lines) else []
+        return Strip(segments, self._width if segments else 0)
+
+    def on_mouse_down(self, event: events.MouseDown) -> None:
+        """Choose the name that was clicked, and leave the focus in the text."""
+        event.stop()
+        event.prevent_default()
+        first = first_shown(self._chosen, len(self._shown), min(MOST_ROWS, len(self._shown)))
+        if event.y < min(MOST_ROWS, len(self._shown)):
+            name = self._shown[first + event.y].name
+            self.close()
+            self.post_message(self.Chosen(name))
+
+    def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
+        """Choose the next name."""
+        event.stop()
+        self.take_key("down")
+
+    def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
+        """Choose the name before."""
+        event.stop()
+        self.take_key("up")

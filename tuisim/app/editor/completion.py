@@ -1,0 +1,235 @@
+"""Completion and signatures: what may follow at a place of a program, which is read with Jedi and never run.
+
+Jedi is imported when it is first asked. It is slow at first and knows no threads: ask it in one thread at a time.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+import sysconfig
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from threading import Lock
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from tuisim.app.editor.syntax import spans
+from tuisim.config.folders import cache_folder
+from tuisim.config.program_file import parse_unfinished
+from tuisim.data_class import dataclass
+from tuisim.source import PRELUDE_TEXTS
+
+if TYPE_CHECKING:
+    from jedi import Script
+    from jedi.api.classes import Completion
+
+Result = TypeVar("Result")
+
+MOST_DESCRIBED = 200
+"""So many candidates get a signature and a line of help; that of a library with many functions takes long."""
+MOST_LINES_OF_CALL = 20
+"""A call is looked for so many lines up."""
+
+_PACKAGE = Path(__file__).resolve().parents[2]
+_WORD_END = re.compile(r"[^\W\d]\w*$")
+_SENTENCE_END = re.compile(r"\.(?= [A-Z])")
+_COURSE = "from tuisim.shim.names.course import ColorSensor\n"
+_PYBRICKS = "tuisim.shim.pybricks."
+_NOT_OF_THE_BRICK = frozenset({"KIND", "ENDINGS", "SETTINGS_WHILE_ACTIVE", "brick", "device_port", "port", "sign"})
+"""Names that only the simulated classes of Pybricks have."""
+_GENERAL = frozenset({"ev3dev2", "ev3dev2.sensor"})
+"""Modules of the classes that all devices of `ev3dev2` share, which few programs use."""
+_OF_THE_COURSE = frozenset({"reflected_light_intensity_pc", "full_reflected_light_intensity"})
+"""Attributes that colour sensors have while a program runs, however they were made."""
+_UNUSUAL = frozenset({"mro"})
+_EXTENSIONS = [path for path in sys.path if path.endswith("lib-dynload")]
+_asking = Lock()
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A name that may stand at the cursor."""
+
+    name: str
+    signature: str = ""
+    """The parameters in parentheses; empty for what is not called."""
+    kind: str = ""
+    """What it is if it is not called, such as `property`."""
+    help: str = ""
+    """The first sentence of its docstring."""
+
+
+@dataclass(frozen=True, slots=True)
+class Signature:
+    """A function that is being called."""
+
+    name: str
+    parameters: tuple[str, ...]
+    index: int | None
+    """Number of the parameter at the cursor, from 0; None if there is none."""
+
+
+def word_before(line: str, column: int) -> str | None:
+    """Return the word that is being typed, empty right after a dot; None if nothing can be completed there."""
+    before = line[:column]
+    if any(start < column <= end and kind in ("string", "comment") for start, end, kind in spans(line)[0]):
+        return None
+    if match := _WORD_END.search(before):
+        return match.group()
+    return "" if re.search(r"[\w)\]}'\"]\.$", before) and not re.search(r"\b\d+\.$", before) else None
+
+
+def in_call(lines: Sequence[str], row: int, column: int) -> bool:
+    """Return whether a place may be between the parentheses of a call."""
+    depth = 0
+    for at in range(row, max(-1, row - MOST_LINES_OF_CALL), -1):
+        line = lines[at][:column] if at == row else lines[at]
+        hidden = [(start, end) for start, end, kind in spans(line)[0] if kind in ("string", "comment")]
+        for position in range(len(line) - 1, -1, -1):
+            char = line[position]
+            if char not in "()[]{}" or any(start <= position < end for start, end in hidden):
+                continue
+            if char in ")]}":
+                depth += 1
+            elif depth:
+                depth -= 1
+            elif char == "(" and re.search(r"[\w)\]]\s*$", line[:position]):
+                return True
+    return False
+
+
+def candidates(text: str, path: str, row: int, column: int) -> tuple[Candidate, ...]:
+    """Return the names that may stand at a place, the usual ones first.
+
+    Args:
+        text: The program as it stands in the editor; it need not be valid.
+        path: Its file, or its name.
+        row: From 0.
+        column: From 0.
+    """
+    word = word_before(text.split("\n")[row], column)
+    if word is None:
+        return ()
+    with _asking:
+        script, first = _script(text, path)
+        found: list[Completion] = _answer(lambda: script.complete(first + row + 1, column), [])
+        shown = sorted((one for one in found if _is_meant(one, word)), key=lambda one: _rank(one, word))
+        described = (_answer(partial(_described, one), Candidate(one.name)) for one in shown[:MOST_DESCRIBED])
+        return *described, *(Candidate(one.name) for one in shown[MOST_DESCRIBED:])
+
+
+def signature(text: str, path: str, row: int, column: int) -> Signature | None:
+    """Return the function whose arguments are at a place; None if none is known. Arguments as for `candidates`."""
+    with _asking:
+        script, first = _script(text, path)
+        found: list[Any] = _answer(lambda: script.get_signatures(first + row + 1, column), [])
+        if not found:
+            return None
+        return Signature(found[0].name, tuple(_parameter(one) for one in found[0].params), found[0].index)
+
+
+def members(text: str, path: str, row: int, column: int) -> frozenset[str] | None:
+    """Return all names after the dot behind an object of a library; None if they are not all known.
+
+    Args:
+        text, path: As for `candidates`.
+        row: From 0.
+        column: From 0, of the dot after a name.
+    """
+    with _asking:
+        script, first = _script(text, path)
+        kinds: list[Any] = _answer(lambda: script.infer(first + row + 1, column - 1), [])
+        if len(kinds) != 1 or not _is_of_library(kinds[0]):
+            return None
+        names: list[Completion] = _answer(lambda: script.complete(first + row + 1, column + 1), [])
+        found = frozenset(one.name for one in names)
+        # Some classes make their attributes when they are asked for them.
+        return None if not found or "__getattr__" in found else found | _OF_THE_COURSE
+
+
+def _is_of_library(kind: Any) -> bool:
+    top = str(kind.full_name or kind.module_name).partition(".")[0]
+    return (kind.type == "instance" and top in ("ev3dev2", "tuisim")) or (
+        kind.type == "module" and top in sys.stdlib_module_names
+    )
+
+
+def is_ready() -> bool:
+    """Return whether it has been asked before, so that it answers at once."""
+    return "jedi" in sys.modules
+
+
+def _answer(ask: Callable[[], Result], otherwise: Result) -> Result:
+    """Return what Jedi answers."""
+    try:
+        return ask()
+    # Jedi has errors of its own with some programs that are not finished.
+    except Exception:
+        return otherwise
+
+
+def _script(text: str, path: str) -> tuple[Script, int]:
+    """Return Jedi's view of a program after its prelude, and how many lines the prelude has."""
+    import jedi
+    from jedi.api.environment import InterpreterEnvironment
+
+    jedi.settings.cache_directory = cache_folder() / "jedi"
+    jedi.settings.auto_import_modules = []
+    program = parse_unfinished(text, Path(path).name)
+    prelude = PRELUDE_TEXTS[program.prelude]
+    imports = PRELUDE_TEXTS["imports"]
+    if prelude:
+        prelude = imports + _COURSE + prelude.removeprefix(imports)
+    folder = Path(path).parent
+    own = [str(_PACKAGE / "shim" / "names"), str(_PACKAGE.parent), *([str(folder.resolve())] if path else [])]
+    project = jedi.Project(folder, added_sys_path=own, smart_sys_path=False)
+    environment = InterpreterEnvironment()
+    # Compiled modules are imported to look into them: only those of Python and of installed packages.
+    installed = [*dict.fromkeys(map(sysconfig.get_path, ("stdlib", "platstdlib", "purelib", "platlib")))]
+    environment.get_sys_path = lambda: [*installed, *_EXTENSIONS]
+    return jedi.Script(prelude + program.text, environment=environment, project=project), prelude.count("\n")
+
+
+def _is_meant(one: Completion, word: str) -> bool:
+    if one.name.startswith("_") and not word.startswith("_"):
+        return False
+    # A property of a class is one of Python's.
+    if one.name in _NOT_OF_THE_BRICK and _module_of(one).startswith((_PYBRICKS, "builtins")):
+        return False
+    return one.name not in _UNUSUAL or one.name == word
+
+
+def _module_of(one: Completion) -> str:
+    """Return the module in which a name is defined."""
+    places: list[Any] = _answer(one.goto, [])
+    return str(places[0].module_name) if places else ""
+
+
+def _rank(one: Completion, word: str) -> tuple[bool, ...]:
+    """Return what sorts a candidate: names in the case that is typed first; private, constant and general ones last."""
+    is_constant = one.name.isupper() and one.type == "statement"
+    is_private, is_general = one.name.startswith("_"), _module_of(one) in _GENERAL
+    return not one.name.startswith(word), is_private, is_constant, is_general
+
+
+def _described(one: Completion) -> Candidate:
+    signatures = one.get_signatures()
+    parameters = ", ".join(_parameter(parameter) for parameter in signatures[0].params) if signatures else ""
+    called = f"({parameters})" if signatures and one.type in ("function", "class") else ""
+    kind = "" if one.type in ("statement", "function", "instance") else one.type
+    documentation = "" if one.type in ("keyword", "instance") else one.docstring(raw=True)
+    return Candidate(one.name, called, kind, first_sentence(documentation))
+
+
+def _parameter(parameter: Any) -> str:
+    """Return a parameter without its type."""
+    text: str = parameter.to_string()
+    name, _, default = re.sub(r":[^=]*", "", text, count=1).partition("=")
+    return f"{name.strip()}={default.strip()}" if default else name.strip()
+
+
+def first_sentence(documentation: str) -> str:
+    """Return the first sentence of a docstring as one line."""
+    paragraph = " ".join(documentation.strip().partition("\n\n")[0].split())
+    return _SENTENCE_END.split(paragraph, maxsplit=1)[0].rstrip(".").replace("``", "`")

@@ -1,0 +1,106 @@
+"""The values of a paused program beside the lines that assign them."""
+
+from __future__ import annotations
+
+import ast
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+
+from tuisim.protocol import FrameState, Inspected, Variable
+
+MODULE = "<module>"
+"""The function of a frame that is the program itself."""
+
+_Function = ast.FunctionDef | ast.AsyncFunctionDef
+_LOOPS = (ast.For, ast.AsyncFor, ast.While)
+_OWN_NAMES = (ast.Lambda, ast.ClassDef, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
+"""What has names that are not those of the code around it."""
+
+
+def line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable, ...]]:
+    """Return the variables that each line of a program, from 1, has assigned.
+
+    A line counts if it may have run: it is above the current line of its function, or in a loop with it. One that
+    assigns a constant does not count if the variable has another value by now.
+
+    Args:
+        text: The program that runs.
+        inspected: Where it is paused. Of the selected function; those of the program itself stand beside its lines.
+    """
+    tree = _tree(text)
+    frame = inspected.stack[inspected.frame] if inspected.frame < len(inspected.stack) else None
+    if tree is None:
+        return {}
+    outer = next((one for one in reversed(inspected.stack) if not one.file and one.function == MODULE), None)
+    if frame is None or (frame.function == MODULE and not frame.file):
+        return _values_in(tree, frame, inspected.variables)
+    found = _values_in(tree, outer, inspected.globals)
+    function = None if frame.file else _function_at(tree, frame)
+    return found if function is None else found | _values_in(function, frame, inspected.variables)
+
+
+@lru_cache(maxsize=1)
+def _tree(text: str) -> ast.Module | None:
+    with warnings.catch_warnings():
+        # They were shown when the program started.
+        warnings.simplefilter("ignore")
+        try:
+            return ast.parse(text)
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            return None
+
+
+def _function_at(tree: ast.Module, frame: FrameState) -> _Function | None:
+    """Return the innermost function of a frame."""
+    found = [
+        node
+        for node in ast.walk(tree)
+        if isinstance(node, _Function)
+        and node.name == frame.function
+        and node.lineno <= frame.line <= (node.end_lineno or 0)
+    ]
+    return max(found, key=lambda node: node.lineno, default=None)
+
+
+def _values_in(
+    scope: ast.Module | _Function, frame: FrameState | None, variables: Sequence[Variable]
+) -> dict[int, tuple[Variable, ...]]:
+    """Return the variables that each line of a scope has assigned; without a frame, the scope has been left."""
+    by_name = {variable.name: variable for variable in variables}
+    here = frame.line if frame else 0
+    loops = [(node.lineno, node.end_lineno or 0) for node in _nodes(scope) if isinstance(node, _LOOPS)]
+    # The outermost loop around the current line.
+    first, last = min(((start, end) for start, end in loops if start <= here <= end), default=(0, -1))
+    found: dict[int, dict[str, Variable]] = {}
+    for line, name, constant in _assignments(scope):
+        variable = by_name.get(name)
+        is_past = not here or line < here or first <= line <= last
+        if variable is not None and is_past and constant in (None, variable.value):
+            found.setdefault(line, {})[name] = variable
+    return {line: tuple(names.values()) for line, names in found.items()}
+
+
+def _nodes(scope: ast.AST) -> Iterator[ast.AST]:
+    """Yield the nodes of a scope, without those of functions, classes and comprehensions in it."""
+    for node in ast.iter_child_nodes(scope):
+        if not isinstance(node, (*_OWN_NAMES, ast.FunctionDef, ast.AsyncFunctionDef)):
+            yield node
+            yield from _nodes(node)
+
+
+def _assignments(scope: ast.Module | _Function) -> Iterator[tuple[int, str, str | None]]:
+    """Yield the line of each assignment in a scope, the name, and the text of the value if it is a constant."""
+    if not isinstance(scope, ast.Module):
+        given = scope.args
+        parameters = [*given.posonlyargs, *given.args, given.vararg, *given.kwonlyargs, given.kwarg]
+        yield from ((one.lineno, one.arg, None) for one in parameters if one is not None)
+    constants: Mapping[ast.AST, str] = {
+        target: repr(node.value.value)
+        for node in _nodes(scope)
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant)
+        for target in node.targets
+    }
+    for node in _nodes(scope):
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            yield node.lineno, node.id, constants.get(node)

@@ -1,0 +1,15 @@
+"""Simulated time and messages, as the course has them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+def get_clock() -> float:
+    """Return the simulated seconds since the program started."""
+    return 0.0
+
+
+def pyState() -> dict[str, list[Any]]:
+    """Return all answers of a notebook's responder, oldest first; empty without a responder."""
+    return {}

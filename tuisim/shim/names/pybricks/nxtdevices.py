@@ -1,0 +1,3 @@
+"""Motors of the NXT."""
+
+from tuisim.shim.pybricks.motor import Motor as Motor

@@ -1,0 +1,3 @@
+"""A robot on two wheels."""
+
+from tuisim.shim.pybricks.robotics import DriveBase as DriveBase
