@@ -42,7 +42,7 @@ def test_the_message_says_as_much_as_fits(size: Size, expected: str) -> None:
 async def test_a_terminal_that_shrinks_and_grows_again_shows_what_it_showed(size: tuple[int, int]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: all(words in screen_text(app) for words in ("White", "left │ right")))
+        await until(pilot, lambda: all(words in screen_text(app) for words in ("White", "Gyro")))
         before, focused = screen_text(app), app.focused
         await pilot.resize_terminal(*size)
         await until(pilot, lambda: app.too_small == size)

@@ -64,3 +64,11 @@ def test_one_variable_against_another_has_a_title_and_marks_the_point() -> None:
 def test_samples_that_have_not_both_are_told(ys: np.ndarray) -> None:
     lines = xy_lines(np.array([1.0, np.nan, 2.0]), ys, None, ("x", "y"), RED, "o", 20, 10)
     assert lines[1][0][0] == "no sample has both"
+
+
+@pytest.mark.parametrize("value", [0.0, 1.0, 10.0, 50.0, 50.3, 99.0, 100.0])
+def test_a_line_over_time_is_two_dots_thick(value: float) -> None:
+    curve = Curve(np.array([0.0, 10.0]), np.full(2, value), (255, 255, 0))
+    rows = canvas([curve], 20, 10, (0.0, 10.0), (0.0, 100.0))
+    middle = ["".join(text for text, _ in row)[8] for row in rows]
+    assert sum((ord(sign) - 0x2800).bit_count() for sign in middle if sign != " ") == 4

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tuisim.charts import axes
 from tuisim.charts.canvas import Curve, TextRun, canvas
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState
 from tuisim.charts.traces import Traces
@@ -215,3 +216,14 @@ def test_many_points() -> None:
 
     assert len(next(iter(made)).times_s) == 1000
     assert made.end_s() == 999.0
+
+
+def test_a_faint_grid_stands_at_the_labels_and_gives_way_to_curves_and_cursors() -> None:
+    traces = Traces()
+    traces.append("Colour", [0.0, 10.0], [0.0, 100.0])
+    state = ChartState(grid=True, cursor_s=2.5)
+    picture = ChartPainter().paint(traces, state, 60, 16)
+    rows = ["".join(text for text, _ in line) for line in picture.lines[picture.top : picture.top + picture.rows]]
+    for row in rows:
+        assert ("┈" in row) is ("┤" in row)
+    assert all(row[picture.left + axes.column_of(2.5, picture.x_limits, picture.columns)] != "┈" for row in rows)

@@ -426,6 +426,9 @@ class LabApp(PanelMessages):
             return False
         self._drawn = now
         self.feed.show()
+        if output := self.panel_area.output:
+            program = self.run_controller.program
+            output.set_program(program.name if program else "")
         self.panel_area.show(run)
         if force or self._footed != _footed(state):
             self._show_footer(state)

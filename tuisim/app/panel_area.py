@@ -95,8 +95,8 @@ class PanelArea(Container):
         self._asked = dict(self._given)
         """Panels that were asked for, the latest last."""
         self._chosen: dict[str, bool] = {}
-        """Those of them that the user has shown or hidden by their keys, which are kept."""
-        self.preset = Preset.STANDARD
+        """Those of them that the user has shown or hidden by their keys, which are kept with the preset."""
+        self.preset = self._kept_preset = Preset.STANDARD
         self.alone = ""
         """Id of the maximized panel, empty for none."""
         self.front = "world"
@@ -152,7 +152,8 @@ class PanelArea(Container):
         self.request({panel: show})
         self._chosen.pop(panel, None)
         self._chosen[panel] = show
-        self._keep_panels()
+        if self.preset == self._kept_preset:
+            self.keep_panels()
 
     def open(self, panel: str) -> None:
         """Show a panel for now, without keeping this for the next start."""
@@ -191,12 +192,25 @@ class PanelArea(Container):
         unchanged = self.preset == preset and self._asked in ({}, self._given)
         self.preset = Preset.STANDARD if unchanged else preset
         self._asked, self._chosen = dict(self._given) if self.preset == Preset.STANDARD else {}, {}
-        self.alone, self._roomy, self.front = "", None, (*core_panels(self.preset), "world")[0]
+        self.alone, self._roomy, self.front = "", None, (*core_panels(self.preset, *self.size), "world")[0]
         self.lay_out()
-        self._keep_panels()
         return self.preset
 
-    def _keep_panels(self) -> None:
+    def next_preset(self) -> Preset:
+        """Show the next preset, and return which; one that would show the same panels in the same place is left out."""
+        before, presets = self.arrangement.boxes, list(Preset)
+        at = presets.index(self.preset)
+        for preset in presets[at + 1 :] + presets[: at + 1]:
+            if preset == self.preset:
+                break
+            self.choose_preset(preset)
+            if self.arrangement.boxes != before:
+                break
+        return self.preset
+
+    def keep_panels(self) -> None:
+        """Keep the preset, and the panels shown or hidden by their keys, for the next start in this size."""
+        self._kept_preset = self.preset
         save_layout(self._size_class(), KeptLayout(self.preset, self._chosen))
 
     def _size_class(self) -> TerminalSize:
@@ -210,7 +224,7 @@ class PanelArea(Container):
                 "Moved borders and the layout to teach are no longer there: what was kept of them is dropped"
             )
         kept = load_layout(self._size_class())
-        self.preset = kept.preset
+        self.preset = self._kept_preset = kept.preset
         self._chosen = kept.asked
         self._asked = {**{panel: on for panel, on in kept.asked.items() if panel not in self._given}, **self._given}
 
@@ -283,16 +297,19 @@ class PanelArea(Container):
         self.post_message(self.Rearranged())
 
     def _place_notices(self) -> None:
-        """Show notices beside a chart at the bottom if there is room, else above its time axis."""
+        """Show notices beside a chart at the bottom if there is room, else above its time axis; beside readings."""
         box, left, below = self.arrangement.boxes.get("chart"), 0, 1
         if box is not None and box.x == 0 and box.y + box.height == self.size.height:
             if self.size.width - box.width >= _NOTICE_COLUMNS:
                 left = box.width
             else:
                 below += _AXIS_ROWS
+        readings, right = self.arrangement.boxes.get("instrumentation"), self.size.width
+        if readings is not None and 0 < readings.y == self.size.height - readings.height and readings.x > left:
+            right = readings.x
         for rack in self.screen.query("ToastRack"):
             rack.styles.margin = (0, 0, below, left)
-            rack.styles.width = self.size.width - left
+            rack.styles.width = right - left
 
     def _panel(self, panel: str) -> Widget:
         if panel not in self.panels:

@@ -26,6 +26,8 @@ TextRun = tuple[str, Rgb | None]
 """A piece of a row in one colour, None where nothing is drawn."""
 
 BRAILLE = "braille"
+_NEXT = 1.001
+"""Distance of the second line that makes a trace thicker, in dots."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +90,23 @@ def canvas(curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y
         if len(times_s):
             marker = plotext.marker(curve.marker, curve.rgb)
             signal = figure.signal(times_s.tolist(), values.tolist(), marker=marker)
-            figure.draw(signal.lines(curve.joined and curve.marker == BRAILLE))
+            is_line = curve.joined and curve.marker == BRAILLE
+            figure.draw(signal.lines(is_line))
+            if is_line and curve.rising:
+                thicker = _next_dots(times_s, values, columns, rows, x_limits, y_limits)
+                figure.draw(figure.signal(*(along.tolist() for along in thicker), marker=marker).lines(True))
     return [[*_runs(line, columns)] for line in figure.build().string().split("\n")[:rows]]
+
+
+def _next_dots(
+    times_s: FloatArray, values: FloatArray, columns: int, rows: int, x_limits: Limits, y_limits: Limits
+) -> tuple[FloatArray, FloatArray]:
+    """Return points one dot beside and below others, or above where there is none below: both make a thicker line."""
+    # The limits are in the middle of the outermost characters. plotext rounds a half to the even dot: a distance of a
+    # little more than one dot is never lost.
+    across = _NEXT * (x_limits[1] - x_limits[0]) / (DOTS_X * max(columns - 1, 1))
+    down = _NEXT * (y_limits[1] - y_limits[0]) / (DOTS_Y * max(rows - 1, 1))
+    return times_s + across, np.where(values - down >= y_limits[0], values - down, values + down)
 
 
 def _on_rows(values: FloatArray, limits: Limits, rows: int) -> FloatArray:

@@ -22,6 +22,8 @@ from tuisim.terminal.text_runs import Run, cut
 
 _CURSOR = Style(color=palette.WHITE, bgcolor=palette.LINE)
 _STRONG = Style(color=palette.WHITE, bold=True)
+_FAINT = Style(color=palette.LINE)
+_GRID = "┈"
 
 _ROWS_A_LEGEND_LINE = 8
 """Rows of a chart per line of tick boxes, so that most rows are left for the curves."""
@@ -56,6 +58,8 @@ class ChartState:
     """Draw the points as marks, not joined by lines."""
     grows: bool = False
     """Whether more data may follow, so that the horizontal axis extends a little beyond them."""
+    grid: bool = False
+    """Draw a faint line at each label of the left scale."""
     zoomed: bool = False
     """Whether the time range is zoomed: the vertical axis then fits the visible data."""
 
@@ -125,7 +129,11 @@ class ChartPainter:
         else:
             self._draw(drawn, scales, columns, rows, x_limits, curves)
             at = sorted({axes.column_of(time_s, x_limits, columns) for time_s in cursors})
-            lines += [scales.framed(row, _with_cursors(self._canvas[row], at)) for row in range(rows)]
+            on_grid = scales.left_labels if state.grid and not state.is_ascii else {}
+            lines += [
+                scales.framed(row, _with_cursors(self._canvas[row], at, is_on_grid=row in on_grid))
+                for row in range(rows)
+            ]
             if with_line:
                 lines.append([(" " * (left - 1) + "└" + line + ("┘" if scales.right_width else ""), AXIS)])
         lines.append([(" " * left + below, AXIS)])
@@ -206,8 +214,10 @@ def _time_limits(end_s: float, grows: bool) -> Limits:
     return 0.0, end_s if end_s > 0 else 1.0
 
 
-def _with_cursors(runs: list[TextRun], columns: Sequence[int]) -> list[Run]:
+def _with_cursors(runs: list[TextRun], columns: Sequence[int], *, is_on_grid: bool) -> list[Run]:
     """Return a row of the canvas with lines at rising columns; a column outside it draws none."""
+    if is_on_grid:
+        runs = [(text.replace(" ", _GRID) if rgb is None else text, rgb) for text, rgb in runs]
     line: list[Run] = []
     at = 0
     for text, rgb in runs:
@@ -215,10 +225,11 @@ def _with_cursors(runs: list[TextRun], columns: Sequence[int]) -> list[Run]:
         for inside in (column - at for column in columns):
             if 0 <= inside < len(text):
                 mark = text[inside]
-                line.append((text[done:inside], styled(rgb)))
-                line.append((mark if mark != " " else "│", styled(rgb) + _CURSOR if mark != " " else _CURSOR))
+                line.append((text[done:inside], _FAINT if is_on_grid and rgb is None else styled(rgb)))
+                is_free = mark in (" ", _GRID)
+                line.append(("│" if is_free else mark, _CURSOR if is_free else styled(rgb) + _CURSOR))
                 done = inside + 1
-        line.append((text[done:], styled(rgb)))
+        line.append((text[done:], _FAINT if is_on_grid and rgb is None else styled(rgb)))
         at += len(text)
     return [run for run in line if run[0]]
 

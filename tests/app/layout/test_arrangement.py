@@ -70,8 +70,37 @@ def test_size_class(size: tuple[int, int], name: str) -> None:
 
 def test_the_most_wanted_panel_gets_the_room() -> None:
     placed = arrange(["arrays", "controls", "instrumentation", "world"], 80, 23)
-    assert {"arrays", "controls"} <= set(placed.boxes)
-    assert placed.left_out == ("instrumentation",)
+    assert {"arrays", "controls", "instrumentation"} <= set(placed.boxes)
+    assert placed.boxes["instrumentation"].height == PANELS["instrumentation"].min_rows
+
+
+LOW_SIZES = pytest.mark.parametrize(("width", "height"), [(80, 23), (100, 29), (72, 24)])
+
+
+@LOW_SIZES
+def test_the_world_has_the_whole_width_of_a_low_terminal(width: int, height: int) -> None:
+    boxes = arrange(["world", "instrumentation", "output"], width, height).boxes
+    assert boxes["world"].width == width
+    assert boxes["instrumentation"].y == boxes["output"].y == boxes["world"].height
+
+
+@LOW_SIZES
+@pytest.mark.parametrize(("panel", "rows"), [("chart", 14), ("code", 11)])
+def test_a_roomy_panel_replaces_nothing_in_a_low_terminal(panel: str, rows: int, width: int, height: int) -> None:
+    placed = arrange(["world", panel, "instrumentation", "output"], width, height)
+    assert not placed.left_out
+    assert placed.boxes[panel].width == width and placed.boxes[panel].height >= rows
+    assert placed.boxes["instrumentation"].y == placed.boxes["world"].y == 0
+
+
+def test_of_two_roomy_panels_the_more_wanted_one_is_shown() -> None:
+    placed = arrange(["world", "chart", "code", "instrumentation", "output"], 80, 23)
+    assert placed.left_out == ("code",)
+
+
+@pytest.mark.parametrize("height", range(14, 23))
+def test_a_chart_finds_room_in_a_very_low_terminal(height: int) -> None:
+    assert ("chart" in arrange(["world", "chart"], 80, height).boxes) is (height >= 16)
 
 
 def test_no_panels_no_boxes() -> None:

@@ -14,10 +14,19 @@ SMALL = {"preset": "drive", "panels": [["chart", True]]}
 
 
 @pytest.mark.slow
-async def test_the_next_start_finds_the_arrangement_for_its_size() -> None:
+async def test_the_next_start_forgets_the_arrangement() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        standard = (await ready(pilot)).panel_area.arrangement.boxes
+        await pilot.press("f7", "i")
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        assert (await ready(pilot)).panel_area.arrangement.boxes == standard
+
+
+@pytest.mark.slow
+async def test_the_next_start_finds_an_arrangement_that_was_kept_for_its_size() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await pilot.press("f7", "i")
+        await pilot.press("f7", "i", "shift+f9")
         kept = app.panel_area.arrangement.boxes
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         assert (await ready(pilot)).panel_area.arrangement.boxes == kept

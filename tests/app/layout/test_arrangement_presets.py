@@ -27,7 +27,7 @@ def layout_of(preset: Preset, width: int, height: int) -> PanelLayout:
 @for_each_preset
 def test_a_preset_shows_what_it_is_made_for(preset: Preset, size: tuple[int, int]) -> None:
     layout = layout_of(preset, *size)
-    assert set(core_panels(preset)) <= set(layout.boxes)
+    assert set(core_panels(preset, size[0], size[1] - 1)) <= set(layout.boxes)
     assert not layout.left_out
     for panel, box in layout.boxes.items():
         assert box.height >= PANELS[panel].min_rows and box.width >= 24, panel
@@ -52,10 +52,29 @@ async def test_a_key_shows_a_preset_and_again_the_standard_layout(preset: Preset
         app = await ready(pilot)
         standard = set(app.panel_area.arrangement.boxes)
         await pilot.press(key)
-        assert set(core_panels(preset)) <= set(app.panel_area.arrangement.boxes)
-        await until(pilot, lambda: all(f" {PANELS[panel].title}" in screen_text(app) for panel in core_panels(preset)))
+        core = core_panels(preset, 80, 23)
+        assert set(core) == set(app.panel_area.arrangement.boxes)
+        await until(pilot, lambda: all(f" {PANELS[panel].title}" in screen_text(app) for panel in core))
         await pilot.press(key)
         assert set(app.panel_area.arrangement.boxes) == standard
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("size", "round_"),
+    [((80, 24), ["debug", "analyse", "standard"]), ((120, 40), ["drive", "debug", "analyse", "standard"])],
+    ids=["80x24", "120x40"],
+)
+async def test_one_key_goes_round_the_presets_that_differ(size: tuple[int, int], round_: list[str]) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        shown = []
+        for _ in round_:
+            before = app.panel_area.arrangement.boxes
+            await pilot.press("f9")
+            assert app.panel_area.arrangement.boxes != before
+            shown.append(str(app.panel_area.preset))
+        assert shown == round_
 
 
 @pytest.mark.slow

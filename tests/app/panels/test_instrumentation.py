@@ -141,3 +141,23 @@ def test_further_parts() -> None:
     ]
     starts = ("Motor", "Bum", "Inf", "Bac")
     assert text(FURTHER, 26, 11)[6:11] == [row for row in text(FURTHER, 26, 30) if row.startswith(starts)]
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "shown"),
+    [(78, 2, "L R S1 S2 US Gyro x y"), (46, 3, "L R S1 S2 US Gyro x y h"), (30, 2, "L R S1 S2"), (78, 1, "L R S1 S2")],
+)
+def test_in_few_lines_the_readings_stand_side_by_side(width: int, height: int, shown: str) -> None:
+    text = lines(moment(), width, height)
+    assert len(text) == height
+    assert all(sum(len(part) for part, _ in line) <= width for line in text)
+    words = {part.strip() for line in text for part, _ in line}
+    assert set(shown.split()) <= words
+
+
+def test_readings_side_by_side_do_not_move_with_their_values() -> None:
+    low, high = (
+        [[len(part) for part, _ in line] for line in lines(moment(ultrasonic_mm=far, gyro_deg=angle), 78, 2)]
+        for far, angle in ((90, 5), (2550, -180))
+    )
+    assert low == high

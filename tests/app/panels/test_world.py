@@ -150,7 +150,8 @@ async def test_zoom_goes_round_and_says_so() -> None:
             app.panel.cycle_zoom()
             seen.append((app.panel.zoom, app.panel.border_title))
 
-    assert seen == [(2, "World 2×"), (4, "World 4×"), (1, "World")]
+    title = f"World: {moment().spec.world.background}"
+    assert seen == [(2, f"{title} 2×"), (4, f"{title} 4×"), (1, title)]
 
 
 async def dragged(shift: bool, by: tuple[int, int]) -> list[World.PoseDragged]:

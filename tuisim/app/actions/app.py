@@ -36,14 +36,29 @@ def enlarge(context: ActionContext) -> None:
 
 def choose_preset(context: ActionContext, preset: Preset) -> None:
     """Show the panels of a preset; if it is shown already, the standard ones."""
+    shown = context.panels.choose_preset(preset)
+    key = context.app.ACTIONS[f"layout-{preset}"].key_label
+    _say_layout(context, "" if shown == Preset.STANDARD else f" ({key} again: standard)")
+
+
+def next_preset(context: ActionContext) -> None:
+    """Show the next preset."""
+    context.panels.next_preset()
+    _say_layout(context, context.app.with_keys(" ({layout-next}: next, {layout-keep}: keep)"))
+
+
+def _say_layout(context: ActionContext, more: str) -> None:
     area = context.panels
-    shown = area.choose_preset(preset)
     if not area.shown(area.focused_panel()):
         context.app.call_after_refresh(area.attend, area.front)
-    key = context.app.ACTIONS[f"layout-{preset}"].key_label
-    again = "" if shown == Preset.STANDARD else f" ({key} again: standard)"
-    context.app.say(f"Layout: {shown}{again}")
+    context.app.say(f"Layout: {area.preset}{more}")
     context.app.situation_changed()
+
+
+def keep_layout(context: ActionContext) -> None:
+    """Keep preset and panels for the next start."""
+    context.panels.keep_panels()
+    context.app.say(f"The next start in a terminal of this size shows these panels: layout {context.panels.preset}")
 
 
 def next_panel(context: ActionContext, by: int) -> None:

@@ -102,10 +102,13 @@ def _toggles() -> list[LabAction]:
 
 
 _PRESETS = {
-    Preset.DRIVE: ("f6", "Layout to drive: large world, readings, position"),
+    Preset.DRIVE: ("f6", "Layout to drive: large world, readings"),
     Preset.DEBUG: ("f7", "Layout to debug: code, variables, world, output"),
-    Preset.ANALYSE: ("f8", "Layout to analyse: large chart, arrays, world"),
+    Preset.ANALYSE: ("f8", "Layout to analyse: large chart, world"),
 }
+
+
+_NEXT_LAYOUT = "Next layout: drive, debug, analyse, standard"
 
 
 def _layouts() -> list[LabAction]:
@@ -114,6 +117,8 @@ def _layouts() -> list[LabAction]:
             Action(f"layout-{preset}", key, title, PANEL, partial(app.choose_preset, preset=preset))
             for preset, (key, title) in _PRESETS.items()
         ),
+        Action("layout-next", "f9", _NEXT_LAYOUT, PANEL, app.next_preset, footer="layout"),
+        Action("layout-keep", "shift+f9", "Keep the layout for the next start", PANEL, app.keep_layout),
         Action("panel-next", "f2", "Next panel", PANEL, partial(app.next_panel, by=1), footer="panel"),
         Action("panel-before", "shift+f2", "Previous panel", PANEL, partial(app.next_panel, by=-1)),
     ]

@@ -108,7 +108,8 @@ class LogChart(LinesPanel):
         facets = _around_selected(facets, model.selected, height // _LEAST_FACET_ROWS)
         state = ChartState(
             model.selected, model.cursor_s if model.log.rows else None, model.x_limits(), bool(self.app.no_color),
-            shows_ascii(self.app), model.mark_s, unit, self.options.marks, zoomed=model.limits is not None,
+            shows_ascii(self.app), model.mark_s, unit, self.options.marks, grid=True,
+            zoomed=model.limits is not None,
         )  # fmt: skip
         self._pictures = []
         lines: list[list[Run]] = []

@@ -11,12 +11,15 @@ from typing import Any
 
 from tuisim.app.layout.tree import (
     EDGES,
+    MIN_COLS,
     TIME_BAR_ROWS,
     Axis,
     Node,
     PanelBox,
     PanelLayout,
+    Split,
     fair_rows,
+    ideal_columns,
     ideal_rows,
     joined,
     least_columns,
@@ -33,6 +36,10 @@ MIN_STRIP_COLS = 36
 """A panel of the bottom strip is not made narrower than this to fit another one next to it."""
 _SINGLE_COLS, _SINGLE_ROWS = 60, 15
 """Below this size one panel is shown at a time."""
+_LOW_COLS, _LOW_ROWS = 112, 33
+"""Below both, the panels share the screen as in a terminal of 80×24."""
+_READINGS_COLS, _TEXT_COLS = 48, 32
+"""Columns of the readings in three lines, and of the output beside them."""
 _MAX_SIDE_COLS = 46
 _COLUMN_COLS = 40
 """Columns below the world are not made narrower."""
@@ -75,6 +82,14 @@ def is_single(width: int, height: int) -> bool:
 def is_tall(width: int, height: int) -> bool:
     """Return whether an area is higher than wide, as it looks."""
     return height * 1.6 >= width
+
+
+def is_low(width: int, height: int) -> bool:
+    """Return whether an area has room for few panels: the world in its whole width, or one with long lines or a chart.
+
+    A lower area shows one panel only.
+    """
+    return width < _LOW_COLS and height < _LOW_ROWS and not is_tall(width, height)
 
 
 def side_width(width: int, panels: Sequence[str] = ()) -> int:
@@ -157,6 +172,42 @@ def _under(panels: Sequence[str], width: int, height: int) -> Node:
     return joined(Axis.ROWS, [*main, below])
 
 
+_ROOMY = ("code", "chart", "brick")
+"""Panels that get the whole width of a low screen."""
+_FAIR_ROWS = 22
+"""From this height on, such a panel shows enough beside a world, even if others find no room."""
+
+
+def _low(panels: Sequence[str], width: int, height: int) -> Node:
+    """The world in the whole width, or above a panel that needs it; readings and output below or beside it."""
+    roomy = [panel for panel in _ROOMY if panel in panels]
+    beside = [panel for panel in (*_in(panels, PanelPlace.SIDE), "output") if panel in panels]
+    if "lesson" in panels or (not roomy and not {"instrumentation", "output"}.issuperset(beside)):
+        return _wide(panels, width, height)
+    main = _in(panels, PanelPlace.MAIN)
+    if not roomy:
+        return joined(Axis.ROWS, [*main, _line_of(beside, width)] if beside else main)
+    fair = max(_fair(roomy), height // 2)
+    above = height - fair
+    if not main or not beside:
+        top: list[Node] = [*main] or ([joined(Axis.ROWS, beside)] if beside else [])
+    else:
+        share = min(max(ideal_columns(above), MIN_COLS), width - MIN_STRIP_COLS) / width
+        top = [joined(Axis.COLUMNS, [*main, joined(Axis.ROWS, beside)], shares=(share, 1 - share))]
+    below = joined(Axis.ROWS, roomy)
+    if not top:
+        return below
+    is_fair = height >= _FAIR_ROWS or least_rows(top[0]) <= above
+    return Split(Axis.ROWS, (*top, below), least=(0, fair) if is_fair else ())
+
+
+def _line_of(panels: Sequence[str], width: int) -> Node:
+    """Return output and readings side by side, the output where notices appear."""
+    share = max(1 / 2, min(_READINGS_COLS, width - _TEXT_COLS) / width)
+    order = [panel for panel in ("output", "instrumentation") if panel in panels]
+    return joined(Axis.COLUMNS, order, shares=(1 - share, share))
+
+
 def _fair(panels: Sequence[str]) -> int:
     return sum(PANELS[panel].fair_rows for panel in panels)
 
@@ -205,6 +256,8 @@ class _Plan:
     fill: tuple[str, ...]
     """Panels for what space is left."""
     forms: tuple[Form, ...]
+    low: tuple[str, ...]
+    """What a low terminal shows instead, the most important first."""
     beside: tuple[str, ...] = ()
     """Further panels, one for each column that the terminal has beyond those of `core`."""
     compact: bool = True
@@ -214,29 +267,33 @@ class _Plan:
 _SHOWN = tuple(info.id for info in PANELS.values() if info.sizes)
 
 _PLANS: Mapping[Preset, _Plan] = {
-    Preset.STANDARD: _Plan((), _SHOWN, (_wide, _under), compact=False),
+    Preset.STANDARD: _Plan((), _SHOWN, (_wide, _under), ("world", "instrumentation", "output"), compact=False),
     Preset.DRIVE: _Plan(
         ("world", "instrumentation", "positioning"),
         ("arrays", "output", "chart", "controls"),
         (_halves(("world", "positioning", "output"), ("instrumentation", "arrays", "controls"), 0.0), _under),
-        ("arrays", "output"),
+        ("world", "instrumentation", "output"),
+        beside=("arrays", "output"),
     ),
     Preset.DEBUG: _Plan(
         ("code", "debug", "world", "output"),
         ("instrumentation", "arrays"),
         (_halves(("code", "output"), ("world", "debug"), 0.55),),
+        ("code", "debug", "world", "output"),
     ),
     Preset.ANALYSE: _Plan(
         ("chart", "arrays", "world"),
         ("instrumentation", "output"),
         (_halves(("chart",), ("world", "arrays", "instrumentation", "output"), 0.58),),
+        ("chart", "world", "instrumentation", "output"),
     ),
 }  # fmt: skip
 
 
-def core_panels(preset: Preset) -> tuple[str, ...]:
-    """Return the panels that a preset is made for; none for the standard, which depends on the size."""
-    return _PLANS[preset].core
+def core_panels(preset: Preset, width: int, height: int) -> tuple[str, ...]:
+    """Return the panels that a preset is made for, in an area of that size; none for the standard of a large one."""
+    plan = _PLANS[preset]
+    return plan.low if is_low(width, height) else plan.core
 
 
 def wanted_panels(preset: Preset, asked: Mapping[str, bool], width: int, height: int) -> tuple[list[str], list[str]]:
@@ -251,12 +308,16 @@ def wanted_panels(preset: Preset, asked: Mapping[str, bool], width: int, height:
     plan, size = _PLANS[preset], size_class(width, height + 1)
     columns = max(0, width // _COLUMN_COLS - len(plan.core) + 1)
     usual = plan.core + plan.beside[:columns] or tuple(panel for panel in _SHOWN if size in PANELS[panel].sizes)
+    if is_low(width, height):
+        usual = plan.low
     latest = [panel for panel, on in reversed(list(asked.items())) if on]
     rest = [panel for panel in usual if panel not in asked]
     # A lesson and the world keep their places, however many panels are asked for.
     places = {"lesson": 0, "world": 1}
     wanted = sorted(latest + rest, key=lambda panel: places.get(panel, 2))
     fill = [panel for panel in plan.fill if panel not in asked and panel not in wanted]
+    if is_low(width, height):
+        return wanted, []
     if preset == Preset.STANDARD and not is_tall(width, height):
         # The strip below a wide world gets no fuller: its panels would be too narrow.
         fill = _in(fill, PanelPlace.SIDE)
@@ -334,15 +395,17 @@ def _scored(
     panels: Sequence[str], fill: Sequence[str], preset: Preset, width: int, height: int
 ) -> Iterator[tuple[tuple[int, float], Node]]:
     """Yield the tree in each form, and how good that is."""
-    for form in _PLANS[preset].forms:
+    plan = _PLANS[preset]
+    forms = (_low,) if is_low(width, height) else plan.forms
+    for form in forms:
         if not (kept := _kept(form, panels, fill, width, height)):
             continue
         node = form(kept, width, height)
         layout = PanelLayout(wanted=panels)
         place(node, PanelBox(0, 0, width, height), layout)
-        if form is not _PLANS[preset].forms[0] and not _fills(layout, _LEAST_FILLED):
+        if form is not forms[0] and not _fills(layout, _LEAST_FILLED):
             continue
-        crowded = not _PLANS[preset].compact and fair_rows(node, width) > height
+        crowded = not plan.compact and fair_rows(node, width) > height
         yield _score(layout, sum(panel in kept for panel in panels), crowded), node
 
 

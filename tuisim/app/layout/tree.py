@@ -37,6 +37,8 @@ class Split:
     parts: tuple[Node, ...]
     shares: tuple[float, ...] = ()
     """Share of the width of each part, for parts side by side; the sum is 1."""
+    least: tuple[int, ...] = ()
+    """Rows that each part gets at least, for parts one above the other; none for what its panels need."""
 
 
 Node = str | Split
@@ -75,6 +77,12 @@ def ideal_rows(width: int) -> int:
     return round((width - EDGES) * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / _CELL_ASPECT) + EDGES + TIME_BAR_ROWS
 
 
+def ideal_columns(rows: int) -> int:
+    """Return the columns that a world panel of this height needs, so that the mat fills it."""
+    inside = rows - EDGES - TIME_BAR_ROWS
+    return round(inside * _CELL_ASPECT * FIELD_WIDTH_MM / FIELD_HEIGHT_MM) + EDGES
+
+
 def joined(axis: Axis, parts: Sequence[Node], shares: Sequence[float] = ()) -> Node:
     """Return parts as one node; a single part stays as it is."""
     if len(parts) == 1:
@@ -110,8 +118,13 @@ def least_rows(node: Node) -> int:
     """Return the rows that a node needs at least."""
     if isinstance(node, str):
         return PANELS[node].min_rows
-    needed = [least_rows(part) for part in node.parts]
+    needed = _least_of_each(node)
     return sum(needed) if node.axis == Axis.ROWS else max(needed)
+
+
+def _least_of_each(split: Split) -> list[int]:
+    needed = [least_rows(part) for part in split.parts]
+    return [max(rows) for rows in zip(needed, split.least, strict=True)] if split.least else needed
 
 
 def fair_rows(node: Node, width: int) -> int:
@@ -139,7 +152,7 @@ def _columns(split: Split, width: int) -> list[int]:
 
 def _rows(split: Split, width: int, height: int, rank: Callable[[Node], int]) -> list[int]:
     """Divide rows: what each part needs, then the world's shape, what is fair, what is good; the rest to what grows."""
-    rows = [least_rows(part) for part in split.parts]
+    rows = _least_of_each(split)
     spare = height - sum(rows)
     order = sorted(range(len(rows)), key=lambda at: rank(split.parts[at]))
     for wish in (fair_rows, _good_rows):
@@ -159,7 +172,7 @@ def _rows(split: Split, width: int, height: int, rank: Callable[[Node], int]) ->
 def _sizes(split: Split, box: PanelBox, rank: Callable[[Node], int]) -> list[int]:
     """Return the extent of each part, which is at least what it needs."""
     rows = split.axis == Axis.ROWS
-    needs = [least_rows(part) if rows else least_columns(part) for part in split.parts]
+    needs = _least_of_each(split) if rows else [least_columns(part) for part in split.parts]
     extent = box.height if rows else box.width
     natural = _rows(split, box.width, box.height, rank) if rows else _columns(split, box.width)
     ends = [0]

@@ -107,7 +107,7 @@ class Chart(LinesPanel, can_focus=True):
         self._dirty = False
         if self._state.selected is None and (first := next(iter(self._traces), None)):
             self._state = replace(self._state, selected=first.name)
-        state = replace(self._state, grey=bool(self.app.no_color), is_ascii=shows_ascii(self.app))
+        state = replace(self._state, grid=True, grey=bool(self.app.no_color), is_ascii=shows_ascii(self.app))
         if not self.has_focus:
             state = replace(state, selected=None)
         self._text.draw(partial(self._paint, state))

@@ -25,10 +25,16 @@ _UNIT = Style(color=palette.LABEL)
 _WARNING = Style(color=palette.RED, bold=True)
 _COLUMN = 12
 """Width of the labels if there is room."""
+_GAP = 2
+"""Columns between readings side by side."""
+_CELL = 16
+"""Columns of a further reading among them."""
+_LONGEST_NAME = 7
+"""So that readings do not move when a sensor sees another colour."""
 
 
 class Instrumentation(LinesPanel):
-    """The instrumentation panel. It has three forms, by height: 11 lines, 9 lines, 6 lines."""
+    """The instrumentation panel. It has four forms, by height: 11 lines, 9 lines, 6 lines, and columns of cells."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -52,7 +58,7 @@ def lines(now: Snapshot, width: int, height: int) -> list[Line]:
     Args:
         now: The moment.
         width: Columns, 18 or more for whole words.
-        height: Rows; with fewer than 6, the last lines are omitted.
+        height: Rows; with fewer than 6, the readings stand side by side.
     """
     wheels = [_wheel(now, "LeftMotor", "L", width), _wheel(now, "RightMotor", "R", width)]
     motors = wheels if now.spec.robot.has_wheels else []
@@ -68,7 +74,8 @@ def lines(now: Snapshot, width: int, height: int) -> list[Line]:
     if small:
         short = [_sensor_in_one(name, seen, width) for name, seen in sensors]
         whole = [*motors, *short, _distance_and_angle(now, width), _place_and_time(now, width)]
-        return [*whole, *further][:height]
+        whole += further
+        return whole if len(whole) <= height else _side_by_side(now, width, max(height, 1))
     ranging = [_ultrasonic(now, width), _gyro(now, width), *further]
     rest = [*ranging, _pose(now, width), _clock(now, width), _state(now, width)]
     if height < 7 + 2 * len(sensors) + len(further):
@@ -93,6 +100,76 @@ def _further(column: str, value: float, width: int) -> Line:
         (_label(cut(label, _COLUMN - 1)), _value(shown if what == "pressed" else f"{shown:>6}"), _unit(unit)),
         (_label(cut(label, 8), 9), _value(shown), _unit(unit)),
     )
+
+
+def _side_by_side(now: Snapshot, width: int, height: int) -> list[Line]:
+    """Return the readings in columns: with speeds and colour names if all sensors fit, then as many as there are."""
+    for detail in (2, 1, 0):
+        columns, sensing = _columns(now, height, detail)
+        widths = [max(_length(cell) for cell in column) for column in columns]
+        if sum(widths[:sensing]) + _GAP * (sensing - 1) <= width:
+            break
+    lines: list[Line] = [[] for _ in range(height)]
+    used = 0
+    for column, cells in zip(widths, columns, strict=True):
+        if used and used + _GAP + column > width:
+            break
+        for row, line in enumerate(lines):
+            cell = cells[row] if row < len(cells) else []
+            line += [_unit(" " * _GAP * bool(used)), *cell, _unit(" " * (column - _length(cell)))]
+        used += column + _GAP * bool(used)
+    return lines
+
+
+def _columns(now: Snapshot, height: int, detail: int) -> tuple[list[list[Line]], int]:
+    """Return cells in columns of that height, and how many columns motors and sensors take.
+
+    Args:
+        now: The moment.
+        height: Cells a column has at most.
+        detail: 2 with speeds and names of colours, 1 without names, 0 without both.
+    """
+    robot, instant = now.spec.robot, now.instant
+    wheels = [("L", instant.left_position_deg, instant.left_speed_dps, now.stalled[0]),
+              ("R", instant.right_position_deg, instant.right_speed_dps, now.stalled[1])]  # fmt: skip
+    turns = zip(robot.extra_motors, now.turns, strict=False)
+    extra = [(motor.port[-1], position, dps, False) for motor, (position, dps) in turns]
+    motors = [_motor_cell(*motor, detail > 0) for motor in (wheels if robot.has_wheels else []) + extra]
+    colors = [(f"S{at}", now.colors.get(sensor.name)) for at, sensor in enumerate(robot.color_sensors, 1)]
+    sensors = [_color_cell(name, seen, detail > 1) for name, seen in colors]
+    ranging: list[Line] = []
+    if now.ultrasonic_mm is not None:
+        ranging.append([_label("US", 3), *_values(f"{now.ultrasonic_mm / 10:5.1f}", "cm")])
+    if robot.gyro is not None:
+        ranging.append([_label("Gyro", 5), *_values(f"{now.gyro_deg:4d}", "°")])
+    ranging += [_further(column, value, _CELL) for column, value in now.further.items()]
+    pose = now.instant.pose
+    heading = [_unit("h"), *_values(f"{shown_heading_deg(pose.heading_deg):4.0f}", "°")]
+    places: list[Line] = [[_unit("x "), _value(f"{pose.x_mm:4.0f}")], [_unit("y "), _value(f"{pose.y_mm:4.0f}")]]
+    groups = [motors + ranging[:1], sensors + ranging[1:]]
+    if not motors or not sensors or max(map(len, groups)) > height:
+        cells = motors + sensors + ranging
+        groups = [cells[at : at + height] for at in range(0, len(cells), height)]
+    last = [*places, heading]
+    return [group for group in groups if group] + [last[at : at + height] for at in range(0, 3, height)], len(groups)
+
+
+def _motor_cell(name: str, counts: float, dps: float, has_stalled: bool, with_speed: bool) -> Line:
+    cell: Line = [_label(name, 2), _value(f"{round(counts):5d}")]
+    if has_stalled:
+        return [*cell, (" stalled" if with_speed else "!", _WARNING)]
+    return [*cell, *_values(f"{round(dps):6d}", "°/s")] if with_speed else cell
+
+
+def _color_cell(name: str, seen: ColorReading | None, with_name: bool) -> Line:
+    if seen is None:
+        return [_label(name, 3), _unit("–")]
+    cell: Line = [_label(name, 3), *_values(f"{seen.red_percent:5.1f}", "% "), _swatch(seen)]
+    return [*cell, _value(f" {seen.name:<{_LONGEST_NAME}}")] if with_name else cell
+
+
+def _length(line: Line) -> int:
+    return sum(len(text) for text, _ in line)
 
 
 def _fit(width: int, *variants: Sequence[Run]) -> Line:

@@ -19,11 +19,13 @@ from textual.widget import Widget
 from textual.widgets import Input, Static
 
 from tuisim.app.action import with_keys_of
+from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.data_class import dataclass
 from tuisim.errors import counted
 from tuisim.runs.records import OutputRow, Stream, line_of
 
+_TITLE = PANELS["output"].title
 BEFORE_A_RUN = "What the program prints appears here: {run} runs it"
 
 
@@ -62,6 +64,13 @@ class Output(Vertical):
     def compose(self) -> ComposeResult:
         yield self._log
         yield self._past_log
+
+    def set_program(self, name: str) -> None:
+        """Show the name of the program."""
+        # A file name is no markup.
+        title = (f"{_TITLE}: {name}" if name else _TITLE).replace("[", "\\[")
+        if title != self.border_title:
+            self.border_title = title
 
     def clear(self) -> None:
         """Remove every line."""

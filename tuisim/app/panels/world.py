@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
+from pathlib import Path
 
 import numpy as np
 from rich.style import Style
@@ -93,6 +94,8 @@ class World(Widget, can_focus=True):
     def __init__(self) -> None:
         super().__init__()
         self._view = WorldView()
+        self._mat = ""
+        """Name of the mat."""
         self.time_bar = TimeBar()
 
     def compose(self) -> ComposeResult:
@@ -122,8 +125,13 @@ class World(Widget, can_focus=True):
     @zoom.setter
     def zoom(self, zoom: int) -> None:
         self._view.zoom = zoom if zoom in ZOOMS else 1
-        self.border_title = f"{_TITLE} {self.zoom}×" if self.zoom > 1 else _TITLE
+        self._say()
         self._view.repaint_scene()
+
+    def _say(self) -> None:
+        title = f"{_TITLE}: {self._mat}" if self._mat else _TITLE
+        # A file name is no markup.
+        self.border_title = title.replace("[", "\\[") + (f" {self.zoom}×" if self.zoom > 1 else "")
 
     def cycle_zoom(self) -> None:
         """Go to the next zoom factor, and from the last to the first."""
@@ -154,6 +162,10 @@ class World(Widget, can_focus=True):
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment."""
+        mat = Path(snapshot.spec.world.background).name
+        if mat != self._mat:
+            self._mat = mat
+            self._say()
         self._view.show(snapshot)
         self.time_bar.show(snapshot)
 
