@@ -147,7 +147,8 @@ class RunHandle:
         self._stop_at: float | None = None
         self._asked_at = 0.0
         self._look_at_s = time.monotonic() + LOOK_EVERY_S
-        self._has_looked = False
+        self._is_followed = not of_many
+        """Whether the end is read, too: it may be packed before anybody looks. Nobody follows a short run of a batch."""
         self._progress = (0, 0.0)
         self._stack_asked = False
         self._announced: Ended | None = None
@@ -233,10 +234,10 @@ class RunHandle:
         now_s = time.monotonic()
         # A view that holds is one that somebody follows: only this lets it go on.
         is_due = now_s >= self._look_at_s or self.telemetry.holds or self.output.holds
-        if is_due or self._events.falsified or (exited and self._has_looked):
+        if is_due or self._events.falsified or (exited and self._is_followed):
             self._look_for_falsified()
         if is_due:
-            self._has_looked, self._look_at_s = True, now_s + LOOK_EVERY_S
+            self._is_followed, self._look_at_s = True, now_s + LOOK_EVERY_S
             self._enforce_quota()
             self._look_for_stall()
         self._enforce_stop()

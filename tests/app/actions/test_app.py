@@ -74,11 +74,12 @@ async def test_a_panel_without_room_takes_the_place_of_another() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await pilot.press("X", "H")
-        assert app.panel_area.shown("positioning")
-        assert app.panel_area.shown("controls")
+        assert all(app.panel_area.shown(panel) for panel in ("instrumentation", "output", "positioning", "controls"))
+        await pilot.press("c")
+        assert app.panel_area.shown("chart")
         assert not app.panel_area.shown("instrumentation")
-        assert "Simulator controls replaces Instrumentation (i)" in notices(app)
-        await pilot.press("H")
+        assert "Chart replaces Instrumentation (i), Output (O), Simulator controls (H)" in notices(app)
+        await pilot.press("c")
         assert app.panel_area.shown("instrumentation")
 
 

@@ -48,7 +48,7 @@ async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
 async def test_resize_there_and_back() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: all(words in screen_text(app) for words in ("White", "left │ right")))
+        await until(pilot, lambda: all(words in screen_text(app) for words in ("White", "World: Grey_bands")))
         before = screen_text(app)
         await pilot.resize_terminal(200, 60)
         await until(pilot, lambda: app.panel_area.shown("positioning"))
