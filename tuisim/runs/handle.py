@@ -145,14 +145,12 @@ class RunHandle:
         self._unsent: list[Message] = []
         """Commands sent before the child listens: the signal that announces one would kill it."""
         self._stop_at: float | None = None
-        self._asked_at = 0.0
+        self._asked_at = self._announced_at = 0.0
         self._look_at_s = time.monotonic() + LOOK_EVERY_S
         self._is_followed = not of_many
-        """Whether the end is read, too: it may be packed before anybody looks. Nobody follows a short run of a batch."""
-        self._progress = (0, 0.0)
-        self._stack_asked = False
+        """Whether its end is read, too: it may be packed before anybody looks. Short runs of batches are not."""
+        self._progress, self._stack_asked = (0, 0.0), False
         self._announced: Ended | None = None
-        self._announced_at = 0.0
         self.unstored = ""
         """Why the run or its end is not stored; empty if it is."""
         # Held beyond the end of the process: until its end is stored, nobody else may pack the run.
@@ -170,8 +168,9 @@ class RunHandle:
         except OSError as error:
             os.close(self._lock_fd)
             self._store.forget(run.id)
-            what = error.strerror or str(error)
-            raise HostError(f"the program's process cannot be started: {what}", str(run.folder)) from error
+            raise HostError(
+                f"the program's process cannot be started: {error.strerror or error}", str(run.folder)
+            ) from error
         self._mark = mark(self._process.pid)
         self._clock = FairClock(self._process.pid)
         self._events = EventStream(self._event_fd, allowed_events(options))
