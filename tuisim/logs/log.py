@@ -221,7 +221,7 @@ class Log:
 
     def numbers_at(self, column: str, rows: IntArray) -> FloatArray:
         """Return the numbers of a column in some rows, as `numbers`, but without keeping those of the others."""
-        return numbers_of(self.table.column(column).take(pa.array(rows)))
+        return numbers_of(self.table.column(column).take(whole_numbers(np.ascontiguousarray(rows, np.int64))))
 
     def with_layout(self, layout: Layout) -> Log:
         """Return the same log with another layout."""
