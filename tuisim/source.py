@@ -71,6 +71,11 @@ class Program:
     """Folder of an earlier run: modules are read as that one recorded them; None reads them from their files."""
 
     @property
+    def file(self) -> str:
+        """File name of its frames: its path, or the name of a program that is in no file."""
+        return self.path or self.name
+
+    @property
     def sha256(self) -> str:
         """Hash of the text in UTF-8, hexadecimal."""
         # Imported here: the child process that runs a program does not need it.

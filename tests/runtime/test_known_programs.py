@@ -9,7 +9,7 @@ import warnings
 import pytest
 
 from tuisim.runtime import known_programs
-from tuisim.runtime.known_programs import MOST_CHARACTERS, MOST_KNOWN, KnownPrograms, file_of
+from tuisim.runtime.known_programs import MOST_CHARACTERS, MOST_KNOWN, KnownPrograms
 from tuisim.runtime.loader import LOOP_HOOK, compile_program
 from tuisim.source import Program
 
@@ -36,7 +36,7 @@ def test_a_program_is_compiled_when_it_is_run_again(monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr(known_programs, "compile_program", compile_noted)
     first, *others = [known.code(program) for _ in range(3)]
-    assert (first, compiled) == (None, [file_of(program)])
+    assert (first, compiled) == (None, [program.file])
     assert others[0] is not None
     assert others[0] is others[1]
     turns: list[None] = []

@@ -140,7 +140,7 @@ class DebugController:
 
     def program_changed(self, program: Program | None) -> None:
         """Update the breakpoints for another program or another text."""
-        key = (program.path or program.name) if program else ""
+        key = program.file if program else ""
         if key != self._program:
             self._program = key
             kept = load_kept(key) if key else Kept()

@@ -196,8 +196,8 @@ class PanelArea(Container):
         self.lay_out()
         return self.preset
 
-    def next_preset(self) -> Preset:
-        """Show the next preset, and return which; one that would show the same panels in the same place is left out."""
+    def next_preset(self) -> None:
+        """Show the next preset; one that would show the same panels in the same place is left out."""
         before, presets = self.arrangement.boxes, list(Preset)
         at = presets.index(self.preset)
         for preset in presets[at + 1 :] + presets[: at + 1]:
@@ -206,7 +206,6 @@ class PanelArea(Container):
             self.choose_preset(preset)
             if self.arrangement.boxes != before:
                 break
-        return self.preset
 
     def keep_panels(self) -> None:
         """Keep the preset, and the panels shown or hidden by their keys, for the next start in this size."""

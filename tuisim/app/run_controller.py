@@ -281,10 +281,7 @@ class RunController:
         if "profile" not in self.next_run.free:
             require_library(program, self.next_run.spec.profile)
         options = replace(self._options, breaks=breaks, hold_at=FIRST_LINE if paused else None)
-        run, before = start_run(program, self.next_run.spec, options), self.timeline.recording
-        self.close()
-        self.run, self._end = run, None
-        self._show_recording(Recording(self.run), before)
+        self._show_run(start_run(program, self.next_run.spec, options))
 
     def prepare_next(self) -> None:
         """Prepare a process for the next run, which moves the robot sooner; a run in another world needs its own."""
@@ -306,12 +303,9 @@ class RunController:
         options = replace(self._options, answers=branch.of.answers, actions=branch.script(), hold_at=hold_at)
         run = start_run(branch.runs, branch.of.spec, options)
         RunStore().tag(run.run_id, branch.tags)
-        before = self.timeline.recording
-        self.close()
-        self.run, self._end = run, None
+        self._show_run(run, branch.of.answers)
         # The noise of the current run is that of the next one, as if chosen now.
         self.next_run = plans.with_noise(self.next_run, noise)
-        self._show_recording(Recording(run, branch.of.answers), before)
         self._branch = branch
 
     def _branch_arrived(self, paused: protocol.Paused | None = None) -> Branch | None:
@@ -343,11 +337,19 @@ class RunController:
         later = self.timeline.recording
         self.earlier = earlier if earlier and later and is_comparable(earlier, later) else None
 
-    def _show_recording(self, recording: Recording, earlier: Recording | None = None) -> None:
+    def _show_run(self, run: RunHandle, answers: tuple[str, ...] = ()) -> None:
+        """Show a run that has been started, beside the one before; arguments as of `Recording`."""
+        before = self.timeline.recording
+        self.close()
+        self.run, self._end = run, None
+        self._show_recording(Recording(run, answers))
+        self.show_earlier(before)
+
+    def _show_recording(self, recording: Recording) -> None:
         # What is drawn of a frame is of one instant.
         recording.hold()
         self.timeline.switch_to(recording)
-        self.show_earlier(earlier)
+        self.show_earlier(None)
         self._pending.forget()
         self.pressed = frozenset()
         self._moved = False

@@ -221,15 +221,16 @@ def _with_cursors(runs: list[TextRun], columns: Sequence[int], *, is_on_grid: bo
     line: list[Run] = []
     at = 0
     for text, rgb in runs:
+        style = _FAINT if is_on_grid and rgb is None else styled(rgb)
         done = 0
         for inside in (column - at for column in columns):
             if 0 <= inside < len(text):
                 mark = text[inside]
-                line.append((text[done:inside], _FAINT if is_on_grid and rgb is None else styled(rgb)))
+                line.append((text[done:inside], style))
                 is_free = mark in (" ", _GRID)
                 line.append(("│" if is_free else mark, _CURSOR if is_free else styled(rgb) + _CURSOR))
                 done = inside + 1
-        line.append((text[done:], _FAINT if is_on_grid and rgb is None else styled(rgb)))
+        line.append((text[done:], style))
         at += len(text)
     return [run for run in line if run[0]]
 

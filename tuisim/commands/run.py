@@ -175,7 +175,7 @@ class BreakpointReporter:
 
     def _report(self, paused: Paused, inspected: Inspected) -> list[str]:
         """Return the lines of the report: position, variables, watches, what the program waits for."""
-        name = paused.file or self._handle.program.path or self._handle.program.name
+        name = paused.file or self._handle.program.file
         value = f" ({paused.value})" if paused.value else ""
         thread = f", thread {paused.thread}" if len(inspected.threads) > 1 else ""
         last = self._handle.telemetry.last()

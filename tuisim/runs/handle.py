@@ -289,7 +289,7 @@ class RunHandle:
             return Ended(End.FALSIFIED, tick, time_ns, 1, f"the program has falsified its recording: {falsified}")
         if self._exceeded:
             return Ended(End.OUTPUT_LIMIT, tick, time_ns, 1, self._exceeded)
-        line = stuck_line(self.folder, self.program.path or self.program.name)
+        line = stuck_line(self.folder, self.program.file)
         if self._stop_at is not None:
             where = f" in line {line}, where it was stuck" if line else ""
             return Ended(End.STOPPED, tick, time_ns, summary=f"stopped{where}", error_line=line)

@@ -20,7 +20,7 @@ from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, Strea
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.control import ATTENTION, STOPPING, RunControl
 from tuisim.runtime.interrupts import Interrupts, die_with_host
-from tuisim.runtime.known_programs import KnownPrograms, file_of
+from tuisim.runtime.known_programs import KnownPrograms
 from tuisim.runtime.limits import STACK_BYTES, limit_memory, refuse_processes
 from tuisim.runtime.output import OutputRecorder
 from tuisim.runtime.patches.clock import (
@@ -175,7 +175,7 @@ class Child:
             channel, config.folder, options.live, options.speed, options.start_paused, options.actions
         )
         limits = RunLimits(int(options.time_limit_s * NS_PER_S), options.stall_limit_s)
-        session.connect(channel, steering, limits, file_of(config.program))
+        session.connect(channel, steering, limits, config.program.file)
         session.replies = options.replies
         for writer in (self._telemetry, self._output.writer):
             writer.full = lambda error: session.request_stop(protocol.End.DISK_FULL, _no_room(error))

@@ -19,11 +19,6 @@ SPARE_FRAMES = 100
 """What can be compiled with this many frames less can be compiled by the process of a run."""
 
 
-def file_of(program: Program) -> str:
-    """Return the file name of a program's own frames."""
-    return program.path or program.name
-
-
 class KnownPrograms:
     """Compiles a program when it is run for the second time.
 
@@ -36,7 +31,7 @@ class KnownPrograms:
 
     def code(self, program: Program) -> types.CodeType | None:
         """Return the code of a program that is about to be run; None if its own process has to compile it."""
-        key = file_of(program), program.text
+        key = program.file, program.text
         if len(program.text) > MOST_CHARACTERS:
             return None
         if key not in self._seen:

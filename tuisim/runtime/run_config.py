@@ -36,7 +36,7 @@ class RunConfig:
     def own_folder(self) -> str:
         """Folder of the program's own modules: that of its file, or the configured one, or the working directory."""
         program = self.program
-        return program.module_folder or os.path.dirname(wallclock.absolute(program.path or program.name))
+        return program.module_folder or os.path.dirname(wallclock.absolute(program.file))
 
     @property
     def starts_in_own_folder(self) -> bool:

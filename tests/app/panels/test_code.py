@@ -82,6 +82,13 @@ def pause(*variables: Variable) -> PauseView:
     return PauseView(Paused(321, 0, 4), Inspected(321, 0, "", 0, "", (), stack, variables, (), ()), False)
 
 
+def pause_at_print(code: Code) -> None:
+    """Show that the loop is paused."""
+    code.set_running(LOOP)
+    code.show(moment(state=RunPhase.PAUSED, line=4))
+    code.show_pause(PAUSE)
+
+
 PAUSE = pause(Variable("total", "int", "100000000000", True), Variable("n", "int", "1", False))
 
 
@@ -98,9 +105,7 @@ async def test_values_stand_behind_the_lines_that_assign_them(width: int, rows: 
     app = CodeApp()
     async with app.run_test(size=(width, 12)) as pilot:
         code, area = await alone(pilot, LOOP)
-        code.set_running(LOOP)
-        code.show(moment(state=RunPhase.PAUSED, line=4))
-        code.show_pause(PAUSE)
+        pause_at_print(code)
         await pilot.pause()
         assert [area.render_line(y).text[5:].strip() for y in range(3)] == rows
         assert {area.render_line(y).cell_length for y in range(4)} == {width}
@@ -112,9 +117,7 @@ async def test_values_of_another_instant_are_not_shown(then: str) -> None:
     app = CodeApp()
     async with app.run_test(size=(70, 12)) as pilot:
         code, area = await alone(pilot, LOOP)
-        code.set_running(LOOP)
-        code.show(moment(state=RunPhase.PAUSED, line=4))
-        code.show_pause(PAUSE)
+        pause_at_print(code)
         assert "n = 1" in area.render_line(1).text
         match then:
             case "go on":
@@ -130,8 +133,6 @@ async def test_values_follow_their_lines_in_an_edited_text() -> None:
     app = CodeApp()
     async with app.run_test(size=(70, 12)) as pilot:
         code, area = await alone(pilot, LOOP)
-        code.set_running(LOOP)
-        code.show(moment(state=RunPhase.PAUSED, line=4))
-        code.show_pause(PAUSE)
+        pause_at_print(code)
         await pilot.press("enter", "ctrl+home", "number_sign", "enter")
         await until(pilot, lambda: area.render_line(2).text.rstrip().endswith("range(9):  n = 1"))

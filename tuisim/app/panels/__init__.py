@@ -79,6 +79,11 @@ class PanelInfo:
     grows: bool = False
     """Whether it has a use for more rows than the preferred ones."""
 
+    def titled(self, name: str) -> str:
+        """Return its title, with the name of what it shows unless that is empty, as markup."""
+        # A file name is no markup.
+        return f"{self.title}: {name}".replace("[", "\\[") if name else self.title
+
     def load(self) -> type[Panel]:
         """Import the panel's class."""
         module, _, name = self.path.partition(":")

@@ -30,7 +30,7 @@ from tuisim.source import source_lines
 LIT_GAP_S = 0.1
 """Minimum time between two moves of the highlight while the program runs: more often would only flicker."""
 
-_TITLE = PANELS["code"].title
+_INFO = PANELS["code"]
 NOTHING_OPEN = "No program: {open} opens one, {new} creates one"
 _FRAME = 4
 """Cells of the frame beside what it says."""
@@ -95,7 +95,7 @@ class Code(Vertical):
         self._tells_run = self._in_run = False
         self._lit_at_s = 0.0
         self._line = 0
-        self._said = (_TITLE, "")
+        self._said = (_INFO.title, "")
         self._error_words = ""
         """What is wrong in the line that is marked as an error, as far as it is known."""
         self._pause: PauseView | None = None
@@ -157,7 +157,7 @@ class Code(Vertical):
 
     def set_title(self, name: str, edited: bool = False) -> None:
         """Show the name of the program, and whether it has unsaved changes."""
-        self._said = (f"{_TITLE}: {name}" if name else _TITLE, " • edited" if edited else "")
+        self._said = (_INFO.titled(name), " • edited" if edited else "")
         self._say()
 
     @property
@@ -168,8 +168,7 @@ class Code(Vertical):
 
     def _say(self) -> None:
         title, edited = self._said
-        # A file name is no markup.
-        self.border_title = title.replace("[", "\\[") + edited
+        self.border_title = title + edited
         keys = "  ".join(f"{key} {does}" for key, does in TYPING_KEYS[:_HINT_KEYS]) if self.typing else ""
         words = self._error_words if self.error_line else ""
         told = words or "  ".join(filter(None, ["running text differs" if self.differs else "", keys]))

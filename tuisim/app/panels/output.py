@@ -25,7 +25,7 @@ from tuisim.data_class import dataclass
 from tuisim.errors import counted
 from tuisim.runs.records import OutputRow, Stream, line_of
 
-_TITLE = PANELS["output"].title
+_INFO = PANELS["output"]
 BEFORE_A_RUN = "What the program prints appears here: {run} runs it"
 
 
@@ -67,8 +67,7 @@ class Output(Vertical):
 
     def set_program(self, name: str) -> None:
         """Show the name of the program."""
-        # A file name is no markup.
-        title = (f"{_TITLE}: {name}" if name else _TITLE).replace("[", "\\[")
+        title = _INFO.titled(name)
         if title != self.border_title:
             self.border_title = title
 

@@ -47,7 +47,7 @@ smaller move is invisible."""
 _PAPER = (255, 255, 255)
 """Off the mat, where there are no colours: nothing is drawn there."""
 
-_TITLE = PANELS["world"].title
+_INFO = PANELS["world"]
 _PIVOT, _GHOST_PIVOT = "O", "x"
 _ANY_PEN = PenSpec()
 
@@ -129,9 +129,7 @@ class World(Widget, can_focus=True):
         self._view.repaint_scene()
 
     def _say(self) -> None:
-        title = f"{_TITLE}: {self._mat}" if self._mat else _TITLE
-        # A file name is no markup.
-        self.border_title = title.replace("[", "\\[") + (f" {self.zoom}×" if self.zoom > 1 else "")
+        self.border_title = _INFO.titled(self._mat) + (f" {self.zoom}×" if self.zoom > 1 else "")
 
     def cycle_zoom(self) -> None:
         """Go to the next zoom factor, and from the last to the first."""
