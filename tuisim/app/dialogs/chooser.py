@@ -21,7 +21,6 @@ from tuisim.config.mat_image import decode, read_file
 from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import OBSTACLES, load_obstacles
 from tuisim.config.profiles import load_profile
-from tuisim.config.robots import ROBOTS, load_robot, ports_of
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.data_class import dataclass
@@ -131,6 +130,10 @@ class Chooser(ListDialog):
     def content(self) -> ComposeResult:
         if self._path_hint:
             yield Input(placeholder=self._path_hint, compact=True, select_on_focus=False)
+        yield self.listed()
+
+    def listed(self) -> OptionList:
+        """Return the list."""
         options: list[Option | None] = []
         for group in self._groups:
             if options:
@@ -149,7 +152,7 @@ class Chooser(ListDialog):
         names = [option.id for option in listed.options]
         if self._current in names:
             listed.highlighted = names.index(self._current)
-        yield listed
+        return listed
 
 
 def program_chooser() -> Chooser:
@@ -172,34 +175,6 @@ def program_chooser() -> Chooser:
     ]
     hint = "Path of a program, world or goals file, or choose below"
     return Chooser("Programs, worlds and goals", groups, path_hint=hint)
-
-
-OF_PROGRAM = "*program"
-"""What the dialog for robots returns for the robot that was built for the program; no name or path of a robot."""
-
-
-def robot_chooser(plan: NextRun) -> Chooser:
-    """Return the dialog for robots: the one built for the program, with its ports, those known by name, and files."""
-    built = plan.program_robot
-    own = (
-        [(OF_PROGRAM, built.spec.name, ", ".join(f"{port} {name}" for port, name in ports_of(built.spec)))]
-        if built
-        else []
-    )
-    presets = [(name, name, _robot_title(name)) for name in ROBOTS]
-    groups = [
-        ChoiceGroup("Built from the program", own),
-        ChoiceGroup("By name" if own else "", presets),
-        files_here([".toml", ".json"], lambda path: load_robot(str(path))),
-    ]
-    current = OF_PROGRAM if built is not None and plan.robot == built else plan.words.get("robot", "")
-    return Chooser("Robots", groups, current, "Path of a robot's .toml or .json file")
-
-
-def _robot_title(name: str) -> str:
-    robot = ROBOTS[name]
-    sensors = ", ".join(f"({sensor.x_mm:g}, {sensor.y_mm:g}) ⌀ {sensor.diameter_mm}" for sensor in robot.color_sensors)
-    return f"wheels ⌀ {robot.wheel_diameter_mm:g}, {robot.wheel_spacing_mm:g} apart; sensors {sensors}"
 
 
 def obstacle_chooser(plan: NextRun) -> Chooser:
