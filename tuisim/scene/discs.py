@@ -151,12 +151,23 @@ def draw_disc(box: bytes, width_px: int, height_px: int, ground_rgb: Rgb, rim_rg
     cols, rows = cols.clip(-1, diameter), rows.clip(-1, diameter)
     within = inside[rows[:, None] + 1, cols[None, :] + 1]
     is_rim = np.hypot(north[:, None], east[None, :]) <= diameter / 2 + rim_mm
-    samples = np.where(is_rim[..., None], np.array(rim_rgb, np.uint8), np.array(ground_rgb, np.uint8))
+    inside_share, rim_share = (_means(part[..., None], fine)[..., 0] for part in (within, is_rim))
+    # Each pixel has one colour of disc, rim or ground: mixed ones would blur the outline.
+    picture = np.empty((height_px, width_px, 3), np.uint8)
+    picture[:] = ground_rgb
+    picture[rim_share >= 0.5] = rim_rgb
     at = rows.clip(0, diameter - 1)[:, None] * diameter + cols.clip(0, diameter - 1)[None, :]
-    samples[within] = pixels[at[within]]
-    mean = samples.reshape(height_px, fine, width_px, fine, 3).mean(axis=(1, 3))
-    picture: Pixels = np.rint(mean).astype(np.uint8)
+    seen = _means(pixels[at] * within[..., None], fine) / np.maximum(inside_share, 1e-9)[..., None]
+    is_disc = inside_share >= 0.5
+    picture[is_disc] = np.rint(seen[is_disc])
     return picture
+
+
+def _means(samples: npt.NDArray[np.generic], fine: int) -> npt.NDArray[np.float64]:
+    """Return the mean of each block of `fine` × `fine` samples, shape (rows, columns, channels)."""
+    rows, cols, channels = samples.shape
+    means: npt.NDArray[np.float64] = samples.reshape(rows // fine, fine, cols // fine, fine, channels).mean(axis=(1, 3))
+    return means
 
 
 def _from_middle(size_px: int, fine: int) -> npt.NDArray[np.float64]:
