@@ -90,14 +90,14 @@ def test_the_value_is_what_the_program_gets(read: LightRead, most: int, words: s
 def test_thresholds_say_what_they_give_now() -> None:
     thresholds = (
         Threshold(LightRead.PERCENT, ">", 90, 15),
-        Threshold(LightRead.COLOR, "=", 6, 16),
+        Threshold(LightRead.COLOR, "==", 6, 16),
         Threshold(LightRead.PERCENT, AIM, 50, 17),
         Threshold(LightRead.REFLECTED, "<", 300, 18),
     )
 
     face = replace(FACE, thresholds=thresholds)
 
-    assert face.limit_words(99) == "> 90: no, line 15; = White: yes, line 16; − 50, line 17; < 300: yes, line 18"
-    assert face.limit_words(50) == "> 90: no; = White: yes; − 50; < 300: yes"
+    assert face.limit_words(99) == "> 90: no, line 15; == White: yes, line 16; - 50, line 17; < 300: yes, line 18"
+    assert face.limit_words(50) == "> 90: no; == White: yes; - 50; < 300: yes"
     assert face.limit_words(13) == "> 90: no"
     assert face.limit_shares == (0.9, 0.5)

@@ -28,22 +28,22 @@ def found(text: str, prelude: str = "none") -> dict[str, list[str]]:
         ),
         pytest.param(
             "LIMIT = 40\nseen = colorRight.reflected_light_intensity\nif LIMIT >= seen:\n    pass\n",
-            {"right": ["reflected_light_intensity ≤ 40 3"]},
+            {"right": ["reflected_light_intensity <= 40 3"]},
             id="by names, the other way round",
         ),
         pytest.param(
             "def dark(value):\n    return value < 3\n\n"
             "if colorLeft.color == 5 or colorLeft.color_name == 'Blue':\n    pass\n",
-            {"left": ["color = Red 4", "color_name = Blue 4"]},
+            {"left": ["color == Red 4", "color_name == Blue 4"]},
             id="colours",
         ),
         pytest.param(
             "error = int(colorLeft.full_reflected_light_intensity) - 50\n",
-            {"left": ["full_reflected_light_intensity − 50 1"]},
+            {"left": ["full_reflected_light_intensity - 50 1"]},
             id="an aim",
         ),
         pytest.param("if 20 < colorLeft.reflected_light_intensity <= 60:\n  pass\n",
-                     {"left": ["reflected_light_intensity > 20 1", "reflected_light_intensity ≤ 60 1"]}, id="between"),
+                     {"left": ["reflected_light_intensity > 20 1", "reflected_light_intensity <= 60 1"]}, id="between"),
         pytest.param("if colorLeft.reflected_light_intensity > colorRight.reflected_light_intensity: pass\n", {},
                      id="no number"),
         pytest.param("if gyro.angle > 90: pass\nif len([]) > 3: pass\n", {}, id="others"),
@@ -67,7 +67,7 @@ def test_of_pybricks() -> None:
     text = (
         PYBRICKS + "eye = ColorSensor(Port.S2)\nwhile eye.color() != Color.BLACK and eye.reflection() > 9:\n    pass\n"
     )
-    assert found(text) == {"left": ["color ≠ Black 4", "reflection > 9 4"]}
+    assert found(text) == {"left": ["color != Black 4", "reflection > 9 4"]}
 
 
 @pytest.mark.parametrize(

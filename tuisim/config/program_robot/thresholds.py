@@ -19,10 +19,10 @@ from tuisim.data_class import dataclass
 from tuisim.source import PRELUDE_TEXTS, Program
 
 _SIGNS: Mapping[type[ast.cmpop], str] = {
-    ast.Lt: "<", ast.LtE: "≤", ast.Gt: ">", ast.GtE: "≥", ast.Eq: "=", ast.NotEq: "≠",
+    ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!=",
 }  # fmt: skip
-_TURNED = {"<": ">", "≤": "≥", ">": "<", "≥": "≤"}
-AIM = "−"
+_TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+AIM = "-"
 """The sign of a difference: the program drives toward that value."""
 _KEPT = {"int", "float", "round", "abs", "max", "min"}
 """Functions of a reading that is then still compared."""
@@ -38,7 +38,7 @@ class Threshold:
 
     read: LightRead
     sign: str
-    """One of < ≤ > ≥ = ≠, or `AIM`; the reading stands on its left."""
+    """As in Python, such as `<=`, or `AIM`; the reading stands on its left."""
     value: float
     """A colour code for a colour."""
     line: int
@@ -49,22 +49,22 @@ class Threshold:
         match self.sign:
             case "<":
                 return value < self.value
-            case "≤":
+            case "<=":
                 return value <= self.value
             case ">":
                 return value > self.value
-            case "≥":
+            case ">=":
                 return value >= self.value
-            case "=":
+            case "==":
                 return value == self.value
-            case "≠":
+            case "!=":
                 return value != self.value
             case _:
                 return None
 
     @property
     def words(self) -> str:
-        """The comparison without the reading, such as `> 90` or `= Red`."""
+        """The comparison without the reading, such as `> 90` or `== Red`."""
         shown = COLOR_NAMES[int(self.value)] if self.read.is_color else f"{self.value:g}"
         return f"{self.sign} {shown}"
 
