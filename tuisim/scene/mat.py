@@ -17,6 +17,8 @@ from tuisim.terminal.pixels import Pixels
 _REMEMBERED = 4
 _STRONGER, _CLEAR = 2.5, 0.6
 """What covers less of a pixel than `_CLEAR` is drawn as if it covered `_STRONGER` times as much, up to that."""
+_PLAIN = 0.15
+"""A pixel of which less than this is of another colour is one of an area, and not of a thin line."""
 _FINE_COLS = 2
 """Pixels of so many across a cell, or of fewer, are so large that thin lines need it."""
 
@@ -110,17 +112,21 @@ def _reduced_rows(
 def _keep_detail(mean: npt.NDArray[np.float32], low: npt.NDArray[np.float32], high: npt.NDArray[np.float32]) -> Pixels:
     """Move each mean toward whichever of low and high is further from the mean of the pixels around it.
 
-    Plain areas and gradients are hardly touched: low and high are nearly the same there.
+    Plain areas and gradients are hardly touched: low and high are nearly the same there. Nor are the edges of areas: a
+    pixel beside has nearly the colour of the area, which is none of a thin line.
     """
     around = np.pad(mean, ((1, 1), (1, 1), (0, 0)), mode="edge")
     rows, cols = mean.shape[:2]
-    near = sum(around[row : row + rows, col : col + cols] for row in range(3) for col in range(3)) / 9
+    nine = [around[row : row + rows, col : col + cols] for row in range(3) for col in range(3)]
+    near = sum(nine) / len(nine)
     is_dark = high - near < near - low
     line, ground = np.where(is_dark, low, high), np.where(is_dark, high, low)
     span = line - ground
     share = (mean - ground) / np.where(span == 0, 1, span)
-    share = np.maximum(share, np.minimum(_STRONGER * share, _CLEAR))
-    picture: Pixels = np.rint(ground + span * share).astype(np.uint8)
+    nearest = np.where(is_dark, np.minimum.reduce(nine), np.maximum.reduce(nine))
+    is_edge = np.abs(line - nearest) < _PLAIN * np.abs(span)
+    stronger = np.where(is_edge, share, np.minimum(_STRONGER * share, _CLEAR))
+    picture: Pixels = np.rint(ground + span * np.maximum(share, stronger)).astype(np.uint8)
     return picture
 
 
