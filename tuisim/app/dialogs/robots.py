@@ -113,9 +113,9 @@ class RobotPicture(PixelView):
     def show(self, robot: RobotSpec | None) -> None:
         """Show a robot, or none."""
         self._robot = robot
-        self.on_resize()
+        self.draw_picture()
 
-    def on_resize(self) -> None:
+    def draw_picture(self) -> None:
         """Draw it for the current size."""
         if self._robot is None:
             self.clear_picture()
@@ -127,11 +127,6 @@ class RobotPicture(PixelView):
             mono = mode.depth == cells.MONO
             colors = MONO if mono else GREY if mode.grey else COLORED
             self.set_fine_picture(robot_picture(self._robot, view, colors, mono=mono), graphics)
-
-    def redraw(self) -> None:
-        """Draw it again: the app's glyphs or colours have changed."""
-        self._raw = None
-        self.on_resize()
 
 
 class RobotParts(LinesPanel):

@@ -30,9 +30,9 @@ class _DiscPicture(PixelView):
     def show(self, face: DiscFace | None) -> None:
         """Show a disc, or none."""
         self._face = face
-        self.on_resize()
+        self.draw_picture()
 
-    def on_resize(self) -> None:
+    def draw_picture(self) -> None:
         """Draw it for the current size."""
         if self._face is None:
             self.clear_picture()
@@ -43,11 +43,6 @@ class _DiscPicture(PixelView):
             width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
             picture = draw_disc(self._face.box, width_px, height_px, self.ground_rgb, rim_rgb, cell.tall)
             self.set_fine_picture(picture, graphics)
-
-    def redraw(self) -> None:
-        """Draw it again: the app's glyphs or colours have changed."""
-        self._raw = None
-        self.on_resize()
 
 
 class _Disc(Widget):
