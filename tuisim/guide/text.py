@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import re
+from textwrap import wrap
 
 from rich.style import Style
 
 from tuisim.guide.catalogue import CONTENTS, Page, pages
 from tuisim.guide.search import SearchResult
 from tuisim.guide.tables import markdown_of
-from tuisim.lessons.markdown import PLAIN, markdown_lines
+from tuisim.lessons.markdown import PLAIN, markdown_lines, plain_text
 from tuisim.terminal.text_runs import Line
 
 _LINK = re.compile(r"\[([^\]]+)\]\(([\w-]+)\.md\)")
 _HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
+_PASSAGE_LINES = 2
+"""How much of a passage is shown among results."""
 NO_WORDS = "No page has these words"
 
 
@@ -47,13 +50,20 @@ def contents_lines(width: int) -> list[Line]:
 
 
 def result_lines(found: list[SearchResult], width: int) -> list[Line]:
-    """Return what a search has found, the best page first."""
-    items = [
-        f"- `{one.name}` **{pages()[one.name].title}**{f': {one.heading}' if one.heading else ''}. "
-        f"{pages()[one.name].about}"
-        for one in found
-    ]
-    return markdown_lines("\n".join(items), width)
+    """Return what a search has found, the best page first, each with the passage that answers."""
+    lines = []
+    for one in found:
+        title = f"- `{one.name}` **{pages()[one.name].title}**{f': {one.heading}' if one.heading else ''}"
+        passage = wrap(passage_text(one.passage), max(20, width - 3), max_lines=_PASSAGE_LINES, placeholder=" …")
+        lines += [*markdown_lines(title, width), *([("   " + line, PLAIN)] for line in passage)]
+    return lines
+
+
+def passage_text(markdown: str) -> str:
+    """Return a passage of a page as one line of plain text."""
+    cells = [cell.strip() for cell in markdown.strip("|").split(" | ")] if markdown.startswith("|") else [markdown]
+    text = _LINK.sub(lambda link: link[1], " · ".join(filter(None, cells)))
+    return " ".join(plain_text(text).removeprefix(" •").split())
 
 
 def written(lines: list[Line], *, styled: bool) -> str:
