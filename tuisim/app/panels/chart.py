@@ -34,11 +34,8 @@ class Chart(LinesPanel, can_focus=True):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("up", "select(-1)", "Previous trace"),
         Binding("down", "select(1)", "Next trace"),
-        Binding("space", "tick", "Show or hide the trace"),
-        *(
-            Binding(str(number), f"tick({number})", f"Show or hide trace {number}", show=False)
-            for number in range(1, 10)
-        ),
+        Binding("space", "tick", "Show or hide the selected trace"),
+        *(Binding(str(number), f"tick({number})", "Show or hide this trace", show=False) for number in range(1, 10)),
         Binding("left", "move_cursor(-1)", "Cursor back"),
         Binding("right", "move_cursor(1)", "Cursor forward"),
         Binding("shift+left", "move_cursor(-10)", "Cursor far back", show=False),

@@ -26,8 +26,8 @@ class LessonPanel(LinesPanel, can_focus=True):
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up", "scroll_text(-1)", "Up", show=False),
-        Binding("down", "scroll_text(1)", "Down", show=False),
+        Binding("up", "scroll_text(-1)", "Scroll up", show=False),
+        Binding("down", "scroll_text(1)", "Scroll down", show=False),
         Binding("pageup", "scroll_text(-8)", "Page up", show=False),
         Binding("pagedown", "scroll_text(8)", "Page down", show=False),
         Binding("left", "turn(-1)", "The step before", show=False),
