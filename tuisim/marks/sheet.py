@@ -232,7 +232,6 @@ def frame_of(sheet: Sheet) -> pd.DataFrame:
         "student": [row.name for row in rows],
         "program": [row.program for row in rows],
         "points": [row.points for row in rows],
-        "earned": [row.points if row.earned is None else row.earned for row in rows],
         "robustness": [row.robustness for row in rows],
         "runs": [row.runs for row in rows],
     }
@@ -243,6 +242,7 @@ def frame_of(sheet: Sheet) -> pd.DataFrame:
         "line": [row.line for row in rows],
         "source_line": [row.source_line for row in rows],
         "seed": [row.seed for row in rows],
+        "earned": [row.points if row.earned is None else row.earned for row in rows],
         "comment": [row.comment for row in rows],
     }
     return pd.DataFrame(columns)
