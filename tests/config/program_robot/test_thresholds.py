@@ -39,7 +39,7 @@ def found(text: str, prelude: str = "none") -> dict[str, list[str]]:
         ),
         pytest.param(
             "error = int(colorLeft.full_reflected_light_intensity) - 50\n",
-            {"left": ["full_reflected_light_intensity - 50 1"]},
+            {"left": ["full_reflected_light_intensity aim 50 1"]},
             id="an aim",
         ),
         pytest.param("if 20 < colorLeft.reflected_light_intensity <= 60:\n  pass\n",
@@ -48,6 +48,7 @@ def found(text: str, prelude: str = "none") -> dict[str, list[str]]:
                      id="no number"),
         pytest.param("if gyro.angle > 90: pass\nif len([]) > 3: pass\n", {}, id="others"),
         pytest.param("if (:\n", {}, id="no Python"),
+        pytest.param(f"if colorLeft.reflected_light_intensity < {'+'.join(['1'] * 5000)}: pass\n", {}, id="too deep"),
     ],
 )  # fmt: skip
 def test_of_a_program_with_the_prelude(text: str, expected: dict[str, list[str]]) -> None:

@@ -64,9 +64,9 @@ class Threshold:
 
     @property
     def words(self) -> str:
-        """The comparison without the reading, such as `> 90` or `== Red`."""
+        """The comparison without the reading, such as `> 90`, `== Red`, `aim 50`."""
         shown = COLOR_NAMES[int(self.value)] if self.read.is_color else f"{self.value:g}"
-        return f"{self.sign} {shown}"
+        return f"{'aim' if self.sign == AIM else self.sign} {shown}"
 
 
 _READ = re.compile("|".join(rf"\.{read}\b" for read in LightRead if not read.is_color))
@@ -82,8 +82,16 @@ def read_in(program: Program | None) -> LightRead:
 def thresholds_in(program: Program, robot: RobotSpec) -> Mapping[str, tuple[Threshold, ...]]:
     """Return what a program compares its colour sensors with, in the order of its lines, by name of the sensor.
 
-    Read from its syntax tree: the program does not run for it. What is computed while it runs is not known.
+    Read from its syntax tree: the program does not run for it. What is computed while it runs is not known; nothing of
+    a program that is not Python, or too deeply nested to be read.
     """
+    try:
+        return _found(program, robot)
+    except RecursionError:
+        return {}
+
+
+def _found(program: Program, robot: RobotSpec) -> Mapping[str, tuple[Threshold, ...]]:
     modules = read_modules(program)
     if not modules:
         return {}
