@@ -59,7 +59,8 @@ class Span:
 
     start: float
     stop: float
-    text: str
+    texts: tuple[str, ...]
+    """What it may be called, the longest first: the first one with room is written."""
     name: str
     """Variable that it is about."""
 
@@ -425,6 +426,6 @@ def _spans(chart: ChartData, lines: Sequence[Line], frame: Frame) -> list[Shape]
             continue
         x1, x2 = (float(frame.xs(min(max(x, frame.x[0]), frame.x[1]))) for x in (span.start, span.stop))
         shapes.append(Shade(x1, frame.top, x2 - x1, frame.bottom - frame.top))
-        if len(span.text) * LETTER_PX < x2 - x1:
-            shapes.append(Words((x1 + x2) / 2, frame.bottom - LINE_PX / 2, span.text, "middle"))
+        if text := next((text for text in span.texts if len(text) * LETTER_PX < x2 - x1), ""):
+            shapes.append(Words((x1 + x2) / 2, frame.bottom - LINE_PX / 2, text, "middle"))
     return shapes

@@ -12,8 +12,9 @@ from rich.text import Text
 from tuisim import palette
 from tuisim.charts import axes
 from tuisim.charts.axes import Limits
+from tuisim.charts.bands import FREE, shaded
 from tuisim.charts.canvas import AXIS, BRAILLE, PLAIN, Curve, TextRun, canvas, styled, xy_lines
-from tuisim.charts.layout import COLORS, ChartData, Line, Scales, color_of
+from tuisim.charts.layout import COLORS, ChartData, Line, Scales, Span, color_of
 from tuisim.charts.plot_image import Plot
 from tuisim.charts.traces import Trace, Traces
 from tuisim.data_class import dataclass
@@ -60,6 +61,8 @@ class ChartState:
     """Whether more data may follow, so that the horizontal axis extends a little beyond them."""
     grid: bool = False
     """Draw a faint line at each label of the left scale."""
+    spans: tuple[Span, ...] = ()
+    """What is shaded and named, in order of time."""
     zoomed: bool = False
     """Whether the time range is zoomed: the vertical axis then fits the visible data."""
 
@@ -122,7 +125,11 @@ class ChartPainter:
         cursors = [time_s for time_s in (state.cursor_s, state.other_s) if time_s is not None]
         curves = tuple(scales.curve(trace, by_mark or state.marks) for trace in drawn)
         has_room = len(lines) + rows + with_line <= height and left + columns + scales.right_width <= width
-        plot = scales.plot(curves, columns, rows, x_limits, cursors, has_time_line=with_line) if has_room else None
+        plot = (
+            scales.plot(curves, columns, rows, x_limits, cursors, state.spans, has_time_line=with_line)
+            if has_room
+            else None
+        )
         line, below = axes.time_axis(x_limits, columns, state.unit)
         if is_blank and plot:
             lines += [scales.labelled(row, columns) for row in range(rows)] + [[]] * with_line
@@ -130,10 +137,10 @@ class ChartPainter:
             self._draw(drawn, scales, columns, rows, x_limits, curves)
             at = sorted({axes.column_of(time_s, x_limits, columns) for time_s in cursors})
             on_grid = scales.left_labels if state.grid and not state.is_ascii else {}
-            lines += [
-                scales.framed(row, _with_cursors(self._canvas[row], at, is_on_grid=row in on_grid))
-                for row in range(rows)
-            ]
+            inside = [_styled(self._canvas[row], is_on_grid=row in on_grid) for row in range(rows)]
+            if state.spans:
+                inside = shaded(inside, state.spans, x_limits, columns)
+            lines += [scales.framed(row, _with_cursors(inside[row], at)) for row in range(rows)]
             if with_line:
                 lines.append([(" " * (left - 1) + "└" + line + ("┘" if scales.right_width else ""), AXIS)])
         lines.append([(" " * left + below, AXIS)])
@@ -184,14 +191,14 @@ class _CellScales:
 
     def plot(
         self, curves: tuple[Curve, ...], columns: int, rows: int, x_limits: Limits, cursors: Sequence[float],
-        *, has_time_line: bool,
+        spans: tuple[Span, ...], *, has_time_line: bool,
     ) -> Plot:  # fmt: skip
         right_ticks = None
         if self.both.right:
             right_ticks = tuple(self.both.on_left(np.array(axes.row_ticks(self.both.right, rows))).tolist())
         return Plot(
             curves, columns, rows, x_limits, self.both.left, tuple(axes.time_ticks(x_limits, columns)),
-            tuple(axes.row_ticks(self.both.left, rows)), right_ticks, has_time_line, tuple(cursors),
+            tuple(axes.row_ticks(self.both.left, rows)), right_ticks, has_time_line, tuple(cursors), spans,
         )  # fmt: skip
 
     def labelled(self, row: int, columns: int) -> list[Run]:
@@ -214,21 +221,24 @@ def _time_limits(end_s: float, grows: bool) -> Limits:
     return 0.0, end_s if end_s > 0 else 1.0
 
 
-def _with_cursors(runs: list[TextRun], columns: Sequence[int], *, is_on_grid: bool) -> list[Run]:
+def _styled(runs: list[TextRun], is_on_grid: bool) -> list[Run]:
+    """Return a row of the canvas, with the line of the grid where nothing is drawn."""
+    if not is_on_grid:
+        return [(text, styled(rgb)) for text, rgb in runs]
+    return [(text.replace(" ", _GRID), _FAINT) if rgb is None else (text, styled(rgb)) for text, rgb in runs]
+
+
+def _with_cursors(runs: list[Run], columns: Sequence[int]) -> list[Run]:
     """Return a row of the canvas with lines at rising columns; a column outside it draws none."""
-    if is_on_grid:
-        runs = [(text.replace(" ", _GRID) if rgb is None else text, rgb) for text, rgb in runs]
     line: list[Run] = []
     at = 0
-    for text, rgb in runs:
-        style = _FAINT if is_on_grid and rgb is None else styled(rgb)
+    for text, style in runs:
         done = 0
         for inside in (column - at for column in columns):
             if 0 <= inside < len(text):
                 mark = text[inside]
                 line.append((text[done:inside], style))
-                is_free = mark in (" ", _GRID)
-                line.append(("│" if is_free else mark, _CURSOR if is_free else styled(rgb) + _CURSOR))
+                line.append(("│", _CURSOR) if mark in FREE else (mark, style + _CURSOR))
                 done = inside + 1
         line.append((text[done:], style))
         at += len(text)

@@ -94,6 +94,10 @@ class Trace:
         index = int(np.searchsorted(self.times_s, time_s, "right")) - 1
         return float(self._values[index]) if index >= 0 else None
 
+    def nearest_s(self, time_s: float) -> float:
+        """Return the time of the point nearest to a time; there must be one."""
+        return float(self.times_s[np.abs(self.times_s - time_s).argmin()])
+
     def clear(self) -> None:
         """Remove the points; keep visibility and colour."""
         self._count = 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -10,8 +11,8 @@ from textual import events
 from textual.message import Message
 
 from tuisim import palette
-from tuisim.analysis.chart import event_marks
-from tuisim.analysis.traces import DISTANCE
+from tuisim.analysis.chart import event_marks, spans_of_bands
+from tuisim.analysis.traces import DISTANCE, TIME
 from tuisim.app.plot_view import PlotView
 from tuisim.charts.canvas import BRAILLE, xy_lines
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from tuisim.analysis.traces import LogTrace
 
 _EVENTS = Style(color=palette.EVENT, bold=True)
+_MOST_BANDS = 100
+"""More are too narrow to be told apart."""
 _LEAST_FACET_ROWS = 6
 """Minimum height of the chart of one variable."""
 FACETS_ROWS = 2 * _LEAST_FACET_ROWS
@@ -111,13 +114,19 @@ class LogChart(LinesPanel):
             shows_ascii(self.app), model.mark_s, unit, self.options.marks, grid=True,
             zoomed=model.limits is not None,
         )  # fmt: skip
+        spans = {
+            report.variable: spans_of_bands(report.bands)
+            for report in model.reports()
+            if model.alignment == TIME and report.count <= _MOST_BANDS
+        }
         self._pictures = []
         lines: list[list[Run]] = []
         parts: list[Traces] = [Traces({trace.name: trace}) for trace in facets] or [model.traces]
         for at, part in enumerate(parts):
             rows = height // len(parts) + (at < height % len(parts))
             painter = self._painters.setdefault(facets[at].name if facets else "", ChartPainter())
-            picture = painter.paint(part, state, width, rows, is_blank=is_blank)
+            shown = replace(state, spans=spans.get(facets[at].name if facets else model.selected, ()))
+            picture = painter.paint(part, shown, width, rows, is_blank=is_blank)
             self._pictures.append((len(lines), picture))
             lines += [*picture.lines, *[[] for _ in range(rows - len(picture.lines))]]
         return [*lines, *(self._event_marks(model) if marked else []), *measured], self._pictures

@@ -12,8 +12,10 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 
 from tuisim.app.plot_view import PlotView
-from tuisim.app.snapshot import RunPhase, Snapshot
+from tuisim.app.snapshot import AT_REST, RunPhase, Snapshot
 from tuisim.charts import axes
+from tuisim.charts.bands import spans_of
+from tuisim.charts.layout import Span
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.charts.traces import Trace, Traces
 from tuisim.data_class import dataclass
@@ -53,6 +55,8 @@ class Chart(LinesPanel, can_focus=True):
         """Posted when the cursor was moved to another simulated time, or removed; all panels go to that time."""
 
         time_s: float | None
+        sample: str = ""
+        """The name of the sample there that was clicked, empty for none."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -63,6 +67,9 @@ class Chart(LinesPanel, can_focus=True):
         self._picture: ChartPicture | None = None
         self._dirty = True
         self._dragging = False
+        self._noise, self._is_at_rest = 0, False
+        self._spanned: tuple[str, int, int] = "", 0, 0
+        """Trace, number of its points, and noise, of which the bands were found."""
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
 
     def append(self, name: str, times_s: Sequence[float], values: Sequence[float], logged: bool = True) -> None:
@@ -93,7 +100,10 @@ class Chart(LinesPanel, can_focus=True):
             state = replace(state, cursor_s=snapshot.time_s if snapshot.past else None)
         if state != self._state:
             self._state, self._dirty = state, True
-        if self._dirty:
+        self._noise, was_at_rest = snapshot.spec.world.noise.light, self._is_at_rest
+        self._is_at_rest = snapshot.state in AT_REST
+        if self._dirty or self._is_at_rest != was_at_rest:
+            self._dirty = True
             self._throttle.ask()
 
     def _changed(self) -> None:
@@ -107,10 +117,28 @@ class Chart(LinesPanel, can_focus=True):
         self._dirty = False
         if self._state.selected is None and (first := next(iter(self._traces), None)):
             self._state = replace(self._state, selected=first.name)
+        self._find_bands()
         state = replace(self._state, grid=True, grey=bool(self.app.no_color), is_ascii=shows_ascii(self.app))
         if not self.has_focus:
             state = replace(state, selected=None)
         self._text.draw(partial(self._paint, state))
+
+    def _chosen(self) -> Trace | None:
+        """Return the selected trace, or the first one that is shown; None if none is."""
+        drawn = self._traces.drawn()
+        return next((trace for trace in drawn if trace.name == self._state.selected), drawn[0] if drawn else None)
+
+    def _find_bands(self) -> None:
+        """Find the bands of the chosen trace, while nothing is added to it."""
+        chosen = self._chosen()
+        spans: tuple[Span, ...] = ()
+        if chosen is None or not self._is_at_rest:
+            self._spanned = "", 0, 0
+        elif (key := (chosen.name, len(chosen.times_s), self._noise)) != self._spanned:
+            spans, self._spanned = spans_of(chosen, self._noise), key
+        else:
+            return
+        self._state = replace(self._state, spans=spans)
 
     def _paint(self, state: ChartState, is_blank: bool) -> tuple[list[list[Run]], list[tuple[int, ChartPicture]]]:
         self._picture = self._painter.paint(self._traces, state, *self._text.size, is_blank=is_blank)
@@ -173,11 +201,11 @@ class Chart(LinesPanel, can_focus=True):
             self.post_message(self.CursorMoved(None))
             self._redraw()
 
-    def _put_cursor(self, time_s: float) -> None:
+    def _put_cursor(self, time_s: float, sample: str = "") -> None:
         time_s = min(max(time_s, 0.0), self._traces.end_s())
         if time_s != self._state.cursor_s:
             self._state = replace(self._state, cursor_s=time_s)
-            self.post_message(self.CursorMoved(time_s))
+            self.post_message(self.CursorMoved(time_s, sample))
             self._redraw()
 
     # Mouse
@@ -194,7 +222,7 @@ class Chart(LinesPanel, can_focus=True):
         if picture.time_at(column, row) is not None:
             self._dragging = True
             self.capture_mouse()
-            self._cursor_to(column, picture)
+            self._put_cursor(*self._clicked(self._time_of(column, picture), picture))
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
         picture = self._picture
@@ -202,7 +230,7 @@ class Chart(LinesPanel, can_focus=True):
             return
         column, row = self.cell_at(event)
         if self._dragging:
-            self._cursor_to(column, picture)
+            self._put_cursor(self._time_of(column, picture))
         else:
             self._read(picture.time_at(column, row))
 
@@ -225,5 +253,17 @@ class Chart(LinesPanel, can_focus=True):
         """Stop dragging: a dialog has captured the mouse."""
         self._dragging = False
 
-    def _cursor_to(self, column: int, picture: ChartPicture) -> None:
-        self._put_cursor(axes.at_column(column - picture.left, picture.x_limits, picture.columns))
+    def _clicked(self, time_s: float, picture: ChartPicture) -> tuple[float, str]:
+        """Return the time and the name of the sample at a time, or nearest to it in its band; else the time only."""
+        trace = self._chosen()
+        if trace is None or not trace.logged:
+            return time_s, ""
+        low, high = picture.x_limits
+        found_s = trace.nearest_s(time_s)
+        is_here = abs(found_s - time_s) * picture.columns <= high - low
+        is_in_band = any(span.start <= time_s <= span.stop for span in self._state.spans)
+        return (found_s, trace.name) if is_here or is_in_band else (time_s, "")
+
+    @staticmethod
+    def _time_of(column: int, picture: ChartPicture) -> float:
+        return axes.at_column(column - picture.left, picture.x_limits, picture.columns)
