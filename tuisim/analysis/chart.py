@@ -68,7 +68,7 @@ def chart_of(model: Model, view: View, columns: int, rows: int) -> ChartData:
 def _line(trace: LogTrace, number: int, hold: bool, x_limits: Limits, columns: int) -> Line:
     xs, ys = min_max(trace.times_s, trace.values, x_limits, columns)
     xs, ys = _clipped(*(sample_and_hold(xs, ys) if hold else (xs, ys)), x_limits)
-    return Line(trace.name, xs, ys, number, trace.other_scale)
+    return Line(trace.name, xs, ys, number, trace.scale)
 
 
 def _clipped(xs: FloatArray, ys: FloatArray, limits: Limits) -> tuple[FloatArray, FloatArray]:

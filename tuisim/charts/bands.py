@@ -40,7 +40,7 @@ def spans_of(trace: Trace, noise: int) -> tuple[Span, ...]:
         return ()
     found = levels_of(trace.values, noise)
     ends = trace.times_s[found.start].tolist(), trace.times_s[found.stop - 1].tolist()
-    names = [grey.name if grey else "" for grey in found.greys]
+    names = [grey.name if grey and not trace.scale else "" for grey in found.greys]
     rows = zip(*ends, found.true_level.tolist(), names, strict=True)
     return tuple(band_span(trace.name, start_s, stop_s, level, name) for start_s, stop_s, level, name in rows)
 

@@ -39,8 +39,6 @@ class Plot:
     y_limits: Limits
     x_ticks: tuple[float, ...]
     y_ticks: tuple[float, ...]
-    right_ticks: tuple[float, ...] | None
-    """Ticks of the axis on the right, on the scale of the left one; None without that axis."""
     has_time_line: bool
     """Whether a row of cells below the canvas is for the axis of time."""
     cursors: tuple[float, ...]
@@ -51,7 +49,7 @@ class Plot:
     @property
     def size(self) -> tuple[int, int]:
         """Its rows and columns in cells, with the axes."""
-        return self.rows + self.has_time_line, 1 + self.columns + (self.right_ticks is not None)
+        return self.rows + self.has_time_line, 1 + self.columns
 
     def across(self, times_s: FloatArray, width: int) -> _Points:
         """Return how far from the left edge of the canvas times are, for cells of that width."""
@@ -157,15 +155,11 @@ def _draw_axes(image: Pixels, inside: Pixels, plot: Plot, cell: tuple[int, int],
     down = _places(plot.down(np.array(plot.y_ticks), height), len(inside))
     inside[:, across] = grid
     inside[down] = grid
-    bottom, right = len(inside), width + inside.shape[1]
+    bottom = len(inside)
     image[:bottom, width - 1] = inks.axis
     image[down, width - 1 - width // 3 : width] = inks.axis
-    if plot.right_ticks is not None:
-        image[:bottom, right] = inks.axis
-        ticks = _places(plot.down(np.array(plot.right_ticks), height), len(inside))
-        image[ticks, right : right + 1 + width // 3] = inks.axis
     if plot.has_time_line:
-        image[bottom, width - 1 : right + (plot.right_ticks is not None)] = inks.axis
+        image[bottom, width - 1 :] = inks.axis
         image[bottom : bottom + 1 + height // 4, width + across] = inks.axis
 
 

@@ -93,11 +93,13 @@ async def test_the_mouse_reads_the_chart_without_a_press(run: StoredRun) -> None
     async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
         screen, model = await opened(pilot)
         before = model.row
+        at_cursor = str(screen.chart.border_subtitle)
         await pilot.hover(screen.chart, offset=(40, 5))
-        await until(pilot, lambda: " s  Colour " in str(screen.chart.border_subtitle))
+        await until(pilot, lambda: str(screen.chart.border_subtitle) != at_cursor)
+        assert " s  Colour " in str(screen.chart.border_subtitle)
         assert model.row == before
         await pilot.hover(screen.pane, offset=(5, 5))
-        await until(pilot, lambda: not screen.chart.border_subtitle)
+        await until(pilot, lambda: str(screen.chart.border_subtitle) == at_cursor)
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ from tuisim.analysis.chart import event_marks, spans_of_bands
 from tuisim.analysis.traces import DISTANCE, TIME
 from tuisim.app.plot_view import PlotView
 from tuisim.charts.canvas import BRAILLE, xy_lines
-from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
+from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, margins_of, values_at
 from tuisim.charts.traces import Traces
 from tuisim.data_class import dataclass
 from tuisim.terminal.cell_view import LinesPanel
@@ -80,6 +80,8 @@ class LogChart(LinesPanel):
         self._painters: dict[str, ChartPainter] = {}
         self._pictures: list[tuple[int, ChartPicture]] = []
         self._model: Model | None = None
+        self._pointed_s: float | None = None
+        """The time below the pointer."""
 
     def set_model(self, model: Model) -> None:
         """Switch to another log, or redraw the same one with other options."""
@@ -97,6 +99,7 @@ class LogChart(LinesPanel):
             self._text.set_lines(self._against(model, self.options.against, width, height))
             return
         self._text.draw(partial(self._paint, model))
+        self._read(self._pointed_s)
 
     def _paint(self, model: Model, is_blank: bool) -> tuple[list[list[Run]], list[tuple[int, ChartPicture]]]:
         width, height = self._text.size
@@ -122,6 +125,8 @@ class LogChart(LinesPanel):
         self._pictures = []
         lines: list[list[Run]] = []
         parts: list[Traces] = [Traces({trace.name: trace}) for trace in facets] or [model.traces]
+        if facets:
+            state = replace(state, margins=margins_of(parts, state, width, height // len(parts)))
         for at, part in enumerate(parts):
             rows = height // len(parts) + (at < height % len(parts))
             painter = self._painters.setdefault(facets[at].name if facets else "", ChartPainter())
@@ -177,11 +182,15 @@ class LogChart(LinesPanel):
         self._read(None)
 
     def _read(self, time_s: float | None) -> None:
-        read: list[Run] = []
-        if time_s is not None and self._model is not None:
-            unit = "mm" if self._model.alignment == DISTANCE else "s"
-            read = values_at(self._model.traces.drawn(), time_s, unit, self.size.width - 4)
-        self.border_subtitle = "".join(text for text, _ in read).replace("[", "\\[")
+        """Show the values below the pointer, or without it those at the cursor."""
+        self._pointed_s, model = time_s, self._model
+        drawn = model.traces.drawn() if model is not None and model.log.rows and not self.options.against else []
+        if model is None or not drawn:
+            self.border_subtitle = ""
+            return
+        unit = "mm" if model.alignment == DISTANCE else "s"
+        time_s = model.cursor_s if time_s is None else time_s
+        self.border_subtitle = values_at(drawn, time_s, unit, self.size.width - 4)
 
 
 def _around_selected(facets: list[LogTrace], selected: str, most: int) -> list[LogTrace]:

@@ -67,9 +67,11 @@ class Chart(LinesPanel, can_focus=True):
         self._picture: ChartPicture | None = None
         self._dirty = True
         self._dragging = False
+        self._pointed_s: float | None = None
+        """The time below the pointer."""
         self._noise, self._is_at_rest = 0, False
-        self._spanned: tuple[str, int, int] = "", 0, 0
-        """Trace, number of its points, and noise, of which the bands were found."""
+        self._spanned: object = None
+        """What the bands were found in."""
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
 
     def append(self, name: str, times_s: Sequence[float], values: Sequence[float], logged: bool = True) -> None:
@@ -122,6 +124,7 @@ class Chart(LinesPanel, can_focus=True):
         if not self.has_focus:
             state = replace(state, selected=None)
         self._text.draw(partial(self._paint, state))
+        self._read(self._pointed_s)
 
     def _chosen(self) -> Trace | None:
         """Return the selected trace, or the first one that is shown; None if none is."""
@@ -129,15 +132,19 @@ class Chart(LinesPanel, can_focus=True):
         return next((trace for trace in drawn if trace.name == self._state.selected), drawn[0] if drawn else None)
 
     def _find_bands(self) -> None:
-        """Find the bands of the chosen trace, while nothing is added to it."""
+        """Find the bands of the chosen trace, or of the first one that has several, while nothing is added."""
         chosen = self._chosen()
-        spans: tuple[Span, ...] = ()
         if chosen is None or not self._is_at_rest:
-            self._spanned = "", 0, 0
-        elif (key := (chosen.name, len(chosen.times_s), self._noise)) != self._spanned:
-            spans, self._spanned = spans_of(chosen, self._noise), key
+            self._spanned = None
+            spans: tuple[Span, ...] = ()
         else:
-            return
+            traces = [chosen, *(trace for trace in self._traces.drawn() if trace is not chosen)]
+            key = [(trace.name, len(trace.times_s)) for trace in traces], self._noise
+            if key == self._spanned:
+                return
+            self._spanned = key
+            found = (spans_of(trace, self._noise) for trace in traces)
+            spans = next((spans for spans in found if len(spans) > 1), spans_of(chosen, self._noise))
         self._state = replace(self._state, spans=spans)
 
     def _paint(self, state: ChartState, is_blank: bool) -> tuple[list[list[Run]], list[tuple[int, ChartPicture]]]:
@@ -238,11 +245,14 @@ class Chart(LinesPanel, can_focus=True):
         self._read(None)
 
     def _read(self, time_s: float | None) -> None:
-        if time_s is None:
+        """Show the values below the pointer, or without it those at the cursor."""
+        self._pointed_s = time_s
+        time_s = self._state.cursor_s if time_s is None else time_s
+        drawn = self._traces.drawn()
+        if time_s is None or not drawn:
             self.border_subtitle = self.FROZEN if self._state.x_limits else ""
-            return
-        read = values_at(self._traces.drawn(), time_s, self._state.unit, self.size.width - 4)
-        self.border_subtitle = "".join(text for text, _ in read).replace("[", "\\[")
+        else:
+            self.border_subtitle = values_at(drawn, time_s, self._state.unit, self.size.width - 4)
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
         if self._dragging:
@@ -255,14 +265,15 @@ class Chart(LinesPanel, can_focus=True):
 
     def _clicked(self, time_s: float, picture: ChartPicture) -> tuple[float, str]:
         """Return the time and the name of the sample at a time, or nearest to it in its band; else the time only."""
-        trace = self._chosen()
+        span = next((span for span in self._state.spans if span.start <= time_s <= span.stop), None)
+        of_span = (trace for trace in self._traces.drawn() if span is not None and trace.name == span.name)
+        trace = next(of_span, self._chosen())
         if trace is None or not trace.logged:
             return time_s, ""
         low, high = picture.x_limits
         found_s = trace.nearest_s(time_s)
         is_here = abs(found_s - time_s) * picture.columns <= high - low
-        is_in_band = any(span.start <= time_s <= span.stop for span in self._state.spans)
-        return (found_s, trace.name) if is_here or is_in_band else (time_s, "")
+        return (found_s, trace.name) if is_here or span is not None else (time_s, "")
 
     @staticmethod
     def _time_of(column: int, picture: ChartPicture) -> float:
