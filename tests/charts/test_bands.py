@@ -27,6 +27,11 @@ def test_each_band_is_named_by_its_level_and_grey() -> None:
     assert [(span.start, span.stop) for span in state.spans] == [(0.0, 1.9), (2.0, 3.9), (4.0, 5.9)]
 
 
+def test_a_name_is_rounded_where_there_is_little_room() -> None:
+    (span,) = chart([86.2745] * 20)[1].spans
+    assert span.texts == ("86.27 pale grey", "86.27", "86.3", "86")
+
+
 def test_too_many_samples_are_left_to_the_analyser() -> None:
     assert not chart([1.0] * (MOST_SAMPLES + 1))[1].spans
 

@@ -25,8 +25,8 @@ FREE = " ┈"
 
 def band_span(name: str, start: float, stop: float, level: float, grey: str) -> Span:
     """Return the span of a band, named by its level and its grey."""
-    text = f"{level:.4g}"
-    return Span(start, stop, (f"{text} {grey}", text) if grey else (text,), name)
+    levels = (f"{level:.4g}", f"{level:.3g}", f"{level:.0f}")
+    return Span(start, stop, tuple(dict.fromkeys((f"{levels[0]} {grey}".rstrip(), *levels))), name)
 
 
 def spans_of(trace: Trace, noise: int) -> tuple[Span, ...]:
