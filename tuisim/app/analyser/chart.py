@@ -185,12 +185,13 @@ class LogChart(LinesPanel):
         """Show the values below the pointer, or without it those at the cursor."""
         self._pointed_s, model = time_s, self._model
         drawn = model.traces.drawn() if model is not None and model.log.rows and not self.options.against else []
-        if model is None or not drawn:
-            self.border_subtitle = ""
-            return
-        unit = "mm" if model.alignment == DISTANCE else "s"
-        time_s = model.cursor_s if time_s is None else time_s
-        self.border_subtitle = values_at(drawn, time_s, unit, self.size.width - 4)
+        said = ""
+        if model is not None and drawn:
+            unit = "mm" if model.alignment == DISTANCE else "s"
+            said = values_at(drawn, model.cursor_s if time_s is None else time_s, unit, self.size.width - 4)
+        # Each assignment draws the panel again.
+        if said != self.border_subtitle:
+            self.border_subtitle = said
 
 
 def _around_selected(facets: list[LogTrace], selected: str, most: int) -> list[LogTrace]:

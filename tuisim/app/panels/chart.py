@@ -250,9 +250,12 @@ class Chart(LinesPanel, can_focus=True):
         time_s = self._state.cursor_s if time_s is None else time_s
         drawn = self._traces.drawn()
         if time_s is None or not drawn:
-            self.border_subtitle = self.FROZEN if self._state.x_limits else ""
+            said = self.FROZEN if self._state.x_limits else ""
         else:
-            self.border_subtitle = values_at(drawn, time_s, self._state.unit, self.size.width - 4)
+            said = values_at(drawn, time_s, self._state.unit, self.size.width - 4)
+        # Each assignment draws the panel again.
+        if said != self.border_subtitle:
+            self.border_subtitle = said
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
         if self._dragging:
