@@ -249,16 +249,16 @@ def margins_of(parts: Sequence[Traces], state: ChartState, width: int, rows: int
 
 
 def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) -> str:
-    """Return the value of each trace at a time, as many as fit, as markup for the edge of a panel."""
+    """Return the value of each trace at a time, as many as fit."""
     line = f"{cursor_s:.2f} {unit}"
     for at, trace in enumerate(drawn):
         value = trace.at(cursor_s)
         read = f"  {trace.name} {value:.5g}{unit_of(trace.name)}" if value is not None else f"  {trace.name} –"
         more = len(drawn) - at - 1
         if len(line) + len(read) + (4 if more else 0) > width:
-            return f"{line} +{more + 1}"[:width].replace("[", "\\[")
+            return f"{line} +{more + 1}"[:width]
         line += read
-    return line.replace("[", "\\[")
+    return line
 
 
 def _empty(some: bool, width: int, height: int) -> list[list[Run]]:

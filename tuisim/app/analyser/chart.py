@@ -21,7 +21,7 @@ from tuisim.data_class import dataclass
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.picture import MOST_POINTS
 from tuisim.terminal.picture_mode import shows_ascii
-from tuisim.terminal.text_runs import Run
+from tuisim.terminal.text_runs import Run, as_markup
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model
@@ -188,7 +188,8 @@ class LogChart(LinesPanel):
         said = ""
         if model is not None and drawn:
             unit = "mm" if model.alignment == DISTANCE else "s"
-            said = values_at(drawn, model.cursor_s if time_s is None else time_s, unit, self.size.width - 4)
+            time_s = model.cursor_s if time_s is None else time_s
+            said = as_markup(values_at(drawn, time_s, unit, self.size.width - 4))
         # Each assignment draws the panel again.
         if said != self.border_subtitle:
             self.border_subtitle = said
