@@ -233,6 +233,9 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("enlarge", "plus", "Enlarge the focused panel, or restore it", PANEL, app.enlarge),
         *_nudges(),
         Action("help", "question_mark", "Guide: keys, pages, search", APP, app.show_help, footer="help"),
+        Action(
+            "palette", "ctrl+p", "Commands: all of them, by name", APP, app.open_palette, footer="all", footer_key="^p"
+        ),
         Action("cells", "V", "Glyphs of the world: choose by eye", APP, app.choose_cells),
         Action("theme", "f10", "Theme: light, high contrast and others", APP, app.choose_theme),
         Action("settings", "asterisk", "Settings: your own defaults", APP, app.open_settings),

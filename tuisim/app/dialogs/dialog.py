@@ -117,12 +117,16 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
         for screen in opened:
             if not screen.is_mounted:
                 # Textual cannot remove a screen that it is still mounting.
-                screen.call_later(self.dismiss, result)
+                screen.call_later(self._dismiss_now, result)
                 return AwaitComplete()
         for above in reversed(opened[1:]):
             above.dismiss(None)
         self.app.post_message(self.Changed())
         return super().dismiss(result)
+
+    def _dismiss_now(self, result: Result | None) -> None:
+        # Nobody may await it from the screen's own messages.
+        self.dismiss(result)
 
     def render_lines(self, crop: Region) -> list[Strip]:
         """Return what is below the dialog. Textual would make plain text of it, and pictures lose their pixels."""
