@@ -123,7 +123,7 @@ def _reversed_on(sent: str) -> list[str]:
     ("keys", "lit"),
     [
         pytest.param(["ctrl+p", "down"], "Step over: next line", id="an entry of the palette"),
-        pytest.param(["f10", *"dracula"], "dracula", id="a theme"),
+        pytest.param(["f10"], "textual-dark", id="a theme"),
         # The field is bright, and its cursor dark.
         pytest.param(["o", "x", "y", "z", "left", "left"], "xz", id="the cursor in a field"),
     ],

@@ -8,7 +8,7 @@ from datetime import datetime
 from enum import StrEnum
 from pathlib import Path
 
-from tuisim.app.editor.text_file import drafts
+from tuisim.app.editor.text_file import drafts, is_protected
 from tuisim.config.folders import home_folder
 from tuisim.data_class import dataclass
 from tuisim.errors import LogError
@@ -71,7 +71,7 @@ def recent(new_name: str) -> list[Recent]:
 
 
 def _programs(runs: list[RunInfo]) -> Iterator[tuple[str, str]]:
-    """Yield the path of each program that still is there, and when it ran last."""
+    """Yield the path of each program of the user that still is there, and when it ran last."""
     store, seen = RunStore(), set()
     for run in runs:
         try:
@@ -80,7 +80,7 @@ def _programs(runs: list[RunInfo]) -> Iterator[tuple[str, str]]:
             # It is removed, or damaged; the list of runs tells.
             continue
         path = program.get("path") if isinstance(program, dict) else None
-        if isinstance(path, str) and path not in seen and _is_own(path):
+        if isinstance(path, str) and path not in seen and _is_own(path) and not is_protected(Path(path)):
             seen.add(path)
             yield path, _made(run)
 
