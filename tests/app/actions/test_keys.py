@@ -128,7 +128,7 @@ async def test_pen_is_p_and_not_shift_p() -> None:
 
 
 async def test_help_lists_every_key() -> None:
-    async with LabApp(settings()).run_test(size=(130, 170)) as pilot:
+    async with LabApp(settings()).run_test(size=(150, 240)) as pilot:
         app = await ready(pilot)
         await pilot.press("question_mark")
         assert isinstance(app.screen, GuideScreen)

@@ -28,7 +28,7 @@ from tuisim.terminal.textual_internals import HookedScreen
 
 Result = TypeVar("Result")
 
-_HEIGHTS: list[tuple[int, str]] | None = [(0, "-low"), (18, "-high")]
+_HEIGHTS: list[tuple[int, str]] | None = [(0, "-low"), (18, "-high"), (34, "-roomy")]
 """Classes of a dialog by the rows of the terminal."""
 
 
