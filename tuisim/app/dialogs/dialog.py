@@ -28,7 +28,7 @@ from tuisim.terminal.textual_internals import HookedScreen
 
 Result = TypeVar("Result")
 
-_HEIGHTS: list[tuple[int, str]] | None = [(0, "-low"), (18, "-high"), (34, "-roomy")]
+_HEIGHTS = [(0, "-low"), (18, "-high"), (34, "-roomy")]
 """Classes of a dialog by the rows of the terminal."""
 
 
@@ -146,10 +146,12 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
 
     TITLE_TEXT: str = ""
     HINT: str = "Escape closes"
-    VERTICAL_BREAKPOINTS = _HEIGHTS
+    VERTICAL_BREAKPOINTS: list[tuple[int, str]] | None = _HEIGHTS
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Close", show=False)]
 
     def compose(self) -> ComposeResult:
+        # Textual does so after it has drawn the dialog once.
+        self.add_class(max(one for one in _HEIGHTS if one[0] <= self.app.size.height)[1])
         frame = Vertical(classes="dialog")
         frame.border_title = self.TITLE_TEXT
         frame.border_subtitle = self.HINT
