@@ -111,6 +111,8 @@ class RunController:
         self.timeline = Timeline()
         self.earlier: Recording | None = None
         """The run before, or one that was compared with the run in view: it is drawn beside it."""
+        self.companion: Recording | None = None
+        """Drawn beside every run in place of the run before, such as that of a model answer."""
         self.shows_earlier = True
         self.pressed: frozenset[str] = frozenset()
         """The brick's buttons that the user holds down."""
@@ -340,19 +342,25 @@ class RunController:
         later = self.timeline.recording
         self.earlier = earlier if earlier and later and is_comparable(earlier, later) else None
 
+    def accompany(self, companion: Recording | None) -> None:
+        """Draw a run beside every run from now on; None for the run before again."""
+        self.companion = companion
+        self.shows_earlier = True
+        self.show_earlier(companion)
+
     def _show_run(self, run: RunHandle, answers: tuple[str, ...] = ()) -> None:
         """Show a run that has been started, beside the one before; arguments as of `Recording`."""
         before = self.timeline.recording
         self.close()
         self.run, self._end = run, None
         self._show_recording(Recording(run, answers))
-        self.show_earlier(before)
+        self.show_earlier(self.companion or before)
 
     def _show_recording(self, recording: Recording) -> None:
         # What is drawn of a frame is of one instant.
         recording.hold()
         self.timeline.switch_to(recording)
-        self.show_earlier(None)
+        self.show_earlier(self.companion)
         self._pending.forget()
         self.pressed = frozenset()
         self._moved = False
