@@ -28,6 +28,7 @@ from tuisim.commands.echo import (
 from tuisim.commands.exit_status import describe, last_state
 from tuisim.commands.movies import movie, picture
 from tuisim.config.command_line import AS_JSON, Group, WordType, argument, command, option
+from tuisim.config.files import toml_form
 from tuisim.config.options import RUN_VALUES
 from tuisim.core import tree
 from tuisim.core.values import shown
@@ -132,7 +133,7 @@ def _plain(row: OutputRow) -> dict[str, object]:
 
 def _values(run: StoredRun) -> dict[str, Any]:
     """Return the values of a run that options and world files set, by path."""
-    return {path: tree.at(run.spec, one.spec_path) for path, one in RUN_VALUES.items()}
+    return {path: toml_form(one.value, tree.at(run.spec, one.spec_path)) for path, one in RUN_VALUES.items()}
 
 
 def _files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
