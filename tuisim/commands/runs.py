@@ -10,6 +10,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import UTC, datetime, timedelta
+from math import degrees
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,8 @@ from tuisim.config.command_line import AS_JSON, Group, WordType, argument, comma
 from tuisim.config.files import toml_form
 from tuisim.config.options import RUN_VALUES
 from tuisim.core import tree
+from tuisim.core.drift import drawn_errors
+from tuisim.core.spec import RunSpec
 from tuisim.core.values import shown
 from tuisim.errors import ConfigError, LogError, counted, shortened
 from tuisim.logs.export import EXPORTERS, LISTED, check_targets, export_samples, export_telemetry
@@ -144,6 +147,14 @@ def _files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
         return FilesRead(), (str(error),)
 
 
+def _drawn_words(spec: RunSpec) -> str:
+    """Return the errors that the seed of a run with drift has drawn."""
+    drawn = drawn_errors(spec.world.drift, spec.seed)
+    sizes = {"left wheel": drawn.left, "right wheel": drawn.right, "spacing": drawn.spacing}
+    parts = [f"{name} {100 * (times - 1):+.2f} %" for name, times in sizes.items()]
+    return ", ".join((*parts, f"gyro {drawn.gyro_dps:+.3f} °/s", f"light from {degrees(drawn.bright_rad):.0f}°"))
+
+
 def _show(run: StoredRun, *, as_json: bool) -> None:
     """Print a run; rows are printed while they are read, because there may be millions."""
     rows = (row for row in run.output.rows() if row.stream in STREAMS)
@@ -161,6 +172,8 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
         f"{path} {shown(value)}" for path, value in _values(run).items() if value != RUN_VALUES[path].default
     ]:
         echo(f"values: {', '.join(chosen)}")
+    if not run.spec.world.drift.is_none:
+        echo(f"drawn: {_drawn_words(run.spec)}")
     if facts["arguments"]:
         echo(f"arguments: {shlex.join(facts['arguments'])}")
     read, damage = _files_read(run)
