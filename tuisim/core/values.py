@@ -557,11 +557,13 @@ class NamedPart(Part):
         return replace(base, **found)
 
     def to_text(self, value: Any) -> str:
-        given = {name: getattr(value, name) for name in self.values if getattr(value, name)}
-        for word, sizes in self._sizes.items():
-            if given == sizes:
-                return word
-        return " ".join(f"{name}={number!r}" for name, number in given.items())
+        usual = [(word, self.from_data(word)) for word in self._sizes]
+        (word, near), *_ = sorted(usual, key=lambda one: len(self._apart(value, one[1])))
+        apart = [f"{name}={getattr(value, name)!r}".removesuffix(".0") for name in self._apart(value, near)]
+        return " ".join(apart if apart and near == self.of() else (word, *apart))
+
+    def _apart(self, value: Any, other: Any) -> list[str]:
+        return [name for name in self.values if getattr(value, name) != getattr(other, name)]
 
 
 def _number_or_text(text: str) -> float | str:

@@ -222,7 +222,7 @@ def reckon(arguments: Arguments) -> int:
     real, reckoned = ([end[f"{of}{name}"] for name in _POSE] for of in ("", "reckoned_"))
     error = [one - other for one, other in zip(reckoned, real, strict=True)]
     # By the shorter way round.
-    error[2] = (error[2] + 180.0) % 360.0 - 180.0
+    error = [round(one, 2) + 0.0 for one in (*error[:2], (error[2] + 180.0) % 360.0 - 180.0)]
     rows = [("real", *real), ("reckoned", *reckoned), ("error", *error)]
     formats = dict(zip(("at_the_end", *_POSE), ("", ".2f", ".2f", ".2f"), strict=True))
     show_rows([dict(zip(formats, row, strict=True)) for row in rows], arguments, formats)
