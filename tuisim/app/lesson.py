@@ -15,6 +15,7 @@ from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import settings_of
 from tuisim.core.spec import RunSpec, WorldSpec
+from tuisim.core.values import values_of
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.goals.files import GoalsFile
 from tuisim.goals.judgement import GoalState, Judgement
@@ -452,10 +453,9 @@ class LessonController:
             return ""
         wanted = self._wanted_spec().world
         if _place_of(self._elsewhere.world) == _place_of(wanted):
-            noise = wanted.noise
-            return (
-                f"This run had other noise: the lesson's is light {noise.light}, motors {noise.motor} (panel Noise, z)."
-            )
+            noise, drift = wanted.noise, values_of(WorldSpec)["drift"].to_text(wanted.drift)
+            levels = f"light {noise.light}, motors {noise.motor} (panel Noise, z), drift {drift} (panel Settings, Z)"
+            return f"This run had other noise or drift: the lesson's is {levels}."
         if self._run_controller.in_run:
             return "This run began elsewhere."
         if self._run_controller.pose == wanted.start:
@@ -564,7 +564,7 @@ def _why_elsewhere(missed: Judgement) -> str:
 
 def _world_of(spec: RunSpec) -> tuple[object, ...]:
     """Return what must be as the lesson says for a run to count."""
-    return (*_place_of(spec.world), spec.world.noise)
+    return (*_place_of(spec.world), spec.world.noise, spec.world.drift)
 
 
 def _place_of(world: WorldSpec) -> tuple[object, ...]:

@@ -219,7 +219,9 @@ class RunController:
     def _at_rest(self, pose: Pose) -> Instant:
         spec = self.next_run.spec
         flags = flags_at_start(spec.robot)
-        return Instant(0, pose, gyro_zero_deg=pose.heading_deg, end_flags=flags, noise=spec.world.noise, seed=spec.seed)
+        noise, drift = spec.world.noise, spec.world.drift
+        zero_deg = pose.heading_deg
+        return Instant(0, pose, gyro_zero_deg=zero_deg, end_flags=flags, noise=noise, drift=drift, seed=spec.seed)
 
     @property
     def _is_of_run(self) -> bool:
@@ -449,7 +451,8 @@ class RunController:
         """
         self.timeline.go(None)
         self.next_run = plan
-        self._still = replace(self._still, noise=plan.spec.world.noise, seed=plan.spec.seed)
+        world = plan.spec.world
+        self._still = replace(self._still, noise=world.noise, drift=world.drift, seed=plan.spec.seed)
 
     def close(self) -> None:
         """Release the run; a child process that still runs is killed."""

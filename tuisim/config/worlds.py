@@ -65,6 +65,7 @@ _TABLES: Mapping[str, tuple[str, ...]] = {
 }
 """The keys of each table with values of a run; none for a value that is in no table."""
 
+_DEFAULTS = {path: files.toml_form(one.value, one.default) for path, one in RUN_VALUES.items() if one.value.later}
 _NOT_IN_A_RUN = ("world", "mats", "rays", "autorun", "panels", "hidden_panels", "title", "goal")
 """Keys that stay as they are when a run is saved into a file that has them."""
 _PANEL_FIELDS = {"panels": "panels_on", "hidden_panels": "panels_off"}
@@ -306,8 +307,10 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None, argumen
         top["arguments"] = list(arguments)
     mat = settings["background"]
     top["background"] = _relative(mat, folder) if os.sep in mat else mat
-    values = {path: tree.at(spec, one.spec_path) for path, one in RUN_VALUES.items()}
-    of_world = {name: values[name] for name, keys in _TABLES.items() if not keys}
+    values = {path: files.toml_form(one.value, tree.at(spec, one.spec_path)) for path, one in RUN_VALUES.items()}
+    # What came later is left out at its default, so that files do not change.
+    left_out = {path for path, one in RUN_VALUES.items() if one.value.later and values[path] == _DEFAULTS[path]}
+    of_world = {name: values[name] for name, keys in _TABLES.items() if not keys and name not in left_out}
     presets = {key: settings[key] for key in ("robot", "obstacles", "profile") if isinstance(settings[key], str)}
     top |= of_world | presets
     comments = {**_COMMENTS, **{path: one.value.help for path, one in RUN_VALUES.items()}}

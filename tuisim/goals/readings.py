@@ -93,7 +93,7 @@ def _light(records: Array, evidence: Evidence) -> Array:
 
     rows = []
     for sensor in evidence.spec.robot.color_sensors:
-        channels = quiet_color_columns(records, sensor, evidence.mat)
+        channels = quiet_color_columns(records, sensor, evidence.spec, evidence.mat)
         red, green, blue = (channel.astype("i8") for channel in channels.values())
         rows += [red / 255 * 100, (red + green + blue) / 765 * 100, red]
     return np.array(rows).reshape(len(rows), len(records))
@@ -207,7 +207,7 @@ def _reflected_percent(records: Array, sensor: ColorSensorSpec, evidence: Eviden
     """Return what `reflected_light_intensity_pc` would be without noise, at every tick."""
     from tuisim.runs.sensor_arrays import quiet_color_columns
 
-    red, *_ = quiet_color_columns(records, sensor, evidence.mat).values()
+    red, *_ = quiet_color_columns(records, sensor, evidence.spec, evidence.mat).values()
     percent: Array = red.astype("i8") / 255 * 100
     return percent
 

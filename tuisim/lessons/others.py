@@ -11,7 +11,7 @@ from tuisim.goals.files import goals_from_list
 from tuisim.lessons.spec import MAX_OTHERS, OtherWorld
 
 _OWN_KEYS = ("where", "goals", "goal")
-_WORLD_KEYS = ("background", "start", "robot", "noise", "obstacles", "obstacle")
+_WORLD_KEYS = ("background", "start", "robot", "noise", "drift", "obstacles", "obstacle")
 
 
 def others_of(data: object, goals: tuple[str, ...], at: Location, path: Path) -> tuple[OtherWorld, ...]:
