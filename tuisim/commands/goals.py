@@ -7,20 +7,28 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from tuisim.commands.echo import Progress, echo, echo_error, echo_json, tell
+from tuisim.batch.parameters import parse_seeds
+from tuisim.batch.task import Keep
+from tuisim.commands.batch_options import jobs_option
+from tuisim.commands.echo import Progress, echo, echo_error, echo_json, echo_lines, echo_wrapped, table, tell
+from tuisim.commands.run_options import timeout_option
 from tuisim.config.build import build_run_spec, settings_from
-from tuisim.config.command_line import AS_JSON, Group, argument, command
+from tuisim.config.command_line import AS_JSON, Group, argument, command, option
 from tuisim.config.options import START, settings_of
 from tuisim.errors import ConfigError, counted
 from tuisim.goals.files import GoalsFile, example_names, load_goals
 from tuisim.goals.judge import judge
 from tuisim.goals.judgement import GoalState, Judgement, points
+from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan
+from tuisim.marks.sheet import Sheet, SheetRow, in_words
+from tuisim.runs.handle import RunOptions
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
 _RANGE = re.compile(r"(\d{1,9})\.\.(\d{1,9})")
 _WHERE = ("background", *START)
 """Settings that the places in a goals file depend on."""
+TRIAL_SEEDS = "0..2"
 _MARKS = {GoalState.MET: "✓", GoalState.MISSED: "✗", GoalState.OPEN: "·"}
 
 
@@ -154,4 +162,52 @@ def _details(judgement: Judgement) -> Iterator[str]:
         yield f"Hint: {judgement.goal.hint}"
 
 
-goals = Group.of("goals", (check,), help="Check whether runs meet the goals of a task.")
+@command(
+    argument("goals_path", "TASK", example_names),
+    argument("wrong", "[PROGRAM…]", nargs=-1),
+    option("--seeds", default=TRIAL_SEEDS, metavar="SEEDS",
+           help=f"Run each program with these seeds: 0..4, or 1,2,5 ({TRIAL_SEEDS})."),
+    timeout_option("", TIME_LIMIT_S),
+    jobs_option(group=""),
+    name="try",
+    help="""Try a task out, for its author: what is earned without doing what it asks for?
+
+    Runs an empty program, one that stands still and one that prints the answers, then the program that TASK names,
+    its model, and the wrong examples: each PROGRAM, a file or a folder of them. Each is judged as `tuisim mark` does.
+
+    Exit code: 0 if only the model gets points, and wrong examples not all; 1 if not; 2 if a file is wrong.
+    """,
+)  # fmt: skip
+def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, jobs: int) -> int:
+    """Try a task out."""
+    from tuisim.marks.trial import trial_of
+
+    task = load_goals(goals_path)
+    plan = MarkPlan(
+        goals=task.goals,
+        seeds=parse_seeds(seeds, "--seeds"),
+        options=RunOptions(time_limit_s=timeout, stall_limit_s=STALL_LIMIT_S, answers=task.answers),
+        keep=Keep.NONE,
+        jobs=jobs,
+        arguments=settings_of(task.settings)["arguments"],
+    )
+    with Progress("goals try"):
+        trial = trial_of(task, plan, wrong, {})
+    echo_lines(
+        table(("PROGRAM", "POINTS", "MEETS"), [(row.name, *_earned(trial.sheet, row)) for row in trial.sheet.rows])
+    )
+    for fault in trial.faults:
+        echo_wrapped(f"{task.path.name}: {fault}")
+    if not trial.faults:
+        echo(f"{task.path.name}: all is well")
+    return int(bool(trial.faults))
+
+
+def _earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
+    """Return the points of a program, and which goals it meets."""
+    met = [column.name for column, cell in zip(sheet.columns, row.cells, strict=True) if cell.met]
+    names = "all" if len(met) == len(sheet.columns) else ", ".join(met) or "-"
+    return f"{in_words(row.points)} of {in_words(sheet.most_points)}", names
+
+
+goals = Group.of("goals", (check, try_task), help="Check whether runs meet the goals of a task, or try a task out.")

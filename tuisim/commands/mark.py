@@ -7,7 +7,6 @@ import shutil
 import sys
 from collections.abc import Mapping, Sequence
 from contextlib import closing, nullcontext
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,34 +19,27 @@ from tuisim.commands.echo import Progress, echo, echo_error, echo_lines, echo_wr
 from tuisim.commands.interruption import Interrupted, signals_raise
 from tuisim.commands.listings import names_of
 from tuisim.commands.run_options import input_option, timeout_option
-from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import Arguments, WordType, argument, command, option
-from tuisim.config.folders import backgrounds_folder
-from tuisim.config.mat_image import decode, read_file
-from tuisim.config.mats import background
 from tuisim.config.options import APP, PANEL, settings_of
-from tuisim.config.program_settings import ProgramSettings, program_settings
 from tuisim.config.shared_options import shared_options
-from tuisim.core.spec import RunSpec
-from tuisim.errors import ConfigError, ExportError, ProfileError, counted, listed, printable, see_page
+from tuisim.errors import ConfigError, ExportError, counted, listed, printable, see_page
 from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.goals.spec import Goal
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
+from tuisim.marks.entries import entries_of
 from tuisim.marks.feedback import write_feedback
 from tuisim.marks.journal import Journal, journal_of
 from tuisim.marks.outcome import Outcome
 from tuisim.marks.page import page_of, reports_folder
-from tuisim.marks.runs import STALL_LIMIT_S, MarkPlan, RunEntry, outcomes_of
-from tuisim.marks.sheet import Sheet, export_marks, lines_of, sheet_of, summary_of
-from tuisim.marks.students import Student, StudentsFound, file_outside, find_students
-from tuisim.regular_file import of_the_machine
+from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan, RunEntry, outcomes_of
+from tuisim.marks.sheet import Sheet, columns_of, export_marks, lines_of, sheet_of, summary_of
+from tuisim.marks.students import Student, find_students
 from tuisim.runs.child.isolation import check_isolation
 from tuisim.runs.child.supervisor import supervised
 from tuisim.runs.handle import RunOptions
 
 PAGE_SUFFIXES = (".html", ".htm")
 DEFAULT_SEEDS = "0..19"
-TIME_LIMIT_S = 120.0
 USUAL_KEEP = Keep.FAILED
 
 _LEFT_OUT = ("seed", "speed")
@@ -105,7 +97,7 @@ def mark(**given: Any) -> int:
     found = find_students(
         arguments.folders, Path(task.program).name if task.program else "", _excluded(arguments, task)
     )
-    entries, students = _entries(found, task, arguments)
+    entries, students = entries_of(found.students, task, arguments.settings)
     plan = MarkPlan(
         goals=tuple(task.goals),
         seeds=seeds,
@@ -126,7 +118,7 @@ def mark(**given: Any) -> int:
         except Interrupted as interrupted:
             _tell_so_far(task, plan, students, outcomes)
             return interrupted.exit_code
-        sheet = sheet_of(task.title, _columns(task), seeds, students, outcomes)
+        sheet = sheet_of(task.title, columns_of(task.goals), seeds, students, outcomes)
         # First, so that marks are seen also if a file cannot be written.
         _print(sheet, found.ignored)
         _tell_refusals(students)
@@ -165,7 +157,7 @@ def _tell_so_far(
         if not student.source or len(outcomes[student.name]) == len(plan.seeds) or _gave_up(outcomes[student.name])
     ]
     if done:
-        _print(sheet_of(task.title, _columns(task), plan.seeds, done, outcomes), ())
+        _print(sheet_of(task.title, columns_of(task.goals), plan.seeds, done, outcomes), ())
     echo_error(f"tuisim: interrupted with {len(done)} of {counted(len(students), 'student')} marked, nothing exported;")
     kept = counted(sum(map(len, outcomes.values())), "run")
     echo_error(f"tuisim: {kept} kept: the same command with --resume goes on")
@@ -223,11 +215,6 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
         raise ConfigError(f"{arguments.feedback} is no folder", "name a folder", key="--feedback")
 
 
-def _columns(task: GoalsFile) -> list[Goal]:
-    """Return the goals that a student is shown, in words: not those that are only parts of others."""
-    return [replace(goal, say=goal.say or goal.name) for goal in task.goals if goal.points or goal.say]
-
-
 def _excluded(arguments: Arguments, task: GoalsFile) -> frozenset[Path]:
     """Return what may lie among the students' files without being one: the goals, and results."""
     found = [task.path]
@@ -236,76 +223,6 @@ def _excluded(arguments: Arguments, task: GoalsFile) -> frozenset[Path]:
     if arguments.feedback:
         found.append(Path(arguments.feedback))
     return frozenset(Path(os.path.realpath(path)) for path in found)
-
-
-def _entries(found: StudentsFound, task: GoalsFile, arguments: Arguments) -> tuple[list[RunEntry], list[Student]]:
-    """Return the students whose programs can be run, and all students.
-
-    Raises:
-        ConfigError: the world of the goals, or an option, is wrong, or none of the programs can run by its profile.
-    """
-    shared = build_run_spec(settings_of(task.settings, arguments.settings))
-    names_profile = "profile" in {**task.settings, **arguments.settings}
-    entries, students, misfits = [], [], []
-    for student in found.students:
-        spec = shared
-        if student.source:
-            try:
-                own = _settings(student, task, arguments)
-                spec = build_run_spec(own.settings)
-                if not task.settings:
-                    _check_background(spec)
-                student = replace(student, refusal=own.decided.refusal)
-            except ConfigError as error:
-                misfits += [error] if isinstance(error, ProfileError) and names_profile else []
-                cause = error.__cause__
-                is_unread = isinstance(cause, OSError) and of_the_machine(cause)
-                student = replace(student, source=None, problem=_told(error, student), is_unread=is_unread)
-        if student.source:
-            entries.append(RunEntry(student, spec))
-        students.append(student)
-    if misfits and not entries:
-        raise misfits[0]
-    return entries, students
-
-
-def _settings(student: Student, task: GoalsFile, arguments: Arguments) -> ProgramSettings:
-    """Return the settings of a student's program: in the world of the goals if they name one, else of its magic line.
-
-    In the world of the goals, the rules are those for the program's library where the goals name no others.
-
-    Raises:
-        ConfigError: the line, or a file that it names, is wrong.
-        ProfileError: a profile is named for another library.
-    """
-    assert student.source is not None
-    if task.settings:
-        bare = replace(student.source, options={})
-        return program_settings(bare, task.settings, arguments.settings, in_world=True, of_task=True)
-    if outside := file_outside(student):
-        raise ConfigError("the magic line names a file outside the folder", key=outside)
-    return program_settings(student.source, arguments.settings)
-
-
-def _check_background(spec: RunSpec) -> None:
-    """Read a picture of the student's own, to detect a damaged one before the runs.
-
-    Raises:
-        ConfigError: it is no picture, or it cannot be read.
-    """
-    image = background(spec.world.background).image
-    if not image.is_relative_to(backgrounds_folder()):
-        # A run for which it cannot be read is one that this machine could not make.
-        decode(read_file(image), image, spec.world.background_fit)
-
-
-def _told(error: ConfigError, student: Student) -> str:
-    """Return what is wrong, with the student's files named as they are in the folder."""
-    folder = student.path if student.path.is_dir() else student.path.parent
-    text = str(error)
-    for place in (os.path.abspath(folder), os.path.realpath(folder), str(folder)):
-        text = text.replace(f"{place}{os.sep}", "")
-    return printable(text)
 
 
 def _collect(

@@ -13,6 +13,7 @@ from tuisim.goals import calls, output, pen_trace, places, readings
 from tuisim.goals.evidence import START, Evidence, EvidencePoint, EvidenceSpan, JudgedRun
 from tuisim.goals.found import Occurrence
 from tuisim.goals.judgement import Change, GoalState, Judgement
+from tuisim.goals.program_text import fault_in
 from tuisim.goals.spec import (
     AllOf,
     AnyOf,
@@ -127,6 +128,8 @@ class _Judge:
         if self._evidence.falsified:
             # What is recorded may not have happened.
             return _Outcome(GoalState.MISSED, reason=f"It does not count: {self._evidence.falsified}.")
+        if fault := fault_in(self._evidence.program.text):
+            return _Outcome(GoalState.MISSED, reason=f"The program does not compile: {fault[0]}.", line=fault[1])
         start = START
         match goal.after:
             case str(name):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -92,6 +93,11 @@ class Sheet:
     def most_points(self) -> float:
         """The points of a program that meets every goal."""
         return _rounded(math.fsum(column.points for column in self.columns))
+
+
+def columns_of(goals: Sequence[Goal]) -> list[Goal]:
+    """Return the goals that a student is shown, in words: not those that are only parts of others."""
+    return [replace(goal, say=goal.say or goal.name) for goal in goals if goal.points or goal.say]
 
 
 def sheet_of(
