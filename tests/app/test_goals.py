@@ -273,8 +273,8 @@ STARTS = {
     "as the world, of a program": (["task_goals.toml", "mine.py"], (300.0, "mine.py", 2)),
     "by option": (["--goals", "task_goals.toml", "mine.py"], (300.0, "mine.py", 2)),
     "by option, in another world": (["--goals", "task_goals.toml", "lab.toml", "mine.py"], (700.0, "mine.py", 2)),
-    "an example by name": (["--goals", "square"], (300.0, "square.py", 4)),
-    "an example by file": (["square_goals.toml"], (300.0, "square.py", 4)),
+    "an example by name": (["--goals", "square"], (300.0, "square.py", 5)),
+    "an example by file": (["square_goals.toml"], (300.0, "square.py", 5)),
     "no goals": (["lab.toml"], (700.0, None, 0)),
 }
 

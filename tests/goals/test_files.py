@@ -172,6 +172,21 @@ BAD = {
     "world missing": (f"\nworld = 'none.toml'\n{GOOD}", "line 2: world: there is no such file: {folder}/none.toml"),
     "world is itself": (f"world = 'it.toml'\n{GOOD}", "line 1: world: {folder}/it.toml is based on itself"),
     "syntax": ("[[goal]]\nname = \n", "is not TOML: Invalid value (at line 2"),
+    "another world without words": (f"{GOOD}[[also]]\nstart = {{ x_mm = 5 }}", "line 5: also[1].where: is missing"),
+    "another world that is the same": (f"{GOOD}[[also]]\nwhere = 'x'", "line 5: also[1]: is the same world"),
+    "another world's goal that there is not": (
+        f"{GOOD}[[also]]\nwhere = 'x'\nseed = 1\n",
+        "line 7: also[1].seed: no such key",
+    ),
+    "another world with goals that there are not": (
+        f"{GOOD}[[also]]\nwhere = 'x'\nstart = {{ x_mm = 5 }}\ngoals = ['b']",
+        "line 8: also[1].goals[1]: there is no goal 'b' (one of a)",
+    ),
+    "another world's goal after one that there is not": (
+        f"{GOOD}[[also]]\nwhere = 'x'\nstart = {{ x_mm = 5 }}\n[[also.goal]]\nname = 'c'\nfinish = true\nafter = 'b'",
+        "line 11: also[1].goal[1].after: there is no goal 'b'",
+    ),
+    "hidden by a word": (goal("finish = true", "hidden = 'yes'"), "line 8: goal[2].hidden: must be true or false"),
 }
 
 
@@ -232,6 +247,24 @@ def test_world_of_another_file_is_overridden(tmp_path: Path) -> None:
     file = load_goals(tmp_path / "goals.toml")
     assert (file.title, file.program) == ("T", str(tmp_path / "follow.py"))
     assert file.settings == {"start.x_mm": 5.0, "background": "Loop", "seed": 4}
+
+
+def test_goals_of_another_file_are_added_to_and_replaced(tmp_path: Path) -> None:
+    base = "title = 'T'\nbackground = 'Loop'\n" + goal('print = "x"')
+    (tmp_path / "base.toml").write_text(base)
+    own = "[[goal]]\nname = 'b'\nprint = 'y'\nafter = 'a'\n[[also]]\nwhere = 'x'\nhidden = true\nstart = { x_mm = 5 }\n"
+    (tmp_path / "goals.toml").write_text(f"world = 'base.toml'\n{own}[[also.goal]]\nname = 'c'\nfinish = true\n")
+    file = load_goals(tmp_path / "goals.toml")
+    assert (file.title, [goal.name for goal in file.goals]) == ("T", ["a", "b"])
+    assert (file.goals[1].condition, file.goals[1].after) == (PrintCondition(("y",)), "a")
+    own_world, other = file.worlds
+    assert (own_world.where, own_world.settings, own_world.goals) == ("", {"background": "Loop"}, ("a", "b"))
+    assert (other.hidden, other.settings, other.goals) == (
+        True,
+        {"background": "Loop", "start.x_mm": 5},
+        ("a", "b", "c"),
+    )
+    assert [(goal.name, goal.hidden) for goal in file.every_goal] == [("a", False), ("b", False), ("c", True)]
 
 
 def test_short_forms(tmp_path: Path) -> None:

@@ -138,7 +138,7 @@ class _Elements(HTMLParser):
 
 
 def test_nothing_of_a_student_becomes_html() -> None:
-    links = {(EVIL, 0): 'class-runs/"><script>.html'}
+    links = {(EVIL, "", 0): 'class-runs/"><script>.html'}
     page = page_of(SHEET, links, ignored=("<script>alert(3)</script>.doc",))
     elements = _Elements(page).found
     tags = {tag for tag, _ in elements}
@@ -157,7 +157,7 @@ def test_the_page_shows_each_student_and_the_line() -> None:
 
 
 def test_seeds_with_equal_recordings_share_a_link() -> None:
-    links = {("ben", seed): f"runs/{'first' if seed in (0, 1, 3) else 'other'}.html" for seed in range(4)}
+    links = {("ben", "", seed): f"runs/{'first' if seed in (0, 1, 3) else 'other'}.html" for seed in range(4)}
     page = page_of(SHEET, links)
     assert '<a href="runs/first.html">0–1, 3</a>, <a href="runs/other.html">2</a>' in page
 

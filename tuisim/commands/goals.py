@@ -184,9 +184,9 @@ def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, 
 
     task = load_goals(goals_path)
     plan = MarkPlan(
-        goals=task.goals,
+        worlds=task.worlds,
         seeds=parse_seeds(seeds, "--seeds"),
-        options=RunOptions(time_limit_s=timeout, stall_limit_s=STALL_LIMIT_S, answers=task.answers),
+        options=RunOptions(time_limit_s=timeout, stall_limit_s=STALL_LIMIT_S),
         keep=Keep.NONE,
         jobs=jobs,
         arguments=settings_of(task.settings)["arguments"],

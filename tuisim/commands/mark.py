@@ -23,15 +23,15 @@ from tuisim.config.command_line import Arguments, WordType, argument, command, o
 from tuisim.config.options import APP, PANEL, settings_of
 from tuisim.config.shared_options import shared_options
 from tuisim.errors import ConfigError, ExportError, counted, listed, printable, see_page
-from tuisim.goals.files import GoalsFile, load_goals
-from tuisim.goals.spec import Goal
+from tuisim.goals.files import GoalsFile, answers_of, load_goals
+from tuisim.goals.trial_world import TrialWorld
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
 from tuisim.marks.entries import entries_of
 from tuisim.marks.feedback import write_feedback
 from tuisim.marks.journal import Journal, journal_of
 from tuisim.marks.outcome import Outcome
 from tuisim.marks.page import page_of, reports_folder
-from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan, RunEntry, outcomes_of
+from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan, RunEntry, outcomes_of, runs_of
 from tuisim.marks.sheet import Sheet, columns_of, export_marks, lines_of, sheet_of, summary_of
 from tuisim.marks.students import Student, find_students
 from tuisim.runs.child.isolation import check_isolation
@@ -99,11 +99,9 @@ def mark(**given: Any) -> int:
     )
     entries, students = entries_of(found.students, task, arguments.settings)
     plan = MarkPlan(
-        goals=tuple(task.goals),
+        worlds=task.worlds,
         seeds=seeds,
-        options=RunOptions(
-            time_limit_s=arguments.timeout, stall_limit_s=STALL_LIMIT_S, answers=arguments.input or task.answers
-        ),
+        options=RunOptions(time_limit_s=arguments.timeout, stall_limit_s=STALL_LIMIT_S, answers=arguments.input),
         keep=Keep(arguments.keep or USUAL_KEEP),
         jobs=arguments.jobs,
         isolate=_isolates(arguments),
@@ -118,11 +116,11 @@ def mark(**given: Any) -> int:
         except Interrupted as interrupted:
             _tell_so_far(task, plan, students, outcomes)
             return interrupted.exit_code
-        sheet = sheet_of(task.title, columns_of(task.goals), seeds, students, outcomes)
+        sheet = _sheet(task, plan, students, outcomes)
         # First, so that marks are seen also if a file cannot be written.
         _print(sheet, found.ignored)
         _tell_refusals(students)
-        _write(sheet, task.goals, students, found.ignored, arguments)
+        _write(sheet, task.worlds, students, found.ignored, arguments)
     return max(_tell_unread(students), _tell_missing(outcomes))
 
 
@@ -154,17 +152,20 @@ def _tell_so_far(
     done = [
         student
         for student in students
-        if not student.source or len(outcomes[student.name]) == len(plan.seeds) or _gave_up(outcomes[student.name])
+        if not student.source or len(outcomes[student.name]) == runs_of(outcomes[student.name], plan)
     ]
     if done:
-        _print(sheet_of(task.title, columns_of(task.goals), plan.seeds, done, outcomes), ())
+        _print(_sheet(task, plan, done, outcomes), ())
     echo_error(f"tuisim: interrupted with {len(done)} of {counted(len(students), 'student')} marked, nothing exported;")
     kept = counted(sum(map(len, outcomes.values())), "run")
     echo_error(f"tuisim: {kept} kept: the same command with --resume goes on")
 
 
-def _gave_up(outcomes: Sequence[Outcome]) -> bool:
-    return bool(outcomes) and outcomes[0].gave_up
+def _sheet(
+    task: GoalsFile, plan: MarkPlan, students: Sequence[Student], outcomes: Mapping[str, Sequence[Outcome]]
+) -> Sheet:
+    worlds = [world.where for world in plan.worlds]
+    return sheet_of(task.title, columns_of(task.every_goal), plan.seeds, students, outcomes, worlds)
 
 
 def _tell_unread(students: Sequence[Student]) -> int:
@@ -197,7 +198,7 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
     """Raise ConfigError or ExportError if something is wrong that would only be noticed after the runs."""
     if not arguments.folders:
         raise ConfigError("no folder of programs is named", "tuisim mark GOALS FOLDER…")
-    if arguments.input and task.answers:
+    if arguments.input and any(answers_of(world.own_goals) for world in task.worlds):
         raise ConfigError(f"{task.path} has the answers of its dialogues", "give only one of them", key="--input")
     targets = [Path(target) for target in arguments.export]
     for target in targets:
@@ -229,17 +230,21 @@ def _collect(
     entries: Sequence[RunEntry], plan: MarkPlan, journal: Path, outcomes: dict[str, list[Outcome]], *, resumes: bool
 ) -> None:
     """Run what is to be run; add the outcomes by name of student as they become known."""
-    total = len(entries) * len(plan.seeds)
+    wanted = {entry.student.name: runs_of((), plan) for entry in entries}
     with Journal(journal, resumes=resumes) as known, closing(outcomes_of(entries, plan, known)) as found:
         for done, (name, outcome) in enumerate(found, start=1):
             outcomes[name].append(outcome)
-            if outcome.gave_up and len(outcomes[name]) == 1:
-                total -= len(plan.seeds) - 1
+            wanted[name] = runs_of(outcomes[name], plan)
+            total = sum(wanted.values())
             tell(f"run {done} of {total}", done, total)
 
 
 def _write(
-    sheet: Sheet, goals: Sequence[Goal], students: Sequence[Student], ignored: Sequence[str], arguments: Arguments
+    sheet: Sheet,
+    worlds: Sequence[TrialWorld],
+    students: Sequence[Student],
+    ignored: Sequence[str],
+    arguments: Arguments,
 ) -> None:
     for target in map(Path, arguments.export):
         if target.suffix.lower() in EXPORTERS:
@@ -251,8 +256,8 @@ def _write(
 
         kept = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
         links = {}
-        for name, seed, path in write_reports(sheet, goals, target):
-            links[name, seed] = path
+        for of_run, path in write_reports(sheet, worlds, target):
+            links[of_run] = path
             tell(f"report {len(links)} of {kept}", len(links), kept)
         write_whole(target, page_of(sheet, links, ignored).encode())
     if arguments.feedback:

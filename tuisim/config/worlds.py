@@ -57,6 +57,7 @@ class _World(Struct):
     remote: Any = UNSET
     title: Any = UNSET
     goal: Any = UNSET
+    also: Any = UNSET
 
 
 _TABLES: Mapping[str, tuple[str, ...]] = {
@@ -65,7 +66,7 @@ _TABLES: Mapping[str, tuple[str, ...]] = {
 }
 """The keys of each table with values of a run; none for a value that is in no table."""
 
-_NOT_IN_A_RUN = ("world", "mats", "rays", "autorun", "panels", "hidden_panels", "title", "goal")
+_NOT_IN_A_RUN = ("world", "mats", "rays", "autorun", "panels", "hidden_panels", "title", "goal", "also")
 """Keys that stay as they are when a run is saved into a file that has them."""
 _PANEL_FIELDS = {"panels": "panels_on", "hidden_panels": "panels_off"}
 

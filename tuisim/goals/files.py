@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +33,7 @@ from tuisim.goals.spec import (
     Seconds,
     Together,
 )
+from tuisim.goals.trial_world import TrialWorld, check_names, others_of
 
 MAX_NAME = 60
 _EXAMPLE = "_goals.toml"
@@ -51,12 +54,36 @@ class GoalsFile:
     """The world, by path; in precedence as those of a world file."""
     program: str | None = None
     """The program that it names, if any: a path, or the name of an example."""
+    others: tuple[TrialWorld, ...] = ()
+    """Other worlds in which programs are tried, too."""
 
     @property
     def answers(self) -> tuple[str, ...]:
         """The answers to `input()` that its dialogues give, in the order of the goals."""
-        dialogues = (part for goal in self.goals for part in goal.parts if isinstance(part, DialogueCondition))
-        return tuple(turn.answer for dialogue in dialogues for turn in dialogue.turns)
+        return answers_of(self.goals)
+
+    @property
+    def worlds(self) -> tuple[TrialWorld, ...]:
+        """All worlds in which programs are tried, its own first, each with all settings and goals."""
+        own = TrialWorld("", self.settings, tuple(goal.name for goal in self.goals), self.goals)
+        return (own, *(other.within(self.goals, self.settings) for other in self.others))
+
+    @property
+    def every_goal(self) -> tuple[Goal, ...]:
+        """Its goals, and those that only another world has."""
+        found = {
+            goal.name: replace(goal, hidden=goal.hidden or world.hidden)
+            for world in reversed(self.worlds)
+            for goal in world.own_goals
+        }
+        names = dict.fromkeys(goal.name for world in self.worlds for goal in world.own_goals)
+        return tuple(found[name] for name in names)
+
+
+def answers_of(goals: Iterable[Goal]) -> tuple[str, ...]:
+    """Return the answers to `input()` that dialogues give, in the order of the goals."""
+    dialogues = (part for goal in goals for part in goal.parts if isinstance(part, DialogueCondition))
+    return tuple(turn.answer for dialogue in dialogues for turn in dialogue.turns)
 
 
 def load_goals(path: Path | str) -> GoalsFile:
@@ -68,19 +95,18 @@ def load_goals(path: Path | str) -> GoalsFile:
     Raises:
         ConfigError: it, or a file that it names, cannot be read or is wrong; the error names file, line and key.
     """
-    path = _found(user_path(path))
-    if not means_world(path.name):
-        raise ConfigError("is not a .toml file", "a goals file is TOML", file=str(path))
-    data = files.read_file(path, ConfigError)
-    with line_in_errors(path):
-        return _goals_file(data, path, world_from_table(data, path))
+    task = load_task(path)[1]
+    if task is None:
+        hint = f"begin each with a line [[goal]]; {see_page('goal-files')}"
+        raise ConfigError("there are no goals", hint, file=f"{user_path(path)}, line 1", key="goal")
+    return task
 
 
 def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, GoalsFile | None]:
     """Read a world file, with its goals if it has any.
 
     Args:
-        path: The file, or `NAME_goals.toml` for one of `example_names`.
+        path: The file, or one of `example_names`.
         mats: A folder of mats, unless the file names one.
 
     Raises:
@@ -92,7 +118,7 @@ def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, Goa
     data = files.read_file(path, ConfigError)
     with line_in_errors(path):
         world = world_from_table(data, path, mats)
-        return world, _goals_file(data, path, world) if "goal" in data else None
+        return world, _goals_file(data, path, world)
 
 
 @contextmanager
@@ -148,29 +174,49 @@ def _found(path: Path) -> Path:
     return programs_folder() / f"{name}{_EXAMPLE}" if name in example_names() else path
 
 
-def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile:
+def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
+    """Return the task in a file, with that of the file that it is based on; None if there is none."""
     at = Location(str(path))
-    if not data.get("goal"):
-        raise at.at("goal").wrong("there are no goals", f"begin each with a line [[goal]]; {see_page('goal-files')}")
-    goals = goals_from_list(data["goal"], at.at("goal"), path.parent)
-    title = files.convert(data["title"], str, at.at("title")) if "title" in data else ""
-    return GoalsFile(path, title, goals, world.settings, world.program)
+    base = load_task(path.parent / user_path(data["world"]))[1] if "world" in data else None
+    if base is None and "goal" not in data:
+        return None
+    inherited = base.goals if base else ()
+    own = goals_from_list(data["goal"], at.at("goal"), path.parent, inherited) if "goal" in data else ()
+    names = {goal.name for goal in own}
+    goals = (*(goal for goal in inherited if goal.name not in names), *own)
+    title = files.convert(data["title"], str, at.at("title")) if "title" in data else base.title if base else ""
+    others = _others(data["also"], goals, at.at("also"), path) if "also" in data else ()
+    known = base.others if base else ()
+    return GoalsFile(path, title, goals, world.settings, world.program, (*known, *others))
 
 
-def goals_from_list(data: object, at: Location, folder: Path) -> tuple[Goal, ...]:
+def _others(data: object, goals: tuple[Goal, ...], at: Location, path: Path) -> tuple[TrialWorld, ...]:
+    names = tuple(goal.name for goal in goals)
+    others = others_of(data, names, at, path, partial(goals_from_list, beside=goals), of_task=True)
+    for number, other in enumerate(others, start=1):
+        check_names(other.goals, {*names, *(goal.name for goal in other.own_goals)}, at.at(f"[{number}]"))
+    return others
+
+
+def goals_from_list(data: object, at: Location, folder: Path, beside: Sequence[Goal] = ()) -> tuple[Goal, ...]:
     """Return the goals in a list of tables; the files that they name are in a folder.
+
+    Args:
+        beside: Goals that they may refer to, and replace.
 
     Raises:
         ConfigError: a goal is wrong; the error names its key.
     """
     listed = files.entries(data, at, MAX_GOALS, "goals")
     goals = tuple(_goal(entry, place, folder) for entry, place in listed)
-    _check_names(goals, [place for _, place in listed])
+    own = {goal.name for goal in goals}
+    kept = [goal for goal in beside if goal.name not in own]
+    _check_names((*goals, *kept), [*(place for _, place in listed), *[at] * len(kept)])
     return goals
 
 
 def _goal(data: object, at: Location, folder: Path) -> Goal:
-    found = files.table(data, at, (*_TEXTS, "points", *CONDITIONS, *_LIMITS))
+    found = files.table(data, at, (*_TEXTS, "points", "hidden", *CONDITIONS, *_LIMITS))
     values: dict[str, Any] = {key: files.convert(found[key], str, at.at(key)) for key in _TEXTS if key in found}
     files.required(found, "name", at)
     if len(values["name"]) > MAX_NAME:
@@ -183,6 +229,8 @@ def _goal(data: object, at: Location, folder: Path) -> Goal:
     condition = conditions[0] if len(conditions) == 1 else Together(conditions)
     if "points" in found:
         values["points"] = files.convert(found["points"], Points, at.at("points"))
+    if "hidden" in found:
+        values["hidden"] = files.convert(found["hidden"], bool, at.at("hidden"))
     values |= {limit: _limit(found[limit], at.at(limit)) for limit in _LIMITS if limit in found}
     goal = Goal(condition=condition, **values)
     _check_limits(goal, at)

@@ -458,6 +458,8 @@ class Goal:
     points: float = 1.0
     hint: str = ""
     """Shown if the goal is missed."""
+    hidden: bool = False
+    """Whether no student is told of it."""
     before: str | float | None = None
     """A goal or a time: the condition must be reached before."""
     after: str | float | None = None

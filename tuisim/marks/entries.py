@@ -16,6 +16,7 @@ from tuisim.config.program_settings import ProgramSettings, program_settings
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError, ProfileError, printable
 from tuisim.goals.files import GoalsFile
+from tuisim.goals.trial_world import TrialWorld
 from tuisim.marks.runs import RunEntry
 from tuisim.marks.students import Student, file_outside
 from tuisim.regular_file import of_the_machine
@@ -34,44 +35,44 @@ def entries_of(
     Raises:
         ConfigError: the world of the goals, or an option, is wrong, or none of the programs can run by its profile.
     """
-    shared = build_run_spec(settings_of(task.settings, given))
+    shared = tuple(build_run_spec(settings_of(world.settings, given)) for world in task.worlds)
     names_profile = "profile" in {**task.settings, **given}
     entries, students, misfits = [], [], []
     for student in found:
-        spec = shared
+        specs = shared
         if student.source:
             try:
-                own = _settings(student, task, given)
-                spec = build_run_spec(own.settings)
+                every = [_settings(student, world, given) for world in task.worlds]
+                specs = tuple(build_run_spec(own.settings) for own in every)
                 if not task.settings:
-                    _check_background(spec)
-                student = replace(student, refusal=own.decided.refusal)
+                    _check_background(specs[0])
+                student = replace(student, refusal=every[0].decided.refusal)
             except ConfigError as error:
                 misfits += [error] if isinstance(error, ProfileError) and names_profile else []
                 cause = error.__cause__
                 is_unread = isinstance(cause, OSError) and of_the_machine(cause)
                 student = replace(student, source=None, problem=_told(error, student), is_unread=is_unread)
         if student.source:
-            entries.append(RunEntry(student, spec))
+            entries.append(RunEntry(student, specs))
         students.append(student)
     if misfits and not entries:
         raise misfits[0]
     return entries, students
 
 
-def _settings(student: Student, task: GoalsFile, given: Mapping[str, Any]) -> ProgramSettings:
-    """Return the settings of a student's program: in the world of the goals if they name one, else of its magic line.
+def _settings(student: Student, world: TrialWorld, given: Mapping[str, Any]) -> ProgramSettings:
+    """Return the settings of a student's program: in a world of the task if it is said, else in that of its magic line.
 
-    In the world of the goals, the rules are those for the program's library where the goals name no others.
+    In a world of the task, the rules are those for the program's library where the goals name no others.
 
     Raises:
         ConfigError: the line, or a file that it names, is wrong.
         ProfileError: a profile is named for another library.
     """
     assert student.source is not None
-    if task.settings:
+    if world.settings:
         bare = replace(student.source, options={})
-        return program_settings(bare, task.settings, given, in_world=True, of_task=True)
+        return program_settings(bare, world.settings, given, in_world=True, of_task=True)
     if outside := file_outside(student):
         raise ConfigError("the magic line names a file outside the folder", key=outside)
     return program_settings(student.source, given)

@@ -16,6 +16,7 @@ from tuisim.charts.files import write_whole
 from tuisim.errors import ExportError, LogError
 from tuisim.goals.judgement import Change
 from tuisim.goals.spec import ConditionKind, Goal
+from tuisim.goals.trial_world import TrialWorld
 from tuisim.marks.feedback import file_stems
 from tuisim.marks.outcome import GoalOutcome, Outcome, portable
 from tuisim.marks.page import reports_folder
@@ -29,14 +30,14 @@ MOST_OUTPUT_BYTES = 4 << 20
 _HEADS = ("", "goal", "result", "why", "points")
 
 
-def write_reports(sheet: Sheet, goals: Sequence[Goal], page: Path) -> Iterator[tuple[str, int, str]]:
-    """Write the reports of kept runs; yield student, seed and path relative to the page.
+def write_reports(sheet: Sheet, worlds: Sequence[TrialWorld], page: Path) -> Iterator[tuple[tuple[str, str, int], str]]:
+    """Write the reports of kept runs; yield student, world and seed, and the path relative to the page.
 
     Runs of a student that recorded the same have one report. Runs that were removed from the store are left out.
     Reports of an earlier page of this name are replaced.
 
     Args:
-        goals: All goals of the task.
+        worlds: The worlds of the task, the first one first.
 
     Raises:
         ExportError: a report cannot be written.
@@ -44,21 +45,23 @@ def write_reports(sheet: Sheet, goals: Sequence[Goal], page: Path) -> Iterator[t
     folder, store = reports_folder(page), RunStore()
     shutil.rmtree(folder, ignore_errors=True)
     for stem, row in zip(file_stems(one.name for one in sheet.rows), sheet.rows, strict=True):
-        written: dict[str, str] = {}
+        written: dict[tuple[str, str], str] = {}
         for outcome in row.outcomes:
             run = _stored(store, outcome.run_id) if outcome.run_id else None
             if run is None:
                 continue
-            recorded = _digest(run)
+            number, world = next((at, one) for at, one in enumerate(worlds) if one.where == outcome.world)
+            recorded = outcome.world, _digest(run)
             if recorded not in written:
-                name = f"{stem}-seed-{outcome.seed}.html"
+                name = f"{stem}{f'-world-{number + 1}' if number else ''}-seed-{outcome.seed}.html"
                 *_, opened = opening(LogRequest(runs=(run.id,)))
                 opened = replace(opened, runs=tuple(map(_portable, opened.runs)))
-                shown, pins = _verdicts(sheet.columns, goals, outcome, run)
-                title = f"{row.name}, seed {outcome.seed}"
+                columns = [column for column in sheet.columns if column.name in world.goals]
+                shown, pins = _verdicts(columns, world.own_goals, outcome, run)
+                title = ", ".join(filter(None, (row.name, outcome.world, f"seed {outcome.seed}")))
                 _write(folder / name, report_of(opened, title=title, pins=pins, parts=[shown]))
                 written[recorded] = f"{folder.name}/{name}"
-            yield row.name, outcome.seed, written[recorded]
+            yield (row.name, outcome.world, outcome.seed), written[recorded]
 
 
 def _write(path: Path, content: str) -> None:

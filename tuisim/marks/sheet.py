@@ -15,7 +15,7 @@ from tuisim.data_class import dataclass
 from tuisim.errors import counted, printable
 from tuisim.goals.spec import Goal
 from tuisim.logs.export import export_frame
-from tuisim.marks.outcome import Outcome
+from tuisim.marks.outcome import Outcome, merged
 from tuisim.marks.students import Student
 from tuisim.source import source_lines
 
@@ -44,6 +44,8 @@ class Cell:
     """The program's line that the reason is about; 0 if there is none."""
     seed: int = 0
     """The seed of that run."""
+    hidden: bool = False
+    """Whether that was only in hidden worlds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +71,8 @@ class SheetRow:
     """The seed of that run."""
     failure: str = ""
     """Why the program of that run did not finish, or could not be run; empty if it finished."""
+    hidden: bool = False
+    """Whether that was only in a hidden world."""
     error: str = ""
     """The traceback of that run; empty if it has none."""
     runs: int = 0
@@ -106,22 +110,30 @@ def sheet_of(
     seeds: Sequence[int],
     students: Sequence[Student],
     outcomes: Mapping[str, Sequence[Outcome]],
+    worlds: Sequence[str] = ("",),
 ) -> Sheet:
     """Return the sheet of a class.
 
     Args:
         outcomes: The outcomes of the runs so far, by the name of the student, in any order.
+        worlds: The worlds of the task, see `TrialWorld.where`, the first one first.
     """
-    rows = tuple(row_of(student, columns, outcomes.get(student.name, ()), len(seeds)) for student in students)
+    rows = tuple(row_of(student, columns, outcomes.get(student.name, ()), seeds, worlds) for student in students)
     return Sheet(title, tuple(columns), rows, tuple(seeds))
 
 
-def row_of(student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome], seeds: int) -> SheetRow:
+def row_of(
+    student: Student,
+    columns: Sequence[Goal],
+    outcomes: Sequence[Outcome],
+    seeds: Sequence[int],
+    worlds: Sequence[str],
+) -> SheetRow:
     """Return the row of a student."""
     if not student.source:
         cells = tuple(Cell(0.0, 0, student.problem) for _ in columns)
         return SheetRow(student.name, student.main, 0.0, 0.0, cells, student.problem, failure=student.problem)
-    ordered = tuple(sorted((one for one in outcomes if one.counts), key=lambda one: one.seed))
+    ordered = merged(outcomes, seeds, worlds)
     if not ordered:
         return SheetRow(student.name, student.main, 0.0, 0.0, tuple(Cell(0.0, 0, NOT_RUN) for _ in columns), NOT_RUN)
     totals = [_points(columns, one) for one in ordered]
@@ -143,10 +155,13 @@ def row_of(student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome
         seed=failed.seed if failed else 0,
         failure=failed.failure if failed else "",
         error=failed.error if failed else "",
+        hidden=failed.hidden if failed else False,
         runs=len(ordered),
-        stopped_early=len(ordered) < seeds and ordered[0].gave_up,
+        stopped_early=len(ordered) < len(seeds) and ordered[0].gave_up,
         refusal=student.refusal,
-        outcomes=ordered,
+        outcomes=tuple(
+            sorted((one for one in outcomes if one.counts), key=lambda one: (worlds.index(one.world), one.seed))
+        ),
     )
 
 
@@ -162,9 +177,9 @@ def _cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
     points = _rounded(column.points * met / len(goals))
     for outcome, goal in goals:
         if goal is None:
-            return Cell(points, met, outcome.failure, 0, outcome.seed)
+            return Cell(points, met, outcome.failure, 0, outcome.seed, outcome.hidden)
         if not goal.met:
-            return Cell(points, met, goal.reason, goal.line, outcome.seed)
+            return Cell(points, met, goal.reason, goal.line, outcome.seed, goal.hidden)
     return Cell(points, met)
 
 

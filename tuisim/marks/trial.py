@@ -88,7 +88,8 @@ def trial_of(task: GoalsFile, plan: MarkPlan, wrong: Sequence[str], given: Mappi
         ):
             for name, outcome in found:
                 outcomes[name].append(outcome)
-    sheet = sheet_of(task.title, columns_of(task.goals), plan.seeds, students, outcomes)
+    worlds = [world.where for world in plan.worlds]
+    sheet = sheet_of(task.title, columns_of(task.every_goal), plan.seeds, students, outcomes, worlds)
     roles = tuple(role for role, _ in tried)
     return TaskTrial(sheet, roles, tuple(_faults(sheet, roles)))
 
