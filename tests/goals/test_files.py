@@ -164,10 +164,6 @@ BAD = {
         goal("print = 'x'", "after = 5", "before = 4"),
         "line 8: goal[2].after: must be less than before, 4, got 5",
     ),
-    "negative points": (
-        goal("finish = true", "points = -1"),
-        "line 8: goal[2].points: must be a number from 0 to 1000",
-    ),
     "title is no text": (f"title = 5\n{GOOD}", "line 1: title: must be text, got 5"),
     "world missing": (f"\nworld = 'none.toml'\n{GOOD}", "line 2: world: there is no such file: {folder}/none.toml"),
     "world is itself": (f"world = 'it.toml'\n{GOOD}", "line 1: world: {folder}/it.toml is based on itself"),
@@ -186,6 +182,26 @@ BAD = {
         f"{GOOD}[[also]]\nwhere = 'x'\nstart = {{ x_mm = 5 }}\n[[also.goal]]\nname = 'c'\nfinish = true\nafter = 'b'",
         "line 11: also[1].goal[1].after: there is no goal 'b'",
     ),
+    "a comparison that is none": (goal("keep = 'x_mm'"), "line 7: goal[2].keep.comparisons[1]: no comparison: 'x_mm'"),
+    "an instant that is kept": (goal("keep = 'sample Grey'"), "goal[2].keep.comparisons[1]: is only true at instants"),
+    "nothing that is kept": (goal("keep = { share = 0.5 }"), "line 7: goal[2].keep: does not say what is kept"),
+    "a gap from large to small": (goal("keep = { gap_mm = [5, 2] }"), "keep.gap_mm: must be from small to large"),
+    "a count of nothing": (goal("count = { of = 'sample Grey' }"), "line 7: goal[2].count: does not say how often"),
+    "a count that cannot be": (
+        goal("count = { of = 'sample Grey', at_least = 3, at_most = 2 }"),
+        "line 7: goal[2].count.at_most: must be 3 or more, got 2",
+    ),
+    "a sound of no pattern": (
+        goal("when = 'sound matches ('"),
+        "when.comparisons[1]: '(' is no regular expression",
+    ),
+    "a structure of nothing": (
+        goal("structure = 'lops >= 1'"),
+        "line 7: goal[2].structure.comparisons[1]: nothing is counted as 'lops' (did you mean loops",
+    ),
+    "a structure without a number": (goal("structure = 'loops >= x'"), "structure.comparisons[1]: no comparison"),
+    "a time within which a text is": (goal("use = 'print'", "within_s = 5"), "line 8: goal[2].within_s: does not fit"),
+    "too many points off": (goal("finish = true", "points = -1001"), "goal[2].points: must be a number from -1000 to"),
     "hidden by a word": (goal("finish = true", "hidden = 'yes'"), "line 8: goal[2].hidden: must be true or false"),
 }
 

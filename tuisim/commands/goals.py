@@ -18,7 +18,7 @@ from tuisim.config.options import START, settings_of
 from tuisim.errors import ConfigError, counted
 from tuisim.goals.files import GoalsFile, example_names, load_goals
 from tuisim.goals.judge import judge
-from tuisim.goals.judgement import GoalState, Judgement, points
+from tuisim.goals.judgement import GoalState, Judgement, most_points, points
 from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan
 from tuisim.marks.sheet import Sheet, SheetRow, in_words
 from tuisim.runs.handle import RunOptions
@@ -117,7 +117,7 @@ def _plain(run: StoredRun, judgements: Sequence[Judgement]) -> dict[str, Any]:
         "id": run.id,
         "program": run.program.name,
         "points": points(judgements),
-        "of": sum(each.goal.points for each in judgements),
+        "of": most_points(each.goal for each in judgements),
         "goals": [
             {
                 "name": each.goal.name,
@@ -136,7 +136,7 @@ def _plain(run: StoredRun, judgements: Sequence[Judgement]) -> dict[str, Any]:
 
 def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> None:
     met = sum(each.state is GoalState.MET for each in judgements)
-    most = sum(each.goal.points for each in judgements)
+    most = most_points(each.goal for each in judgements)
     title = f" · {file.title}" if file.title else ""
     echo(
         f"run {run.number}, {run.program.name}{title}: {met} of {counted(len(judgements), 'goal')}, "

@@ -10,14 +10,9 @@ from re import _parser  # type: ignore[attr-defined]
 from typing import Any
 
 from tuisim.core.conditions import Operator, ValueCondition, ValueSource
-from tuisim.goals.spec import (
-    Condition,
-    DialogueCondition,
-    Goal,
-    LogCondition,
-    PrintCondition,
-    WhenCondition,
-)
+from tuisim.goals.comparisons import CountCondition, WhenCondition
+from tuisim.goals.condition import Condition
+from tuisim.goals.spec import DialogueCondition, Goal, LogCondition, PrintCondition
 
 ASK = ""
 """Stands for a question, which is answered."""
@@ -51,6 +46,8 @@ def _lines(condition: Condition) -> Iterator[str]:
             yield from (f"{name}: {level:.12g}" for level in levels)
         case WhenCondition(conditions=conditions):
             yield from (line for one in conditions if (line := _line_for(one)))
+        case CountCondition(condition=one, at_least=times):
+            yield from [_line_for(one)] * times if _line_for(one) else ()
         case DialogueCondition(turns=turns):
             for turn in turns:
                 yield ASK

@@ -17,22 +17,10 @@ from tuisim.config.worlds import WorldFile, means_world, world_from_table
 from tuisim.core.values import shown
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest, see_page
+from tuisim.goals.condition import WINDOWED, Condition, ConditionKind, Points, Seconds
 from tuisim.goals.key_lines import line_of_key
 from tuisim.goals.picture import PictureTable, draw_from_table
-from tuisim.goals.spec import (
-    CONDITIONS,
-    MAX_GOALS,
-    AllOf,
-    AnyOf,
-    Condition,
-    ConditionKind,
-    DialogueCondition,
-    DrawCondition,
-    Goal,
-    Points,
-    Seconds,
-    Together,
-)
+from tuisim.goals.spec import CONDITIONS, MAX_GOALS, Combination, DialogueCondition, DrawCondition, Goal, Together
 from tuisim.goals.trial_world import TrialWorld, check_names, others_of
 
 MAX_NAME = 60
@@ -216,7 +204,7 @@ def goals_from_list(data: object, at: Location, folder: Path, beside: Sequence[G
 
 
 def _goal(data: object, at: Location, folder: Path) -> Goal:
-    found = files.table(data, at, (*_TEXTS, "points", "hidden", *CONDITIONS, *_LIMITS))
+    found = files.table(data, at, (*_TEXTS, "points", "hidden", "within_s", *CONDITIONS, *_LIMITS))
     values: dict[str, Any] = {key: files.convert(found[key], str, at.at(key)) for key in _TEXTS if key in found}
     files.required(found, "name", at)
     if len(values["name"]) > MAX_NAME:
@@ -229,6 +217,8 @@ def _goal(data: object, at: Location, folder: Path) -> Goal:
     condition = conditions[0] if len(conditions) == 1 else Together(conditions)
     if "points" in found:
         values["points"] = files.convert(found["points"], Points, at.at("points"))
+    if "within_s" in found:
+        values["within_s"] = files.convert(found["within_s"], Seconds, at.at("within_s"))
     if "hidden" in found:
         values["hidden"] = files.convert(found["hidden"], bool, at.at("hidden"))
     values |= {limit: _limit(found[limit], at.at(limit)) for limit in _LIMITS if limit in found}
@@ -276,6 +266,8 @@ def _check_limits(goal: Goal, at: Location) -> None:
     """Raise ConfigError for a limit that applies to none of the conditions, or comes before the goal counts."""
     kinds = [part.KIND for part in goal.parts]
     fitting = {limit for kind in kinds for limit in goal.limits(kind)}
+    if goal.within_s is not None and not set(kinds) & set(WINDOWED):
+        raise at.at("within_s").wrong("does not fit this condition", _UNFIT[kinds[0]])
     for limit in _LIMITS:
         if getattr(goal, limit) is not None and limit not in fitting:
             raise at.at(limit).wrong("does not fit this condition", _UNFIT[kinds[0]])
@@ -310,7 +302,7 @@ def _reference(goal: Goal, name: str, at: Location) -> Location:
         key
         for key, kind in CONDITIONS.items()
         for part in goal.parts
-        if type(part) is kind and isinstance(part, AllOf | AnyOf) and name in part.goals
+        if type(part) is kind and isinstance(part, Combination) and name in part.goals
     )
     key = next(limits, next(combined, ""))
     return at.at(key) if key else at

@@ -60,5 +60,15 @@ class Judgement:
 
 
 def points(judgements: Iterable[Judgement]) -> float:
-    """Return the sum of the points of the goals that are met."""
-    return math.fsum(each.goal.points for each in judgements if each.state is GoalState.MET)
+    """Return the sum of the points of the goals that are met; never less than 0."""
+    return points_of(each.goal.points for each in judgements if each.state is GoalState.MET)
+
+
+def points_of(met: Iterable[float]) -> float:
+    """Return the sum of the points of goals that are met, some of which may be negative; never less than 0."""
+    return max(0.0, math.fsum(met))
+
+
+def most_points(goals: Iterable[Goal]) -> float:
+    """Return the points of a run that meets every goal but those whose points are negative."""
+    return math.fsum(goal.points for goal in goals if goal.points > 0)

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from tuisim.core.conditions import ValueCondition, ValueSource
-from tuisim.core.sensors import named_column
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
-from tuisim.errors import ConfigError, counted
+from tuisim.errors import counted
 from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.goals.found import Occurrence, share_words
 from tuisim.goals.places import line_of_motion
 from tuisim.goals.provenance import Provenance, provenance_of
-from tuisim.goals.spec import FollowCondition, Range, ReadCondition, Reading, WhenCondition
+from tuisim.goals.spec import FollowCondition, Range, ReadCondition, Reading
 
 if TYPE_CHECKING:
     import numpy as np
@@ -116,42 +113,6 @@ def find_read(condition: ReadCondition, evidence: Evidence, span: EvidenceSpan) 
     times = counted(len(ticks), "time")
     text = f"The program read the {noun} {times}{where}{when}; {condition.times:,} are needed."
     return Occurrence(None, text, int(evidence.records["line"][every[0]]))
-
-
-def find_when(condition: WhenCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
-    """Find the first tick at which all conditions are true."""
-    import numpy as np
-
-    ticks = span.ticks
-    met = np.ones(len(evidence.records[ticks]), np.bool_)
-    never: list[str] = []
-    for text, wanted in zip(condition.comparisons, condition.conditions, strict=True):
-        try:
-            is_column = wanted.source is ValueSource.COLUMN
-            named = replace(wanted, name=named_column(wanted.name, evidence.spec.robot)) if is_column else wanted
-            here = evidence.held(named)[ticks]
-        except ConfigError as error:
-            return Occurrence(None, f"The robot has no column {wanted.name} ({error.hint}).")
-        except ValueError as error:
-            return Occurrence(None, f"{text}: {error}.")
-        if len(here) and not here.any():
-            never.append(f"{named} never became true{_nearest_words(named, evidence, span)}")
-        met &= here
-    found = np.flatnonzero(met)
-    if len(found):
-        return Occurrence(EvidencePoint(span.first_tick + int(found[0])))
-    return Occurrence(None, f"{'; '.join(never)}." if never else "They were not true at the same time.")
-
-
-def _nearest_words(wanted: ValueCondition, evidence: Evidence, span: EvidenceSpan) -> str:
-    """Return how near a column came to what it is compared with, as the end of a sentence; empty for what is not."""
-    import numpy as np
-
-    if wanted.source is not ValueSource.COLUMN or wanted.is_momentary:
-        return ""
-    values = evidence.column(wanted.name)[span.ticks]
-    at = int(np.argmin(np.abs(values - wanted.number)))
-    return f": the nearest was {values[at]:.6g} at {evidence.time_words(span.first_tick + at)}"
 
 
 def find_off_line(condition: FollowCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:

@@ -85,14 +85,17 @@ def _hidden(cells: Sequence[tuple[Goal, Cell]]) -> list[str]:
 
 
 def _goal(column: Goal, cell: Cell, runs: int, lines: Sequence[str]) -> list[str]:
+    if column.points < 0 and not cell.met:
+        return [_wrapped(f"[did not happen] {column.say}")]
     is_met = bool(runs) and cell.met == runs
-    mark = "met" if is_met else "missed" if not cell.met else "met in part"
-    points = f" ({in_words(cell.points)} of {in_words(column.points)})" if column.points else ""
+    mark = "happened" if column.points < 0 else "met" if is_met else "missed" if not cell.met else "met in part"
+    of = f" of {in_words(column.points)}" if column.points > 0 else ""
+    points = f" ({in_words(cell.points)}{of})" if column.points else ""
     found = [_wrapped(f"[{mark}] {column.say}{points}")]
-    if is_met:
+    if is_met and column.points >= 0:
         return found
     if cell.hidden:
-        found.append(_wrapped(f"Why: it is met in the task's own world, but not {_ELSEWHERE}.", "    "))
+        found.append(_wrapped(f"Why: it is as asked for in the task's own world, but not {_ELSEWHERE}.", "    "))
     elif cell.met:
         found.append(_wrapped(f"Met in {cell.met} of {runs} runs; missed with seed {cell.seed}.", "    "))
     if cell.reason and not cell.hidden:

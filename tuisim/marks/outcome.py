@@ -45,6 +45,13 @@ class GoalOutcome:
     """The program's line that the reason is about; 0 if there is none."""
     hidden: bool = False
     """Whether it was missed only in hidden worlds, of which no student is told anything."""
+    is_penalty: bool = False
+    """Whether it takes points off."""
+
+    @property
+    def is_good(self) -> bool:
+        """Whether it is as it should be."""
+        return self.met is not self.is_penalty
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,10 +104,14 @@ def outcome_of(result: Result, seed: int, folder: Path, world: TrialWorld | None
         if world is not None and name not in world.goals:
             continue
         if one.state is GoalState.MET:
-            goals.append(GoalOutcome(name, True))
+            goals.append(GoalOutcome(name, True, is_penalty=one.goal.points < 0))
         else:
             cause = _cause(one, judgements)
-            goals.append(GoalOutcome(name, False, _one_line(portable(cause.reason, folder)), cause.line))
+            goals.append(
+                GoalOutcome(
+                    name, False, _one_line(portable(cause.reason, folder)), cause.line, is_penalty=one.goal.points < 0
+                )
+            )
     return Outcome(
         seed,
         result.end,
@@ -118,8 +129,8 @@ def outcome_of(result: Result, seed: int, folder: Path, world: TrialWorld | None
 def merged(outcomes: Sequence[Outcome], seeds: Sequence[int], worlds: Sequence[str] = ("",)) -> list[Outcome]:
     """Return for each seed what came out of it: a goal is met if it is met in every world where it counts.
 
-    Seeds are left out for which a run is missing, or does not count. Where the program gave up with the first seed, so
-    it does with the others.
+    One that takes points off is met if it is in any. Seeds are left out for which a run is missing, or does not count.
+    Where the program gave up with the first seed, so it does with the others.
 
     Args:
         outcomes: Those of one student, in any order.
@@ -149,9 +160,9 @@ def _merged(seed: int, parts: Sequence[Outcome]) -> Outcome:
     is_known = all(part.goals for part in parts)
     for part in parts:
         for goal in part.goals if is_known else ():
-            if goal.name not in goals or goals[goal.name].met:
-                reason = f"{part.world}: {goal.reason}" if part.world and not goal.met else goal.reason
-                goals[goal.name] = replace(goal, reason=reason, hidden=part.hidden and not goal.met)
+            if goal.name not in goals or goals[goal.name].is_good:
+                reason = f"{part.world}: {goal.reason}" if part.world and goal.reason else goal.reason
+                goals[goal.name] = replace(goal, reason=reason, hidden=part.hidden and not goal.is_good)
     failed = next((part for part in parts if part.failure), None)
     if failed is None or not failed.world:
         return replace(failed or parts[0], seed=seed, goals=tuple(goals.values()))

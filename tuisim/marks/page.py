@@ -83,6 +83,8 @@ def _level(points: float, most: float) -> str:
 def _cell(cell: Cell, column: Goal, row: SheetRow) -> str:
     # A goal without points is met or missed, too.
     level = "met" if row.runs and cell.met == row.runs else "part" if cell.met else "missed"
+    if column.points < 0:
+        level = "missed" if cell.met else "met"
     seeds = f"met in {cell.met} of {row.runs} runs" if row.runs > 1 else ""
     hint = "; ".join(filter(None, (seeds, cell.reason)))
     return f'<td class="number {level}" title="{clean(hint)}">{in_words(cell.points)}</td>'

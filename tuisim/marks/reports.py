@@ -14,8 +14,9 @@ from tuisim.analysis.report import report_of, section, table
 from tuisim.analysis.source import LogRequest, opening
 from tuisim.charts.files import write_whole
 from tuisim.errors import ExportError, LogError
+from tuisim.goals.condition import ConditionKind
 from tuisim.goals.judgement import Change
-from tuisim.goals.spec import ConditionKind, Goal
+from tuisim.goals.spec import Goal
 from tuisim.goals.trial_world import TrialWorld
 from tuisim.marks.feedback import file_stems
 from tuisim.marks.outcome import GoalOutcome, Outcome, portable
@@ -117,11 +118,11 @@ def _verdicts(
         goal = found.get(column.name, GoalOutcome(column.name, False, outcome.failure))
         result = "met" if goal.met else "missed"
         why = f"{goal.reason} (line {goal.line})" if goal.line else goal.reason
-        points = f"{in_words(column.points if goal.met else 0)} of {in_words(column.points)}"
+        points = f"{in_words(column.points if goal.met else 0)} of {in_words(max(0, column.points))}"
         if (event := judged.get(column.name)) is not None:
             result += f" at {event.time_s:.2f} s, x {event.x_mm:.0f}, y {event.y_mm:.0f} mm"
             said = f"{number}. {column.say} {result}"
-            pins.append(Pin(str(number), event.x_mm, event.y_mm, goal.met, f"{said}: {why}" if why else said))
+            pins.append(Pin(str(number), event.x_mm, event.y_mm, goal.is_good, f"{said}: {why}" if why else said))
         rows.append([str(number), column.say, result, why, points])
     return section("Goals", table(_HEADS, rows, numbers=len(_HEADS) - 1)), pins
 

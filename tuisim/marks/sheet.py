@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.data_class import dataclass
 from tuisim.errors import counted, printable
+from tuisim.goals.judgement import most_points, points_of
 from tuisim.goals.spec import Goal
 from tuisim.logs.export import export_frame
 from tuisim.marks.outcome import Outcome, merged
@@ -37,7 +38,7 @@ class Cell:
     points: float
     """Mean over the runs."""
     met: int
-    """Number of runs that met it."""
+    """Number of runs that met it; of a goal that takes points off, that is the fault."""
     reason: str = ""
     """Why it was missed by the first run that missed it; empty if none did."""
     line: int = 0
@@ -96,7 +97,7 @@ class Sheet:
     @property
     def most_points(self) -> float:
         """The points of a program that meets every goal."""
-        return _rounded(math.fsum(column.points for column in self.columns))
+        return _rounded(most_points(self.columns))
 
 
 def columns_of(goals: Sequence[Goal]) -> list[Goal]:
@@ -138,7 +139,7 @@ def row_of(
         return SheetRow(student.name, student.main, 0.0, 0.0, tuple(Cell(0.0, 0, NOT_RUN) for _ in columns), NOT_RUN)
     totals = [_points(columns, one) for one in ordered]
     # In a task without points, every goal counts.
-    counted_goals = [column.name for column in columns if column.points] or [column.name for column in columns]
+    counted_goals = [column for column in columns if column.points] or columns
     incomplete = [one for one in ordered if _missed(one, counted_goals)]
     failed = incomplete[0] if incomplete else None
     reason, line = _reason(failed, counted_goals) if failed else ("", 0)
@@ -168,7 +169,7 @@ def row_of(
 def _points(columns: Sequence[Goal], outcome: Outcome) -> float:
     """Return the points of one run; one of which nothing is recorded has no judgements, and no points."""
     met = {goal.name for goal in outcome.goals if goal.met}
-    return math.fsum(column.points for column in columns if column.name in met)
+    return points_of(column.points for column in columns if column.name in met)
 
 
 def _cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
@@ -177,25 +178,27 @@ def _cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
     points = _rounded(column.points * met / len(goals))
     for outcome, goal in goals:
         if goal is None:
+            # Of a run of which nothing is recorded, it is known only that it failed.
             return Cell(points, met, outcome.failure, 0, outcome.seed, outcome.hidden)
-        if not goal.met:
+        if not goal.is_good:
             return Cell(points, met, goal.reason, goal.line, outcome.seed, goal.hidden)
     return Cell(points, met)
 
 
-def _missed(outcome: Outcome, names: Sequence[str]) -> list[str]:
-    """Return which of the goals a run has not met."""
-    met = {goal.name for goal in outcome.goals if goal.met}
-    return [name for name in names if name not in met]
+def _missed(outcome: Outcome, columns: Sequence[Goal]) -> bool:
+    """Return whether a run has missed one of the goals, or met one that takes points off."""
+    good = {goal.name for goal in outcome.goals if goal.is_good}
+    return not all(column.name in good for column in columns)
 
 
-def _reason(outcome: Outcome, names: Sequence[str]) -> tuple[str, int]:
+def _reason(outcome: Outcome, columns: Sequence[Goal]) -> tuple[str, int]:
     """Return why a run failed, and the program's line: an error comes before the goals that it prevented."""
-    missed = [goal for goal in outcome.goals if not goal.met and goal.name in names]
+    names = {column.name: column.say for column in columns}
+    missed = [goal for goal in outcome.goals if not goal.is_good and goal.name in names]
     if outcome.failure:
         # A program that was stopped has no line of an error; what it did not get done has one.
         return outcome.failure, outcome.line or next((goal.line for goal in missed if goal.line), 0)
-    return (missed[0].reason, missed[0].line) if missed else ("", 0)
+    return (missed[0].reason or names[missed[0].name], missed[0].line) if missed else ("", 0)
 
 
 def _rounded(value: float) -> float:

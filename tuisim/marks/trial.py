@@ -13,10 +13,10 @@ from tuisim.config.program_file import find_program
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.goals.answers import ASK, answer_lines
+from tuisim.goals.condition import ConditionKind
 from tuisim.goals.files import GoalsFile
 from tuisim.goals.spec import (
     AvoidCondition,
-    ConditionKind,
     DialogueCondition,
     FinishCondition,
     Goal,
@@ -125,7 +125,7 @@ def _faults(sheet: Sheet, roles: Sequence[TrialRole]) -> Iterator[str]:
     """Yield what is wrong with a task."""
     rows = list(zip(sheet.rows, roles, strict=True))
     for at, goal in enumerate(sheet.columns):
-        if by := [_DOES[role] for row, role in rows if role in _DOES and row.cells[at].met]:
+        if by := [_DOES[role] for row, role in rows if role in _DOES and row.cells[at].met and goal.points >= 0]:
             points = f" ({in_words(goal.points)} of {in_words(sheet.most_points)} points)" if goal.points else ""
             yield f"{' and '.join(by)} meets “{goal.name}”{points}: {_remedy(goal)}"
     for row, role in rows:

@@ -10,8 +10,9 @@ from rich.style import Style
 
 from tuisim import palette
 from tuisim.data_class import dataclass
-from tuisim.goals.judgement import GoalState, Judgement
-from tuisim.goals.spec import ConditionKind, Goal
+from tuisim.goals.condition import ConditionKind
+from tuisim.goals.judgement import GoalState, Judgement, most_points, points_of
+from tuisim.goals.spec import Goal
 from tuisim.terminal.text_runs import Line, cut
 
 _NAME = Style(color=palette.WHITE, bold=True)
@@ -92,8 +93,8 @@ def draw_goals(
     """
     if not view.goals:
         return GoalsPicture(list(_wrapped(NO_GOALS, width, _PALE)))
-    reached = sum(goal.points for goal, state in zip(view.goals, states, strict=True) if state is GoalState.MET)
-    total = f"{reached:g} of {sum(goal.points for goal in view.goals):g} points"
+    reached = points_of(goal.points for goal, state in zip(view.goals, states, strict=True) if state is GoalState.MET)
+    total = f"{reached:g} of {most_points(view.goals):g} points"
     lines = list(_wrapped(view.title, width, _NAME)) if height >= _TITLED_ROWS else []
     lines.append([(total, _HEAD)])
     listed = [
