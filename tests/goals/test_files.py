@@ -202,6 +202,16 @@ BAD = {
     "a structure without a number": (goal("structure = 'loops >= x'"), "structure.comparisons[1]: no comparison"),
     "a time within which a text is": (goal("use = 'print'", "within_s = 5"), "line 8: goal[2].within_s: does not fit"),
     "too many points off": (goal("finish = true", "points = -1001"), "goal[2].points: must be a number from -1000 to"),
+    "a button that there is not": (f"press = ['entr@2']\n{GOOD}", "line 1: press[1]: the brick has no button 'entr'"),
+    "another world's press without a time": (
+        f"{GOOD}[[also]]\nwhere = 'x'\npress = ['enter']",
+        "line 7: also[1].press[1]: must be BUTTON@FROM or BUTTON@FROM-UNTIL",
+    ),
+    "another world's mat that there is not": (
+        f"background = 'Loop'\n{GOOD}[[also]]\nwhere = 'x'\nbackground = 'Lop'",
+        "line 8: also[1].background: no such mat",
+    ),
+    "inputs that are none": (f"inputs = [5]\n{GOOD}", "line 1: inputs[1]: must be text, got 5"),
     "hidden by a word": (goal("finish = true", "hidden = 'yes'"), "line 8: goal[2].hidden: must be true or false"),
 }
 

@@ -112,3 +112,46 @@ def test_a_program_that_hangs_in_another_world_loses_what_counts_there(tmp_path:
     assert marks["points"]["hangs"] == 0
     assert marks["reason"]["hangs"] == "in the other direction: stuck: no simulated time passed"
     assert "stuck" not in told["hangs"]
+
+
+PRESSED = """\
+background = "Empty_Map"
+press = ["enter@2"]
+inputs = ["300"]
+[[goal]]
+name = "waits"
+keep = "x_mm < 210"
+until = "pressed"
+[[goal]]
+name = "pressed"
+points = 0
+when = "button_enter = 1"
+[[goal]]
+name = "there"
+when = "sample Far > 390"
+[[also]]
+where = "another distance, later"
+inputs = ["400"]
+press = ["enter@3-3.5"]
+"""
+ASKS = """\
+from ev3dev2.button import Button
+from ev3dev2.motor import MoveTank
+far_mm, enter = int(input("mm? ")), Button()
+while not enter.enter:
+    pass
+MoveTank("outB", "outC").on_for_rotations(30, 30, far_mm / 176)
+print("Far:", 95 + far_mm)
+"""
+
+
+def test_a_task_presses_buttons_and_gives_inputs_in_each_world(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "class").mkdir()
+    (tmp_path / "class" / "asks.py").write_text(ASKS)
+    (tmp_path / "class" / "learnt.py").write_text(ASKS.replace("while not enter.enter", "for _ in range(2000)"))
+    (tmp_path / "task.toml").write_text(PRESSED)
+    done = here("mark", "task.toml", "class", "--seeds", "0", "--jobs", "1", "--keep", "none")
+    assert [line.split()[:2] for line in done.stdout.splitlines()[1:3]] == [["asks", "2"], ["learnt", "1"]], done.stdout
+    assert here("run", "task.toml", "class/asks.py").returncode == 0
+    checked = here("goals", "check", "task.toml")
+    assert (checked.returncode, checked.stderr) == (0, ""), checked.stdout

@@ -23,7 +23,7 @@ from tuisim.config.command_line import Arguments, WordType, argument, command, o
 from tuisim.config.options import APP, PANEL, settings_of
 from tuisim.config.shared_options import shared_options
 from tuisim.errors import ConfigError, ExportError, counted, listed, printable, see_page
-from tuisim.goals.files import GoalsFile, answers_of, load_goals
+from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.goals.trial_world import TrialWorld
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
 from tuisim.marks.entries import entries_of
@@ -198,8 +198,8 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
     """Raise ConfigError or ExportError if something is wrong that would only be noticed after the runs."""
     if not arguments.folders:
         raise ConfigError("no folder of programs is named", "tuisim mark GOALS FOLDER…")
-    if arguments.input and any(answers_of(world.own_goals) for world in task.worlds):
-        raise ConfigError(f"{task.path} has the answers of its dialogues", "give only one of them", key="--input")
+    if arguments.input and any(world.answers for world in task.worlds):
+        raise ConfigError(f"{task.path} has answers", "give only one of them", key="--input")
     targets = [Path(target) for target in arguments.export]
     for target in targets:
         if target.suffix.lower() in PAGE_SUFFIXES:

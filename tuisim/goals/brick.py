@@ -8,7 +8,8 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from tuisim.core.conditions import Operator, ValueCondition, run_condition_in
-from tuisim.protocol import BUTTONS, SetButtons, UserAction
+from tuisim.core.spec import BUTTONS
+from tuisim.protocol import SetButtons, UserAction
 from tuisim.runs.brick_state import LED_NAMES, BrickState, face_after
 from tuisim.runs.records import OutputRow, Stream
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
@@ -13,6 +13,7 @@ from typing import Any
 from tuisim.config import files
 from tuisim.config.files import Location
 from tuisim.config.folders import programs_folder, user_path
+from tuisim.config.presses import ButtonPress
 from tuisim.config.worlds import WorldFile, means_world, world_from_table
 from tuisim.core.values import shown
 from tuisim.data_class import dataclass
@@ -20,7 +21,7 @@ from tuisim.errors import ConfigError, nearest, see_page
 from tuisim.goals.condition import WINDOWED, Condition, ConditionKind, Points, Seconds
 from tuisim.goals.key_lines import line_of_key
 from tuisim.goals.picture import PictureTable, draw_from_table
-from tuisim.goals.spec import CONDITIONS, MAX_GOALS, Combination, DialogueCondition, DrawCondition, Goal, Together
+from tuisim.goals.spec import CONDITIONS, MAX_GOALS, Combination, DrawCondition, Goal, Together
 from tuisim.goals.trial_world import TrialWorld, check_names, others_of
 
 MAX_NAME = 60
@@ -44,17 +45,22 @@ class GoalsFile:
     """The program that it names, if any: a path, or the name of an example."""
     others: tuple[TrialWorld, ...] = ()
     """Other worlds in which programs are tried, too."""
+    presses: tuple[ButtonPress, ...] = ()
+    """The buttons of the brick that are pressed in a run."""
+    inputs: tuple[str, ...] = ()
+    """The answers to `input()`, if the goals have no dialogue."""
 
     @property
     def answers(self) -> tuple[str, ...]:
-        """The answers to `input()` that its dialogues give, in the order of the goals."""
-        return answers_of(self.goals)
+        """The answers to `input()` in its own world."""
+        return self.worlds[0].answers
 
     @property
     def worlds(self) -> tuple[TrialWorld, ...]:
-        """All worlds in which programs are tried, its own first, each with all settings and goals."""
-        own = TrialWorld("", self.settings, tuple(goal.name for goal in self.goals), self.goals)
-        return (own, *(other.within(self.goals, self.settings) for other in self.others))
+        """All worlds in which programs are tried, its own first, each with all that it has."""
+        names = tuple(goal.name for goal in self.goals)
+        own = TrialWorld("", self.settings, names, self.goals, self.presses, self.inputs)
+        return (own, *(other.beside(own) for other in self.others))
 
     @property
     def every_goal(self) -> tuple[Goal, ...]:
@@ -66,12 +72,6 @@ class GoalsFile:
         }
         names = dict.fromkeys(goal.name for world in self.worlds for goal in world.own_goals)
         return tuple(found[name] for name in names)
-
-
-def answers_of(goals: Iterable[Goal]) -> tuple[str, ...]:
-    """Return the answers to `input()` that dialogues give, in the order of the goals."""
-    dialogues = (part for goal in goals for part in goal.parts if isinstance(part, DialogueCondition))
-    return tuple(turn.answer for dialogue in dialogues for turn in dialogue.turns)
 
 
 def load_goals(path: Path | str) -> GoalsFile:
@@ -175,7 +175,7 @@ def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
     title = files.convert(data["title"], str, at.at("title")) if "title" in data else base.title if base else ""
     others = _others(data["also"], goals, at.at("also"), path) if "also" in data else ()
     known = base.others if base else ()
-    return GoalsFile(path, title, goals, world.settings, world.program, (*known, *others))
+    return GoalsFile(path, title, goals, world.settings, world.program, (*known, *others), world.presses, world.inputs)
 
 
 def _others(data: object, goals: tuple[Goal, ...], at: Location, path: Path) -> tuple[TrialWorld, ...]:

@@ -9,12 +9,14 @@ from typing import Any
 
 from tuisim.config import files
 from tuisim.config.files import Location
+from tuisim.config.presses import ButtonPress
 from tuisim.config.worlds import world_from_table
 from tuisim.data_class import dataclass
-from tuisim.goals.spec import Goal
+from tuisim.errors import ConfigError
+from tuisim.goals.spec import DialogueCondition, Goal
 
 _OWN_KEYS = ("where", "goals", "goal")
-_WORLD_KEYS = ("background", "mats", "start", "robot", "noise", "obstacles", "obstacle")
+_WORLD_KEYS = ("background", "mats", "start", "robot", "noise", "obstacles", "obstacle", "press", "inputs")
 _HIDDEN = "hidden"
 
 MAX_LESSON_WORLDS, MAX_TASK_WORLDS = 3, 20
@@ -35,22 +37,33 @@ class TrialWorld:
     """Names of the goals to be met there."""
     own_goals: tuple[Goal, ...] = ()
     """Those of them that only this world has."""
+    presses: tuple[ButtonPress, ...] = ()
+    """The buttons of the brick that are pressed there."""
+    inputs: tuple[str, ...] = ()
+    """The answers to `input()` there, if its goals have no dialogue."""
     hidden: bool = False
     """Whether no student is told what is there, and what happened there."""
+
+    @property
+    def answers(self) -> tuple[str, ...]:
+        """The answers to `input()`: those of the dialogues among its own goals, in their order, else its inputs."""
+        dialogues = (part for goal in self.own_goals for part in goal.parts if isinstance(part, DialogueCondition))
+        return tuple(turn.answer for dialogue in dialogues for turn in dialogue.turns) or self.inputs
 
     def goals_among(self, goals: Sequence[Goal]) -> tuple[Goal, ...]:
         """Return the goals that are judged there: those of the first world, which its own of the same name replace."""
         own = {goal.name: goal for goal in self.own_goals}
         return (*(own.pop(goal.name, goal) for goal in goals), *own.values())
 
-    def within(self, goals: Sequence[Goal], settings: Mapping[str, Any]) -> TrialWorld:
-        """Return another world with all its settings and all goals that are judged there.
-
-        Args:
-            goals: Those of the first world.
-            settings: Those of the first world, by path.
-        """
-        return replace(self, settings={**settings, **self.settings}, own_goals=self.goals_among(goals))
+    def beside(self, first: TrialWorld) -> TrialWorld:
+        """Return another world with all that it has from the first one: settings, goals, presses and inputs."""
+        return replace(
+            self,
+            settings={**first.settings, **self.settings},
+            own_goals=self.goals_among(first.own_goals),
+            presses=self.presses or first.presses,
+            inputs=self.inputs or first.inputs,
+        )
 
 
 def others_of(
@@ -80,11 +93,17 @@ def others_of(
         named = files.convert(found.get("goals", []), tuple[str, ...], place.at("goals"))
         usual = goals if of_task else () if own else goals
         wanted = tuple(dict.fromkeys((*(named or usual), *own_names)))
-        world = world_from_table({key: value for key, value in found.items() if key in _WORLD_KEYS}, path)
-        if not world.settings:
+        try:
+            world = world_from_table({key: value for key, value in found.items() if key in _WORLD_KEYS}, path)
+        except ConfigError as error:
+            # It names the key in the table, or another file.
+            if error.file != place.file:
+                raise
+            raise files.with_location(error, place.file, f"{place.key}.{error.key}") from None
+        if not (world.settings or world.presses or world.inputs):
             raise place.wrong("is the same world", f"one of {', '.join(_WORLD_KEYS)}")
         is_hidden = files.convert(found.get(_HIDDEN, False), bool, place.at(_HIDDEN))
-        others.append(TrialWorld(where, world.settings, wanted, own, is_hidden))
+        others.append(TrialWorld(where, world.settings, wanted, own, world.presses, world.inputs, is_hidden))
     return tuple(others)
 
 

@@ -13,13 +13,13 @@ from tuisim.batch.task import Keep, Task
 from tuisim.core.spec import RunSpec
 from tuisim.core.tree import to_plain
 from tuisim.data_class import dataclass
-from tuisim.goals.files import answers_of
 from tuisim.goals.trial_world import TrialWorld
 from tuisim.marks.journal import Journal
 from tuisim.marks.outcome import Outcome, outcome_of
 from tuisim.marks.students import Student
 from tuisim.marks.workspace import copy_of, digest_of, program_in
 from tuisim.runs.handle import RunOptions, user_python_path
+from tuisim.runs.presses import press_actions
 from tuisim.runs.removal import remove_tree
 from tuisim.runs.temporary import temporary_home
 
@@ -39,7 +39,7 @@ class MarkPlan:
     """Those of the task, the first one first."""
     seeds: tuple[int, ...]
     options: RunOptions
-    """Without answers to `input()`, it gets those of each world's goals."""
+    """Without answers to `input()`, it gets those of each world."""
     keep: Keep
     jobs: int = 0
     """Number of workers; 0 is one for each processor."""
@@ -123,7 +123,11 @@ def _turns(entry: RunEntry, plan: MarkPlan) -> list[_Turn]:
     basis += [plan.keep, plan.isolate, plan.arguments, user_python_path()]
     turns = []
     for world, of_world in zip(plan.worlds, entry.specs, strict=True):
-        options = replace(plan.options, answers=plan.options.answers or answers_of(world.own_goals))
+        options = replace(
+            plan.options,
+            answers=plan.options.answers or world.answers,
+            actions=press_actions(world.presses, of_world.profile.tick_hz),
+        )
         for seed in plan.seeds:
             spec = replace(of_world, seed=seed)
             own = [repr(world), options.to_plain(), to_plain(spec)]
