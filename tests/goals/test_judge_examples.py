@@ -17,7 +17,7 @@ EXAMPLES = {path.name.removesuffix("_goals.toml"): path for path in sorted(PROGR
 
 CASES: dict[str, tuple[str, tuple[object, ...]]] = {
     **{name: (name, ()) for name in EXAMPLES},
-    **{f"{name}, ev3": (name, ("--profile", "ev3")) for name in EXAMPLES},
+    **{f"{name}, ev3": (name, ("--profile", "ev3")) for name in EXAMPLES if "pybricks" not in name},
     # Under nbev3devsim, as in the browser simulator, on_for_rotations ends early: no square closes.
     **{
         f"{name}, nbev3devsim": (name, ("--profile", "nbev3devsim"))
@@ -42,11 +42,15 @@ def checked(here: Command, *words: object) -> list[dict[str, Any]]:
 @pytest.mark.parametrize(("name", "words"), CASES.values(), ids=CASES)
 def test_example_meets_its_goals(name: str, words: tuple[object, ...], here: Command) -> None:
     assert here("run", EXAMPLES[name], *words).returncode == 0
-    assert [(goal["name"], goal["reason"]) for goal in checked(here, name) if goal["state"] != "met"] == []
+    assert [
+        (goal["name"], goal["reason"])
+        for goal in checked(here, name)
+        if (goal["state"] == "met") is (goal["points"] < 0)
+    ] == []
 
 
 def test_every_example_of_goals_is_complete() -> None:
-    assert len(EXAMPLES) >= 5
+    assert len(EXAMPLES) >= 10
     for name, path in EXAMPLES.items():
         file = load_goals(path)
         assert Path(file.program or "").name in {program.name for program in programs()}, name

@@ -13,7 +13,7 @@ from tuisim.config.mat_cache import FieldFiles, prepare
 from tuisim.config.mats import background
 from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError, TuisimError
-from tuisim.goals.judgement import GoalState, Judgement
+from tuisim.goals.judgement import Judgement
 from tuisim.protocol import End, Ended
 from tuisim.regular_file import of_the_machine
 from tuisim.runs.handle import RunHandle
@@ -109,7 +109,7 @@ def _judged(task: Task, run: StoredRun) -> tuple[Judgement, ...]:
 def _is_kept(task: Task, ended: Ended, judgements: Sequence[Judgement]) -> bool:
     if task.keep is Keep.FAILED:
         is_good = ended.end is End.FINISHED and not ended.exit_code
-        return not is_good or any(one.state is not GoalState.MET for one in judgements)
+        return not is_good or not all(one.is_good for one in judgements)
     return task.keep is Keep.ALL
 
 

@@ -57,7 +57,7 @@ def check(goals_path: str, words: Sequence[str], as_json: bool) -> int:
             tell(f"checking run {name}", number, len(names))
             run = store.load_run(name)
             found = judge(file.goals, run)
-            all_met = all_met and all(each.state is GoalState.MET for each in found)
+            all_met = all_met and all(each.is_good for each in found)
             for note in (*run.notes, *_differences(file, run)):
                 echo_error(f"note: {note}")
             if as_json:
@@ -136,7 +136,7 @@ def _plain(run: StoredRun, judgements: Sequence[Judgement]) -> dict[str, Any]:
 
 
 def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> None:
-    met = sum(each.state is GoalState.MET for each in judgements)
+    met = sum(each.is_good for each in judgements)
     most = most_points(each.goal for each in judgements)
     title = f" · {file.title}" if file.title else ""
     echo(
@@ -146,9 +146,15 @@ def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> N
     for each in judgements:
         goal = each.goal
         said = f": {goal.say}" if goal.say else ""
-        echo(f"  {_MARKS[each.state]} {goal.name} ({goal.points:g}){said}")
+        echo(f"  {_mark_of(each)} {goal.name} ({goal.points:g}){said}")
         for line in _details(each):
             echo(f"      {line}")
+
+
+def _mark_of(judgement: Judgement) -> str:
+    """Return the mark before a goal; one that takes points off is at its best if it is missed."""
+    is_penalty = judgement.goal.points < 0 and judgement.state is not GoalState.OPEN
+    return _MARKS[GoalState.MET if judgement.is_good else GoalState.MISSED] if is_penalty else _MARKS[judgement.state]
 
 
 def _details(judgement: Judgement) -> Iterator[str]:
@@ -207,7 +213,9 @@ def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, 
 def _earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
     """Return the points of a program, and which goals it meets."""
     met = [column.name for column, cell in zip(sheet.columns, row.cells, strict=True) if cell.met]
-    names = "all" if len(met) == len(sheet.columns) else ", ".join(met) or "-"
+    good = all((cell.met == row.runs) is (column.points >= 0)
+               for column, cell in zip(sheet.columns, row.cells, strict=True))  # fmt: skip
+    names = "all" if good and row.runs else ", ".join(met) or "-"
     return f"{in_words(row.points)} of {in_words(sheet.most_points)}", names
 
 

@@ -49,6 +49,11 @@ class Judgement:
         return self.changes[-1].state if self.changes else GoalState.OPEN
 
     @property
+    def is_good(self) -> bool:
+        """Whether it is met, or not met if it takes points off."""
+        return (self.state is GoalState.MET) is (self.goal.points >= 0)
+
+    @property
     def event(self) -> Change | None:
         """When and where it was met or missed, for whoever reads of it; None while it is open."""
         return self.happened or (self.changes[-1] if self.changes else None)

@@ -146,6 +146,8 @@ def _remedy(goal: Goal) -> str:
                 return "give it `after`, `x_mm` or `reading`, for what the robot must have done before"
             case AvoidCondition() | UseCondition():
                 return "give it a second condition, one that the robot must meet"
+    if goal.until is not None:
+        return "it holds without doing anything: join it by `all` with a goal that the robot must meet"
     if any(part.KIND is ConditionKind.HELD for part in goal.parts):
         return "a robot that stands still keeps to it: give it `until`, a goal that the robot must meet"
     return "give it `after`, a goal that the robot must have met"
