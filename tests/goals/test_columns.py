@@ -74,6 +74,18 @@ GOALS = {
     "none": ("none = ['never']", ""),
     "none, but one was met": ("none = ['never', 'there']", "“there” was met."),
 }
+GOALS |= {
+    "printed at a place": ("print = { lines = 'ok', x_mm = [[590, 610]], y_mm = [[490, 510]] }", ""),
+    "printed too low": (
+        "print = { lines = 'ok', x_mm = [[590, 610]], y_mm = [[600, 700]] }",
+        "the robot was at x = 600 mm and y = 500 mm; it must be at x from 590 to 610 mm and y from 600 to 700 mm.",
+    ),
+    "logged at a place": ("log = { name = 'Grey', levels = [12], y_mm = [[490, 510]] }", ""),
+    "logged too low": (
+        "log = { name = 'Grey', levels = [12], y_mm = [[600, 700]] }",
+        "the robot was at y = 500 mm; it must be at y from 600 to 700 mm.",
+    ),
+}
 OTHERS = """
 [[goal]]
 name = "there"

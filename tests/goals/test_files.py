@@ -211,6 +211,10 @@ BAD = {
         f"background = 'Loop'\n{GOOD}[[also]]\nwhere = 'x'\nbackground = 'Lop'",
         "line 8: also[1].background: no such mat",
     ),
+    "a place from above to below": (
+        goal("print = { lines = 'x', y_mm = [[5, 2]] }"),
+        "line 7: goal[2].print.y_mm[1]: must be from below to above, got 5 to 2",
+    ),
     "inputs that are none": (f"inputs = [5]\n{GOOD}", "line 1: inputs[1]: must be text, got 5"),
     "hidden by a word": (goal("finish = true", "hidden = 'yes'"), "line 8: goal[2].hidden: must be true or false"),
 }

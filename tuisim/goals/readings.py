@@ -11,7 +11,7 @@ from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.goals.found import Occurrence, share_words
 from tuisim.goals.places import line_of_motion
 from tuisim.goals.provenance import Provenance, provenance_of
-from tuisim.goals.spec import FollowCondition, Range, ReadCondition, Reading
+from tuisim.goals.spec import FollowCondition, Range, ReadCondition, Reading, place_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -30,9 +30,9 @@ _NOISE_SHARE = 0.1
 """The same for each percent of the light's noise."""
 
 
-def range_words(found: Range) -> str:
-    """Return a range for a sentence."""
-    return f"x from {found[0]:g} to {found[1]:g} mm"
+def range_words(place: Mapping[str, Range]) -> str:
+    """Return ranges of `place_of` for a sentence."""
+    return " and ".join(f"{key[0]} from {least:g} to {most:g} mm" for key, (least, most) in place.items())
 
 
 def read_ticks(reading: Reading, evidence: Evidence) -> Array:
@@ -57,11 +57,18 @@ def _reads(known: Provenance, evidence: Evidence) -> Array:
     return found
 
 
-def within_x(ticks: Array, found: Range, evidence: Evidence) -> Array:
-    """Return those of some ticks at which the robot was in a range."""
-    x_mm = evidence.records["x_mm"][ticks]
-    left: Array = ticks[(x_mm >= found[0]) & (x_mm <= found[1])]
-    return left
+def within(ticks: Array, place: Mapping[str, Range], evidence: Evidence) -> Array:
+    """Return those of some ticks at which the robot was in the ranges of `place_of`."""
+    for key, (least, most) in place.items():
+        values = evidence.records[key][ticks]
+        ticks = ticks[(values >= least) & (values <= most)]
+    return ticks
+
+
+def place_words(tick: int, place: Mapping[str, Range], evidence: Evidence) -> str:
+    """Return where the robot was at a tick along the axes of `place_of`, for a sentence."""
+    at = dict(zip(("x_mm", "y_mm"), evidence.place_mm(tick), strict=True))
+    return " and ".join(f"{key[0]} = {at[key]:.0f} mm" for key in place)
 
 
 def is_as_read(value: float, ticks: Array, evidence: Evidence) -> bool:
@@ -101,14 +108,13 @@ def find_read(condition: ReadCondition, evidence: Evidence, span: EvidenceSpan) 
     noun = NOUNS[condition.reading]
     every = read_ticks(condition.reading, evidence)
     ticks = every[(every >= span.first_tick) & (every < span.end_tick)]
-    for place in condition.x_mm:
-        ticks = within_x(ticks, place, evidence)
+    ticks = within(ticks, place := place_of(condition), evidence)
     if len(ticks) >= condition.times:
         tick = int(ticks[condition.times - 1])
         return Occurrence(EvidencePoint(tick), line=int(evidence.records["line"][tick]))
     if not len(every):
         return Occurrence(None, f"The program did not read the {noun}.")
-    where = f" at {range_words(condition.x_mm[0])}" if condition.x_mm else ""
+    where = f" at {range_words(place)}" if place else ""
     when = " in that time" if span.first_tick else ""
     times = counted(len(ticks), "time")
     text = f"The program read the {noun} {times}{where}{when}; {condition.times:,} are needed."

@@ -55,15 +55,23 @@ class Reading(StrEnum):
 
 
 Range = tuple[X, X]
-"""From where to where along x."""
+"""From where to where along x, or along y."""
 
 
-def _check_ranges(found: tuple[Range, ...], wanted: int) -> None:
-    for number, (left, right) in enumerate(found, start=1):
-        if left >= right:
-            raise ConfigError(f"must be from left to right, got {left:g} to {right:g}", key=f"x_mm[{number}]")
-    if len(found) not in (0, 1, wanted):
-        raise ConfigError(f"must have one entry, or {wanted}, has {len(found)}", key="x_mm")
+def _check_ranges(condition: PrintCondition | LogCondition | ReadCondition, wanted: int) -> None:
+    for key, way in (("x_mm", "left to right"), ("y_mm", "below to above")):
+        found: tuple[Range, ...] = getattr(condition, key)
+        for number, (least, most) in enumerate(found, start=1):
+            if least >= most:
+                raise ConfigError(f"must be from {way}, got {least:g} to {most:g}", key=f"{key}[{number}]")
+        if len(found) not in (0, 1, wanted):
+            raise ConfigError(f"must have one entry, or {wanted}, has {len(found)}", key=key)
+
+
+def place_of(condition: PrintCondition | LogCondition | ReadCondition, count: int = 0) -> dict[str, Range]:
+    """Return where the robot must be for one of the lines or levels: ranges by `x_mm` and `y_mm`, as far as given."""
+    found = {key: getattr(condition, key) for key in ("x_mm", "y_mm")}
+    return {key: ranges[count if len(ranges) > 1 else 0] for key, ranges in found.items() if ranges}
 
 
 @dataclass(frozen=True, slots=True)
@@ -214,6 +222,8 @@ class PrintCondition(Condition):
     in_order: bool = True
     x_mm: tuple[Range, ...] = ()
     """Where the robot must be when it prints them: one range for all lines, or one for each; empty for anywhere."""
+    y_mm: tuple[Range, ...] = ()
+    """The same along y."""
     reading: Reading | None = None
     """A kind of reading that must decide that, or what, each line says, and be taken since the line before it."""
     once: bool = False
@@ -223,7 +233,7 @@ class PrintCondition(Condition):
 
     def __post_init__(self) -> None:
         check_count(self.lines, "lines")
-        _check_ranges(self.x_mm, len(self.lines))
+        _check_ranges(self, len(self.lines))
         for number, pattern in enumerate(self.lines, start=1):
             require_regex(pattern, f"lines[{number}]")
 
@@ -238,6 +248,8 @@ class LogCondition(Condition):
     in_order: bool = True
     x_mm: tuple[Range, ...] = ()
     """Where the robot must be when the value is read, or printed: one range, or one for each level; empty: anywhere."""
+    y_mm: tuple[Range, ...] = ()
+    """The same along y."""
     reading: Reading | None = None
     """The kind of reading from which the value must be computed."""
     as_read: bool = False
@@ -253,7 +265,7 @@ class LogCondition(Condition):
         if self.as_read and self.reading is not Reading.COLOR:
             raise ConfigError("is only for readings of colour sensors", 'give reading = "color"', key="as_read")
         check_count(self.levels, "levels")
-        _check_ranges(self.x_mm, len(self.levels))
+        _check_ranges(self, len(self.levels))
         if not self.name.isidentifier():
             raise ConfigError(f"{self.name!r} cannot be the name of a sample", "such as Colour", key="name")
 
@@ -266,9 +278,11 @@ class ReadCondition(Condition):
     times: Annotated[int, Meta(ge=1, le=1_000_000)] = 1
     x_mm: tuple[Range, ...] = ()
     """Where the robot must be; empty for anywhere."""
+    y_mm: tuple[Range, ...] = ()
+    """The same along y."""
 
     def __post_init__(self) -> None:
-        _check_ranges(self.x_mm, 1)
+        _check_ranges(self, 1)
 
 
 @dataclass(frozen=True, slots=True)
