@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,11 +13,13 @@ from tuisim.analysis.pins import Pin
 from tuisim.analysis.report import report_of, section, table
 from tuisim.analysis.source import LogRequest, opening
 from tuisim.charts.files import write_whole
+from tuisim.data_class import dataclass
 from tuisim.errors import ExportError, LogError
 from tuisim.goals.condition import ConditionKind
 from tuisim.goals.judgement import Change
 from tuisim.goals.spec import Goal
 from tuisim.goals.trial_world import TrialWorld
+from tuisim.marks.class_map import Miss, MissesOfRun
 from tuisim.marks.feedback import file_stems
 from tuisim.marks.outcome import GoalOutcome, Outcome, portable
 from tuisim.marks.page import reports_folder
@@ -31,8 +33,22 @@ MOST_OUTPUT_BYTES = 4 << 20
 _HEADS = ("", "goal", "result", "why", "points")
 
 
-def write_reports(sheet: Sheet, worlds: Sequence[TrialWorld], page: Path) -> Iterator[tuple[tuple[str, str, int], str]]:
-    """Write the reports of kept runs; yield student, world and seed, and the path relative to the page.
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The report of a kept run."""
+
+    student: str
+    world: str
+    """See `TrialWorld.where`."""
+    seed: int
+    path: str
+    """Relative to the page."""
+    misses: MissesOfRun
+    """Where it missed goals; none if another run with the same record has said so."""
+
+
+def write_reports(sheet: Sheet, worlds: Sequence[TrialWorld], page: Path) -> Iterator[Report]:
+    """Write the reports of kept runs; yield each once it is written.
 
     Runs of a student that recorded the same have one report. Runs that were removed from the store are left out.
     Reports of an earlier page of this name are replaced.
@@ -52,17 +68,19 @@ def write_reports(sheet: Sheet, worlds: Sequence[TrialWorld], page: Path) -> Ite
             if run is None:
                 continue
             number, world = next((at, one) for at, one in enumerate(worlds) if one.where == outcome.world)
-            recorded = outcome.world, _digest(run)
+            recorded, misses = (outcome.world, _digest(run)), tuple[Miss, ...]()
             if recorded not in written:
                 name = f"{stem}{f'-world-{number + 1}' if number else ''}-seed-{outcome.seed}.html"
                 *_, opened = opening(LogRequest(runs=(run.id,)))
                 opened = replace(opened, runs=tuple(map(_portable, opened.runs)))
                 columns = [column for column in sheet.columns if column.name in world.goals]
-                shown, pins = _verdicts(columns, world.own_goals, outcome, run)
+                judged = _judged(world.own_goals, outcome, run)
+                shown, pins = _verdicts(columns, judged, outcome)
+                misses = _misses(row.name, columns, judged, outcome, run)
                 title = ", ".join(filter(None, (row.name, outcome.world, f"seed {outcome.seed}")))
                 _write(folder / name, report_of(opened, title=title, pins=pins, parts=[shown]))
                 written[recorded] = f"{folder.name}/{name}"
-            yield (row.name, outcome.world, outcome.seed), written[recorded]
+            yield Report(row.name, outcome.world, outcome.seed, written[recorded], MissesOfRun(run, misses))
 
 
 def _write(path: Path, content: str) -> None:
@@ -101,18 +119,29 @@ def _digest(run: StoredRun) -> str:
     return found.hexdigest()
 
 
-def _verdicts(
-    columns: Sequence[Goal], goals: Sequence[Goal], outcome: Outcome, run: StoredRun
-) -> tuple[str, list[Pin]]:
+def _misses(
+    student: str, columns: Sequence[Goal], judged: Mapping[str, Change], outcome: Outcome, run: StoredRun
+) -> tuple[Miss, ...]:
+    """Return where a run missed goals: those that were decided nowhere, at the robot's last place."""
+    last = run.telemetry.last()
+    missed = {one.name: one for one in outcome.goals if not one.is_good}
+    found = []
+    for column in columns:
+        place = judged.get(column.name) or last
+        if column.name in missed and place is not None:
+            found.append(Miss(student, column.name, place.x_mm, place.y_mm, missed[column.name].reason))
+    return tuple(found)
+
+
+def _verdicts(columns: Sequence[Goal], judged: Mapping[str, Change], outcome: Outcome) -> tuple[str, list[Pin]]:
     """Return the section with the goals of a run, and a pin for each goal that was decided at a place.
 
     Args:
         columns: The goals that are shown, in their order.
-        goals: All goals of the task.
+        judged: When and where goals were decided, as of `_judged`.
         outcome: What the run has achieved.
     """
     found = {one.name: one for one in outcome.goals}
-    judged = _judged(goals, outcome, run)
     rows, pins = [], []
     for number, column in enumerate(columns, start=1):
         goal = found.get(column.name, GoalOutcome(column.name, False, outcome.failure))
