@@ -30,6 +30,7 @@ _RANGE = re.compile(r"(\d{1,9})\.\.(\d{1,9})")
 _WHERE = ("background", *START)
 """Settings that the places in a goals file depend on."""
 TRIAL_SEEDS = "0..2"
+_RUNS = "Runs"
 _MARKS = {GoalState.MET: "✓", GoalState.MISSED: "✗", GoalState.OPEN: "·"}
 
 
@@ -172,12 +173,12 @@ def _details(judgement: Judgement) -> Iterator[str]:
 @command(
     argument("goals_path", "TASK", example_names),
     argument("wrong", "[PROGRAM…]", nargs=-1),
-    option("--seeds", default=TRIAL_SEEDS, metavar="SEEDS",
+    option("--seeds", default=TRIAL_SEEDS, metavar="SEEDS", group=_RUNS,
            help=f"Run each program with these seeds: 0..4, or 1,2,5 ({TRIAL_SEEDS})."),
-    timeout_option("", TIME_LIMIT_S),
-    jobs_option(group=""),
+    timeout_option(_RUNS, TIME_LIMIT_S),
+    jobs_option(group=_RUNS),
     name="try",
-    help="""Try a task out, for its author: what is earned without doing what it asks for?
+    help="""Say what a task gives to programs that do nothing for it, for its author.
 
     Runs an empty program, one that stands still and one that prints the answers, then the program that TASK names,
     its model, and the wrong examples: each PROGRAM, a file or a folder of them. Each is judged as `tuisim mark` does.
@@ -205,6 +206,8 @@ def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, 
     )
     for fault in trial.faults:
         echo_wrapped(f"{task.path.name}: {fault}")
+    if not task.program:
+        echo_error(f"note: {task.path.name} names no program, so that no model is tried")
     if not trial.faults:
         echo(f"{task.path.name}: all is well")
     return int(bool(trial.faults))
