@@ -159,6 +159,9 @@ def _mark_of(judgement: Judgement) -> str:
 
 
 def _details(judgement: Judgement) -> Iterator[str]:
+    if judgement.goal.points < 0 and judgement.state is GoalState.MISSED:
+        yield "did not happen"
+        return
     line = f", line {judgement.line}" if judgement.line else ""
     if (event := judgement.event) is not None:
         where = f"{event.state} at {event.time_s:.2f} s, x {event.x_mm:.0f} mm, y {event.y_mm:.0f} mm"

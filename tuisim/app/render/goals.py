@@ -25,6 +25,8 @@ _STATES = {
     GoalState.MET: ("✓", Style(color=palette.GREEN, bold=True)),
     GoalState.MISSED: ("✗", Style(color=palette.RED, bold=True)),
 }
+_PENALTY_WORDS = {GoalState.OPEN: "open", GoalState.MET: "lost", GoalState.MISSED: "kept"}
+"""What is said of a goal that takes points off."""
 _STATE_COLUMNS = 9
 """Columns of the sign and the word, such as `✗ missed `."""
 _TITLED_ROWS = 9
@@ -128,11 +130,15 @@ def _around(listed: list[tuple[Line, int]], chosen: int, most: int) -> list[tupl
 
 def _header(goal: Goal, state: GoalState, width: int) -> Iterator[Line]:
     """Yield sign, word, name and points; a long name goes on in further lines."""
-    sign, style = _STATES[state]
-    points = f" {goal.points if state is GoalState.MET else 0:g}/{goal.points:g}" if goal.points else ""
+    # What takes points off is at its best if it is missed.
+    good = {GoalState.MET: GoalState.MISSED, GoalState.MISSED: GoalState.MET} if goal.points < 0 else {}
+    sign, style = _STATES[good.get(state, state)]
+    of = f"/{goal.points:g}" if goal.points > 0 else ""
+    points = f" {goal.points if state is GoalState.MET else 0:g}{of}" if goal.points else ""
+    word = _PENALTY_WORDS[state] if goal.points < 0 else state
     room = max(1, width - _STATE_COLUMNS - len(points))
     first, *rest = textwrap.wrap(goal.name, room) or [""]
-    yield [(f"{sign} {state:<6} ", style), (first.ljust(room), _NAME), (points, style)]
+    yield [(f"{sign} {word:<6} ", style), (first.ljust(room), _NAME), (points, style)]
     for text in rest:
         yield [(" " * _STATE_COLUMNS + text, _NAME)]
 
@@ -147,6 +153,8 @@ def _detail(judgement: Judgement, state: GoalState, width: int) -> Iterator[Line
         case GoalState.MET:
             yield from _wrapped(f"met {_when(judgement)}{line}", width, _PALE)
             yield from _wrapped(goal.say, width, _PLAIN)
+        case GoalState.MISSED if goal.points < 0:
+            yield from _wrapped(f"It did not happen: {goal.say or goal.name}", width, _PLAIN)
         case GoalState.MISSED:
             yield from _wrapped(f"missed {_when(judgement)}{line}", width, _PALE)
             yield from _wrapped(judgement.reason, width, _PLAIN)
