@@ -124,7 +124,13 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
     "square, an error": (
         "square",
         {'    print("side"': '    print("side" + 1'},
-        {"corners": "after place 1", "closed": "At the end", "sides": "of the picture", "finish": "TypeError"},
+        {
+            "corners": "after place 1",
+            "closed": "“far corner” was not met.",
+            "sides": "of the picture",
+            "finish": "“far corner” was not met.",
+            "far corner": "came no nearer",
+        },
     ),
     "draw_house, no roof": (
         "draw_house",
