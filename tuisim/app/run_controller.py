@@ -16,7 +16,7 @@ from tuisim.config.program_settings import require_library
 from tuisim.core.end_stops import flags_at_start
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.spec import BUTTONS, NoiseSpec, RunSpec
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.data_class import dataclass
@@ -400,7 +400,7 @@ class RunController:
         if buttons == self.pressed:
             return
         self.pressed = buttons
-        self.send(protocol.SetButtons(tuple(name for name in protocol.BUTTONS if name in buttons)))
+        self.send(protocol.SetButtons(tuple(name for name in BUTTONS if name in buttons)))
 
     def set_noise(self, noise: NoiseSpec) -> None:
         """Change the noise, at once and for the next run."""

@@ -60,6 +60,9 @@ centre or from the upper left corner."""
 MOTOR_KINDS = ("large", "medium")
 """Kinds of motors, for `MotorSpec.kind` and the wheel motors."""
 
+BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
+"""The brick's buttons, by their names in the library."""
+
 REMOTE_BUTTONS = ("top_left", "bottom_left", "top_right", "bottom_right", "beacon")
 """Buttons of the remote control, by their names in ev3dev2."""
 
