@@ -38,8 +38,6 @@ _CHOICES = {
     Begin.LEARN: ("Learn", "Lessons, from the first run to a line follower"),
     Begin.OPEN: ("Open a file", "A program of your own, or one of the examples"),
 }
-_ACTIONS = ("open", "lesson-menu", "help", "quit")
-"""Actions of the app whose keys work here as well."""
 _KEY_WORDS = "Always: {open} opens a file, {lesson-menu} the lessons, {help} shows all keys, {quit} quits."
 _NAME_CELLS = 18
 _MOST_NUMBERED = 9
@@ -73,8 +71,9 @@ class Welcome(Dialog[Begin | Recent]):
 
     def on_mount(self) -> None:
         actions = self.app.ACTIONS if isinstance(self.app, ActionHost) else {}
-        for name in _ACTIONS if actions else ():
-            for key in actions[name].key.split(","):
+        # What is seen in the footer, and told above it, works.
+        for name, action in actions.items():
+            for key in action.key.split(",") if action.footer or f"{{{name}}}" in _KEY_WORDS else ():
                 bindings_of(self).bind(key, f"leave_for('{name}')", name, show=False)
         self.query_one(OptionList).focus()
         self.wait_for(self._find, self._add, lambda error: self.app.notify(str(error), markup=False))
