@@ -17,7 +17,7 @@ from textual.widgets import Input
 
 from tuisim.app.action import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings
 from tuisim.app.actions import ActionContext, time_travel
-from tuisim.app.actions.files import welcome
+from tuisim.app.actions.files import open_brought, welcome
 from tuisim.app.actions.keys import ACTIONS, PAGES, RUN_KEYS, TEXT_KEYS, footer_actions, working
 from tuisim.app.actions.lesson import reads_on, takes_pages
 from tuisim.app.background import enter, leave
@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from tuisim.app.panels.output import Output
     from tuisim.goals.files import GoalsFile
     from tuisim.lessons.spec import Lesson
+    from tuisim.terminal.app import ServerAsks
     from tuisim.terminal.pixels import Pixels
 
 AFTER_FIRST_PAINT_S = 0.05
@@ -545,6 +546,12 @@ class LabApp(PanelMessages):
     def on_output_answered(self, message: Output.Answered) -> None:
         self.run_controller.send(Answer(message.text))
         self.action_leave_field()
+
+    def on_server_asks(self, message: ServerAsks) -> None:
+        """Do what the page of a browser asks for."""
+        match message.asked:
+            case {"what": "open", "path": str(path)}:
+                open_brought(self.context, Path(path))
 
     def on_click(self, event: events.Click) -> None:
         in_a_dialog = self.screen is not self.panel_area.screen

@@ -17,7 +17,7 @@ from tuisim.errors import ConfigError
 if TYPE_CHECKING:
     from tuisim.web.gate import Gate
 
-DEFAULT_PORT, DEFAULT_VISITORS = 8000, 8
+DEFAULT_PORT, DEFAULT_VISITORS, DEFAULT_KEEP_MIN = 8000, 8, 60.0
 _GROUP = "Server"
 _BOOT = "import sys; sys.path.append(sys.argv.pop(1)); from tuisim.__main__ import main; sys.exit(main())"
 """Startup code of an app: the package comes last in the path, as in the child of a run."""
@@ -32,7 +32,12 @@ _SERVER = (
     option(
         "--max-visitors", default=DEFAULT_VISITORS, metavar="N", group=_GROUP,
         type=WordType(lambda text: parse(_VISITORS, text, "--max-visitors")),
-        help=f"Most browser tabs at the same time ({DEFAULT_VISITORS}); each has its own app.",
+        help=f"Most apps at the same time ({DEFAULT_VISITORS}), with those that no tab shows now.",
+    ),
+    option(
+        "--keep", default=DEFAULT_KEEP_MIN, metavar="MIN", group=_GROUP,
+        type=WordType(lambda text: parse(_MINUTES, text, "--keep")),
+        help=f"End an app that no tab has shown for so many minutes ({DEFAULT_KEEP_MIN:g}).",
     ),
     option(
         "--idle", default=None, metavar="MIN", group=_GROUP,
@@ -76,11 +81,12 @@ def serve(**given: Any) -> int:
     from tuisim.web.gate import Gate
 
     gate = Gate(arguments.host)
+    from tuisim.web.visit import VisitLimits
+
     idle_s = float("inf") if arguments.idle is None else 60 * arguments.idle
+    limits = server.ServerLimits(arguments.max_visitors, VisitLimits(idle_s, 60 * arguments.keep))
     command_of_app = [sys.executable, "-P", "-c", _BOOT, _PACKAGE_FOLDER, "open", *words_without(_SERVER)]
-    visitors = server.Server(
-        command_of_app, gate, server.ServerLimits(arguments.max_visitors, idle_s), echo_error_lines
-    )
+    visitors = server.Server(command_of_app, gate, limits, echo_error_lines)
     return server.serve(visitors, arguments.host, arguments.port, lambda port: _announce(gate, port))
 
 

@@ -39,6 +39,7 @@ from tuisim.terminal.queries import (
     TerminalFacts,
     cell_size_px,
 )
+from tuisim.terminal.server_asks import ServerAsks as ServerAsks
 from tuisim.terminal.textual_internals import SUPPORTED, Codes, CompositorUpdate, HookedApp, is_leaving, mend
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
