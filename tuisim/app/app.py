@@ -17,7 +17,7 @@ from textual.widgets import Input
 
 from tuisim.app.action import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings
 from tuisim.app.actions import ActionContext, time_travel
-from tuisim.app.actions.files import open_brought, welcome
+from tuisim.app.actions.files import welcome
 from tuisim.app.actions.keys import ACTIONS, PAGES, RUN_KEYS, TEXT_KEYS, footer_actions, working
 from tuisim.app.actions.lesson import reads_on, takes_pages
 from tuisim.app.background import enter, leave
@@ -30,6 +30,7 @@ from tuisim.app.goals import GoalsController
 from tuisim.app.keymap import check_theme, with_keys
 from tuisim.app.lesson import LessonController
 from tuisim.app.loader import PERIOD_S, Loader
+from tuisim.app.notebook_cells import do_asked
 from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages, looks_at_buttons
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
@@ -183,6 +184,11 @@ class LabApp(PanelMessages):
             found.append(error)
         return tuple(found)
 
+    def complain(self, error: TuisimError) -> None:
+        """Show an error, also in the cell of a notebook that has caused it."""
+        self.tell_server("problem", text=str(error))
+        super().complain(error)
+
     def _tell_config(self) -> None:
         """Tell what is wrong in `config.toml`, or what it decides about the run."""
         for error in self._config_problems[:MOST_PROBLEMS]:
@@ -223,6 +229,7 @@ class LabApp(PanelMessages):
         self.set_interval(_REST_GAP_S, self._seldom)
         self.set_interval(PERIOD_S, self.check_files)
         self.set_timer(_WARM_UP_AFTER_S, warm_up)
+        self.tell_server("ready")
 
     def check_files(self) -> None:
         """Reload the files that have changed on disk, or ask about those with unsaved edits."""
@@ -289,6 +296,7 @@ class LabApp(PanelMessages):
         except TuisimError as error:
             self.complain(error)
             return False
+        self.tell_server("run", id=self.run_controller.run_id)
         self._starting_until_s = time.monotonic() + _STARTING_S
         self._set_frame_gap(_START_GAP_S)
         self.set_timer(_WARM_UP_AFTER_S, self.run_controller.prepare_next)
@@ -401,6 +409,7 @@ class LabApp(PanelMessages):
             self.panel_area.output.ask(prompt)
 
     def _ended(self, ended: Ended, stood: str) -> None:
+        self.tell_server("ended", id=self.run_controller.run_id)
         self.panel_area.release_buttons()
         good = ended.end in GOOD_ENDS
         if not good:
@@ -549,9 +558,7 @@ class LabApp(PanelMessages):
 
     def on_server_asks(self, message: ServerAsks) -> None:
         """Do what the page of a browser asks for."""
-        match message.asked:
-            case {"what": "open", "path": str(path)}:
-                open_brought(self.context, Path(path))
+        do_asked(self.context, message.asked)
 
     def on_click(self, event: events.Click) -> None:
         in_a_dialog = self.screen is not self.panel_area.screen

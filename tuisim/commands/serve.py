@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import socket
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.commands.app import OPENED, read_opened
@@ -19,9 +18,6 @@ if TYPE_CHECKING:
 
 DEFAULT_PORT, DEFAULT_VISITORS, DEFAULT_KEEP_MIN = 8000, 8, 60.0
 _GROUP = "Server"
-_BOOT = "import sys; sys.path.append(sys.argv.pop(1)); from tuisim.__main__ import main; sys.exit(main())"
-"""Startup code of an app: the package comes last in the path, as in the child of a run."""
-_PACKAGE_FOLDER = str(Path(__file__).parent.parent.parent)
 _PORT, _VISITORS, _MINUTES = Whole(0, 65535), Whole(1, 1000), Number(0.001, 100_000)
 _SERVER = (
     option(
@@ -78,6 +74,7 @@ def serve(**given: Any) -> int:
     except ImportError as error:
         hint = "pip install -e '.[web]' in the clone of tuisim"
         raise ConfigError("needs textual-serve", hint, key="serve") from error
+    from tuisim.web.app_command import app_command
     from tuisim.web.gate import Gate
 
     gate = Gate(arguments.host)
@@ -85,8 +82,7 @@ def serve(**given: Any) -> int:
 
     idle_s = float("inf") if arguments.idle is None else 60 * arguments.idle
     limits = server.ServerLimits(arguments.max_visitors, VisitLimits(idle_s, 60 * arguments.keep))
-    command_of_app = [sys.executable, "-P", "-c", _BOOT, _PACKAGE_FOLDER, "open", *words_without(_SERVER)]
-    visitors = server.Server(command_of_app, gate, limits, echo_error_lines)
+    visitors = server.Server(app_command(words_without(_SERVER)), gate, limits, echo_error_lines)
     return server.serve(visitors, arguments.host, arguments.port, lambda port: _announce(gate, port))
 
 

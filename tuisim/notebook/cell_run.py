@@ -12,12 +12,13 @@ from contextlib import closing
 from functools import partial
 from itertools import groupby, islice
 from types import FrameType
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, counted
+from tuisim.notebook.app_run import AppRun
 from tuisim.notebook.display import Scene, Stage, start_record
 from tuisim.notebook.image_log import IMAGE_DATA, SENT_DATA, ArrayReader, ImageLog, asked_side
 from tuisim.notebook.old_formats import sent_text
@@ -29,6 +30,9 @@ from tuisim.runs.samples import Sample, samples_of
 from tuisim.runs.store import RunStore
 from tuisim.scene.pen import Piece, pen_trace
 from tuisim.source import Program
+
+if TYPE_CHECKING:
+    from tuisim.notebook.app_view import AppView
 
 POLL_S = 0.02
 """Interval at which printed lines appear in the cell."""
@@ -97,10 +101,13 @@ class CellRun:
     """Whether speech is not shown either."""
 
 
-def run_cell(cell: CellRun, stage: Stage, begun: Callable[[StoredRun, Wheels], None]) -> StoredRun:
+def run_cell(
+    cell: CellRun, stage: Stage, begun: Callable[[StoredRun, Wheels], None], view: AppView | None = None
+) -> StoredRun:
     """Run a program and show it; block until it ends or the kernel is interrupted.
 
-    `begun` is called with the run as soon as its recording exists, and again at its end.
+    `begun` is called with the run as soon as its recording exists, and again at its end. With a `view`, the app in a
+    cell starts the run, which it has been asked for.
 
     Raises:
         ConfigError: the responder has returned what a program cannot get; the run has been stopped.
@@ -110,7 +117,10 @@ def run_cell(cell: CellRun, stage: Stage, begun: Callable[[StoredRun, Wheels], N
     options = RunOptions(
         live=paced, speed=cell.speed, asks_user=True, time_waits=not paced, replies=cell.listener.answers
     )
-    with Interruption() as interruption, closing(start_run(cell.program, cell.spec, options, store)) as handle:
+    with (
+        Interruption() as interruption,
+        closing(AppRun(view) if view else start_run(cell.program, cell.spec, options, store)) as handle,
+    ):
         run = store.load_run(handle.run_id)
         begun(run, handle.wheels)
         screen = _Screen(cell, stage, run)
@@ -185,7 +195,7 @@ class Interruption:
 
 class _Follower:
     def __init__(
-        self, cell: CellRun, handle: RunHandle, screen: _Screen, interruption: Interruption, run: StoredRun
+        self, cell: CellRun, handle: RunHandle | AppRun, screen: _Screen, interruption: Interruption, run: StoredRun
     ) -> None:
         self._cell, self._handle, self._screen, self._interruption = cell, handle, screen, interruption
         self._run, self._arrays = run, ArrayReader(run)

@@ -237,6 +237,16 @@ class BufferedApp(HookedApp):
             run_in_foreground(command)
         return True
 
+    def tell_server(self, what: str, **details: object) -> None:
+        """Tell something to the server that shows the app in a browser, if one does."""
+        if not in_browser():
+            return
+        # Most apps run in a terminal.
+        from tuisim.terminal.browser_driver import BrowserDriver
+
+        if isinstance(self.own_driver, BrowserDriver):
+            self.own_driver.write_meta({"type": "tell", "what": what, **details})
+
     def suspending(self) -> None:
         """Called before the app stops, or gives its terminal away."""
 

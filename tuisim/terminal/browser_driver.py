@@ -49,20 +49,21 @@ class BrowserDriver(WebDriver):
             app_of(self).post_message(messages.ExitApp())
 
     def on_meta(self, packet_type: str, payload: dict[str, object]) -> None:
-        """Handle a message of the server; a change of focus waits for what the app itself has queued.
+        """Handle a message of the server.
 
-        Another terminal that shows the app gets everything that the first one got.
-
-        The base class queues the loss of the focus at the start, which would override an early report of the browser.
+        Another terminal that shows the app gets everything that the first one got. Size and focus wait for what the app
+        itself has queued: at the start it queues those of the beginning, which would override an early report.
         """
         match packet_type:
             case "focus" | "blur":
                 event = events.AppFocus() if packet_type == "focus" else events.AppBlur()
                 app_of(self).call_later(app_of(self).post_message, event)
+            case "resize":
+                app_of(self).call_later(super().on_meta, packet_type, payload)
             case "show":
-                super().on_meta("resize", payload)
+                self.on_meta("resize", payload)
                 self.write(_MODES)
-                app_of(self).post_message(self.SignalResume())
+                app_of(self).call_later(app_of(self).post_message, self.SignalResume())
             case "ask":
                 app_of(self).post_message(ServerAsks(payload))
             case _:

@@ -30,8 +30,12 @@ HEARTBEAT_S = 15.0
 CLOSE_WITHIN_S = 2.0
 """Time for a browser to confirm that its socket is closed."""
 _PAGE = Path(__file__).parent / "page"
-_FONTS = Path(__file__).parent.parent / "charts" / "fonts"
-_STATIC = Path(textual_serve.__file__).parent / "static"
+_FOLDERS = {
+    "static": Path(textual_serve.__file__).parent / "static",
+    "page": _PAGE,
+    "fonts": Path(__file__).parent.parent / "charts" / "fonts",
+}
+"""Folders of files that every visitor gets, by name."""
 _DEFAULT_SIZE = (80, 24)
 
 
@@ -58,7 +62,8 @@ class Server:
     def __init__(
         self, command: Sequence[str], gate: Gate, limits: ServerLimits, report: Callable[[str], None] = lambda _: None
     ) -> None:
-        self._command, self._gate, self._limits, self._report = command, gate, limits, report
+        self._command, self._limits, self._report = command, limits, report
+        self.gate = gate
         self._downloads = DownloadManager()
         self._visits: dict[str, Visit] = {}
         self._lives: set[asyncio.Task[None]] = set()
@@ -66,7 +71,8 @@ class Server:
     def application(self) -> web.Application:
         """Return the web application."""
         application = web.Application(middlewares=[self._guard()], client_max_size=MOST_FILE_BYTES)
-        top = f"/{self._gate.token}"
+        # The gate looks at the token, which may change.
+        top = "/{token}"
         application.add_routes(
             [
                 web.get(top, self._to_page),
@@ -76,12 +82,10 @@ class Server:
                 web.post(f"{top}/sessions/{{id}}/end", self._end),
                 web.post(f"{top}/sessions/{{id}}/file", self._bring),
                 web.get(f"{top}/download/{{key}}", self._download),
-                web.static(f"{top}/static", _STATIC),
-                web.static(f"{top}/page", _PAGE),
-                web.static(f"{top}/fonts", _FONTS),
+                web.get(f"{top}/{{folder:{'|'.join(_FOLDERS)}}}/{{name:.+}}", _file),
             ]
         )
-        application.on_response_prepare.append(_protect)
+        application.on_response_prepare.append(self._protect)
         application.on_shutdown.append(self._send_all_away)
         return application
 
@@ -90,7 +94,7 @@ class Server:
         async def guard(request: web.Request, handler: Handler) -> web.StreamResponse:
             # What does something is sent by a page of ours only.
             acts, origin = request.path.endswith("/ws") or request.method == "POST", request.headers.get("Origin")
-            if self._gate.admits(request.path, request.host, origin, from_a_page=acts):
+            if self.gate.admits(request.path, request.host, origin, from_a_page=acts):
                 return await handler(request)
             raise web.HTTPForbidden(text="Use the whole address that `tuisim serve` has printed.\n")
 
@@ -110,16 +114,16 @@ class Server:
         socket = web.WebSocketResponse(heartbeat=HEARTBEAT_S, timeout=CLOSE_WITHIN_S)
         await socket.prepare(request)
         asked, size = request.query.get("session"), _size(request)
-        visit = await self._begin(*size) if asked is None else self._visits.get(asked)
+        visit = await self.begin(*size) if asked is None else self._visits.get(asked)
         if visit is not None:
-            await visit.show(socket, *size)
+            await visit.show(socket, *size, is_new=asked is None)
         elif asked is None:
             await close(socket, self._full, WSCloseCode.TRY_AGAIN_LATER)
         else:
             await close(socket, "The session has ended.")
         return socket
 
-    async def _begin(self, width: int, height: int) -> Visit | None:
+    async def begin(self, width: int, height: int) -> Visit | None:
         """Start an app for a visitor; return None if all places are taken."""
         if len(self._visits) >= self._limits.visitors:
             return None
@@ -183,28 +187,39 @@ class Server:
         await response.write_eof()
         return response
 
+    async def _protect(self, request: web.Request, response: web.StreamResponse) -> None:
+        """Let the page load nothing from elsewhere, be part of other pages only as the gate says, and tell nobody its
+        address."""
+        sockets = f"ws://{request.host} wss://{request.host}" if request.host else ""
+        response.headers.update(
+            {
+                "Content-Security-Policy": "default-src 'self'; img-src 'self' data: blob:; "
+                f"style-src 'self' 'unsafe-inline'; connect-src 'self' {sockets}; "
+                f"form-action 'none'; base-uri 'none'; object-src 'none'; frame-ancestors {self.gate.framed_by}",
+                "Cross-Origin-Opener-Policy": "same-origin",
+                "Cross-Origin-Resource-Policy": "same-origin",
+                "Referrer-Policy": "no-referrer",
+                "X-Content-Type-Options": "nosniff",
+                "Cache-Control": "no-store",
+                "Server": "tuisim",
+            }
+        )
+
     async def _send_all_away(self, _: web.Application) -> None:
         for visit in self._visits.values():
             visit.end("The server has been ended.")
         await asyncio.gather(*self._lives)
 
 
-async def _protect(request: web.Request, response: web.StreamResponse) -> None:
-    """Let the page load nothing from elsewhere, be part of no other page, and keep its address to itself."""
-    socket = request.url.with_scheme("wss" if request.secure else "ws").origin() if request.host else ""
-    response.headers.update(
-        {
-            "Content-Security-Policy": "default-src 'self'; img-src 'self' data: blob:; "
-            f"style-src 'self' 'unsafe-inline'; connect-src 'self' {socket}; "
-            "form-action 'none'; base-uri 'none'; object-src 'none'; frame-ancestors 'none'",
-            "Cross-Origin-Opener-Policy": "same-origin",
-            "Cross-Origin-Resource-Policy": "same-origin",
-            "Referrer-Policy": "no-referrer",
-            "X-Content-Type-Options": "nosniff",
-            "Cache-Control": "no-store",
-            "Server": "tuisim",
-        }
-    )
+async def _file(request: web.Request) -> web.StreamResponse:
+    folder = _FOLDERS[request.match_info["folder"]].resolve()
+    try:
+        path = (folder / request.match_info["name"]).resolve(strict=True)
+    except (OSError, ValueError):
+        raise web.HTTPNotFound from None
+    if not path.is_relative_to(folder) or not path.is_file():
+        raise web.HTTPNotFound
+    return web.FileResponse(path)
 
 
 def _size(request: web.Request) -> tuple[int, int]:

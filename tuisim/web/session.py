@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import os
 import signal
 from asyncio.subprocess import PIPE, Process
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from typing import Any
 
 from textual_serve.app_service import AppService
 from textual_serve.download_manager import DownloadManager
@@ -45,6 +47,8 @@ class WebSession(AppService):
             download_manager=downloads,
         )
         self._words = command
+        self.told: Callable[[Mapping[str, Any]], None] = lambda _: None
+        """Called with what the app tells."""
         self.errors = ""
         """The last that the app has written to stderr, once it has ended."""
 
@@ -65,6 +69,14 @@ class WebSession(AppService):
         )
         self._process, self._stdin = process, process.stdin
         return process
+
+    async def on_meta(self, data: bytes) -> None:
+        """Handle a message of the app."""
+        said = json.loads(data)
+        if said.get("type") == "tell":
+            self.told(said)
+        else:
+            await super().on_meta(data)
 
     async def run(self) -> None:
         """Pass on what the app writes until it ends."""
@@ -95,6 +107,11 @@ class WebSession(AppService):
         # One that could not be started has no task.
         if self._task is not None:
             await asyncio.shield(self._task)
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether the app has ended."""
+        return self._task is not None and self._task.done()
 
     @property
     def has_failed(self) -> bool:

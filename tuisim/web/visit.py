@@ -6,7 +6,7 @@ import asyncio
 import json
 import re
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -78,8 +78,6 @@ class Visit:
         self._link, self._activity = Link(), Activity()
         self._session = WebSession(command, self._link, downloads)
         self._begun_s = time.monotonic()
-        self._has_been_shown = False
-        """Whether a browser has got what the app draws at its start."""
         self._left: asyncio.TimerHandle | None = None
         self._end: asyncio.Future[str] = asyncio.get_running_loop().create_future()
         """Gets the reason to end the visit."""
@@ -120,22 +118,22 @@ class Visit:
             self._is_watched()
             await self._session.stop()
 
-    async def show(self, socket: web.WebSocketResponse, width: int, height: int) -> None:
+    async def show(self, socket: web.WebSocketResponse, width: int, height: int, *, is_new: bool) -> None:
         """Show the app in a browser until that has gone; one that has shown it before is told.
 
         Args:
             socket: The connection to the browser.
             width: Columns of its terminal.
             height: Its rows.
+            is_new: Whether the app has just begun, so that the browser gets what it draws at its start.
         """
         self._is_watched()
         if self._end.done():
             await close(socket, self._end.result())
             return
         await self._link.take(socket, json.dumps(["session", self.id]), "Another tab has taken this session over.")
-        if self._has_been_shown:
+        if not is_new:
             await self._session.show(*_within(width, height))
-        self._has_been_shown = True
         try:
             async for message in socket:
                 if message.type is WSMsgType.TEXT:
@@ -149,7 +147,20 @@ class Visit:
     async def open_file(self, path: Path) -> None:
         """Let the app open a file that the visitor has brought."""
         self._activity.note()
-        await self._session.send_meta({"type": "ask", "what": "open", "path": str(path)})
+        await self.ask({"what": "open", "path": str(path)})
+
+    async def ask(self, asked: Mapping[str, Any]) -> None:
+        """Ask the app for something; see `ServerAsks`."""
+        await self._session.send_meta({"type": "ask", **asked})
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether the app has ended, or is about to."""
+        return self._end.done() or self._session.has_ended
+
+    def listen(self, told: Callable[[Mapping[str, Any]], None]) -> None:
+        """Call a function with what the app tells from now on: a start or an end of a run, a problem."""
+        self._session.told = told
 
     def end(self, reason: str) -> None:
         """End the visit and tell the visitor why."""

@@ -122,6 +122,14 @@ const session = (() => {
   };
 })();
 
+if (session.framed) {
+  // As large as the text around the frame.
+  document.addEventListener("DOMContentLoaded", () => (document.getElementById("terminal").dataset.fontSize = "13"));
+}
+
+// The cell of a notebook waits for this, in case the address does not lead here.
+if (session.framed) window.parent.postMessage("tuisim", "*");
+
 window.addEventListener("dragover", (event) => event.preventDefault());
 window.addEventListener("drop", (event) => {
   event.preventDefault();
