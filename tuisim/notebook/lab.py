@@ -355,7 +355,8 @@ class Lab:
 
     def _scene(self, plan: _CellPlan) -> tuple[Scene, str]:
         """Return the scene while nothing runs, and its status line."""
-        from tuisim.notebook.cell_run import end_text, shown_text
+        from tuisim.notebook.cell_output import shown_text
+        from tuisim.notebook.cell_run import end_text
         from tuisim.notebook.display import Scene, start_record
         from tuisim.runs.records import TEXT_STREAMS
         from tuisim.runs.samples import samples_of
