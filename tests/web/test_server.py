@@ -287,7 +287,7 @@ async def test_the_app_does_not_take_the_servers_terminal_for_its_own(
     monkeypatch.setenv("MINE", "kept")
     seen = tmp_path / "environment"
     socket = await (await visited(["sh", "-c", f"echo $TMUX $TERM $LC_ALL $LC_CTYPE $MINE > {seen}"])).socket()
-    await heard(socket)
+    await drawn(socket)
     assert seen.read_text() == "xterm-256color C.UTF-8 kept\n"
 
 

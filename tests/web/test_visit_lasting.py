@@ -77,7 +77,7 @@ async def test_a_session_is_ended_from_another_tab(visited: Visited) -> None:
     await gone(pid)
     late = await visitor.socket(f"?session={session}")
     # It may be listed for a moment.
-    assert await heard(late) in ("The session has ended.", "Another tab has ended this session.")
+    assert await drawn(late) in ("The session has ended.", "Another tab has ended this session.")
 
 
 STRANGERS: Mapping[str, Mapping[str, str]] = {

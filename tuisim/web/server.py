@@ -114,21 +114,31 @@ class Server:
         socket = web.WebSocketResponse(heartbeat=HEARTBEAT_S, timeout=CLOSE_WITHIN_S)
         await socket.prepare(request)
         asked, size = request.query.get("session"), _size(request)
-        visit = await self.begin(*size) if asked is None else self._visits.get(asked)
+        visit = await self.begin(*size, socket) if asked is None else self._visits.get(asked)
         if visit is not None:
-            await visit.show(socket, *size, is_new=asked is None)
+            if asked is not None:
+                await visit.take_over(socket, *size)
+            await visit.follow(socket)
         elif asked is None:
             await close(socket, self._full, WSCloseCode.TRY_AGAIN_LATER)
         else:
             await close(socket, "The session has ended.")
         return socket
 
-    async def begin(self, width: int, height: int) -> Visit | None:
-        """Start an app for a visitor; return None if all places are taken."""
+    async def begin(self, width: int, height: int, socket: web.WebSocketResponse | None = None) -> Visit | None:
+        """Start an app for a visitor; return None if all places are taken.
+
+        Args:
+            width: Columns of the visitor's terminal.
+            height: Its rows.
+            socket: The connection to the browser that shows it from its first frame; None for none yet.
+        """
         if len(self._visits) >= self._limits.visitors:
             return None
         visit = Visit(self._command, self._downloads, self._limits.visit, self._report)
         self._visits[visit.id] = visit
+        if socket is not None:
+            await visit.take(socket)
         has_begun = asyncio.Event()
 
         async def live() -> None:

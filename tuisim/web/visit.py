@@ -110,6 +110,8 @@ class Visit:
         try:
             await asyncio.wait({self._end, *waits}, return_when=asyncio.FIRST_COMPLETED)
             reason = next(wait.result() for wait in (self._end, *waits) if wait.done())
+            # For a browser that comes now.
+            self.end(reason)
             if self._link.socket is not None:
                 await close(self._link.socket, reason)
         finally:
@@ -118,22 +120,26 @@ class Visit:
             self._is_watched()
             await self._session.stop()
 
-    async def show(self, socket: web.WebSocketResponse, width: int, height: int, *, is_new: bool) -> None:
-        """Show the app in a browser until that has gone; one that has shown it before is told.
+    async def take(self, socket: web.WebSocketResponse) -> None:
+        """Let a browser show the app from now on, which has not begun yet or is asked to draw everything."""
+        self._is_watched()
+        await self._link.take(socket, json.dumps(["session", self.id]), "Another tab has taken this session over.")
+
+    async def take_over(self, socket: web.WebSocketResponse, width: int, height: int) -> None:
+        """Let another browser show the app from now on; the one before is told.
 
         Args:
             socket: The connection to the browser.
             width: Columns of its terminal.
             height: Its rows.
-            is_new: Whether the app has just begun, so that the browser gets what it draws at its start.
         """
-        self._is_watched()
+        await self.take(socket)
+        await self._session.show(*_within(width, height))
+
+    async def follow(self, socket: web.WebSocketResponse) -> None:
+        """Do what the visitor does in the browser that shows the app, until that has gone."""
         if self._end.done():
             await close(socket, self._end.result())
-            return
-        await self._link.take(socket, json.dumps(["session", self.id]), "Another tab has taken this session over.")
-        if not is_new:
-            await self._session.show(*_within(width, height))
         try:
             async for message in socket:
                 if message.type is WSMsgType.TEXT:
