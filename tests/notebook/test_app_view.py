@@ -87,7 +87,7 @@ def test_cells_run_their_programs_in_the_app_and_its_runs_are_in_the_log(cell: C
     data = cell("%sim_data").result
     assert (list(data["value"]), list(data["x_mm"])) == ([100.0], [100.0])
     # As the user does by a key.
-    view.ask("cell", settings={}, program=None, runs=True)
+    view.ask("cell", settings={}, program=None, home=False, runs=True)
     view.told.get(timeout=PATIENCE_S)
     while view.told.get(timeout=PATIENCE_S)["what"] != "ended":
         pass
@@ -97,9 +97,36 @@ def test_cells_run_their_programs_in_the_app_and_its_runs_are_in_the_log(cell: C
 
 
 @pytest.mark.slow
+def test_the_log_follows_a_run_that_the_user_has_started(cell: Cell, view: AppView) -> None:
+    endless = "print('Colour: 5')\nprint('image_data left')\nimport time\nwhile True:\n    time.sleep(1)\n"
+    cell(f"%%sim_magic -b Grey_bands -x 100\n{endless}")
+    view.ask("cell", settings={"background": "Grey_bands"}, program=None, home=True, runs=True)
+    while view.told.get(timeout=PATIENCE_S)["what"] != "run":
+        pass
+    while not len(cell("roboSim.images()").result):
+        pass
+    assert list(cell("%sim_data").result["value"]) == [5.0]
+    assert cell("roboSim.state").result["state"] == "running"
+    view.ask("stop")
+    while view.told.get(timeout=PATIENCE_S)["what"] != "ended":
+        pass
+    assert cell("roboSim.state").result["state"] == "stopped"
+    assert len(cell("roboSim.images()").result) == 1
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("view")
+def test_a_program_that_is_answered_runs_in_the_cell(cell: Cell) -> None:
+    cell("roboSim.responder = lambda text: text * 2")
+    shown = cell("%%sim_magic -RL\nfrom ev3dev2_glue import pyState\nprint('PY::a')\nprint(pyState())\n")
+    assert "{'messages': ['aa']}" in shown.out
+    assert shown.err == "tuisim: note: a program that is answered runs here; the app shows its run\n"
+
+
+@pytest.mark.slow
 def test_a_cell_says_why_the_app_does_not_run_its_program(cell: Cell, view: AppView) -> None:
     cell("%%sim_magic -b Grey_bands\nwhile True:\n    pass\n")
-    view.ask("cell", settings={"background": "Grey_bands"}, program=None, runs=True)
+    view.ask("cell", settings={"background": "Grey_bands"}, program=None, home=False, runs=True)
     while view.told.get(timeout=PATIENCE_S)["what"] != "run":
         pass
     assert "the app runs a program" in cell(RUN).err

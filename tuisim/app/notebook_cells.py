@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tuisim.app.actions import robot
 from tuisim.app.actions.files import open_brought
 from tuisim.config.program_file import ProgramSource
 from tuisim.errors import TuisimError
@@ -23,13 +24,14 @@ def do_asked(context: ActionContext, asked: Mapping[str, Any]) -> None:
     Args:
         context: What it is done with.
         asked: `what`, and its details: `open` a file by its `path`; take the `settings` and the `program` of a `cell`,
-            and run it if it `runs`; `stop` the program; show the stored `run` with an `id`.
+            put the robot back to its start if it goes `home`, and run the program if it `runs`; `stop` the program;
+            show the stored `run` with an `id`.
     """
     match asked:
         case {"what": "open", "path": str(path)}:
             open_brought(context, Path(path))
-        case {"what": "cell", "settings": dict(settings), "program": program, "runs": bool(runs)}:
-            _take_cell(context, settings, program, runs)
+        case {"what": "cell", "settings": dict(settings), "program": program, "home": bool(home), "runs": bool(runs)}:
+            _take_cell(context, settings, program, home=home, runs=runs)
         case {"what": "stop"}:
             context.runs.stop()
         case {"what": "run", "id": str(run_id)}:
@@ -37,7 +39,7 @@ def do_asked(context: ActionContext, asked: Mapping[str, Any]) -> None:
 
 
 def _take_cell(
-    context: ActionContext, settings: Mapping[str, Any], program: Mapping[str, Any] | None, runs: bool
+    context: ActionContext, settings: Mapping[str, Any], program: Mapping[str, Any] | None, *, home: bool, runs: bool
 ) -> None:
     if context.runs.in_run:
         context.app.tell_server("problem", text=BUSY)
@@ -49,5 +51,7 @@ def _take_cell(
     except TuisimError as error:
         context.app.complain(error)
         return
+    if home:
+        robot.home(context)
     if runs:
         context.app.start_run()

@@ -102,12 +102,13 @@ class AppView:
             raise HostError("the app in the cell has not started", "%sim_app starts it again")
         self._server.call(self._visit.ask({"what": what, **details}))
 
-    def take_cell(self, settings: Mapping[str, Any], program: Program | None, *, runs: bool) -> None:
+    def take_cell(self, settings: Mapping[str, Any], program: Program | None, *, home: bool, runs: bool) -> None:
         """Let the app have the world and the program of a cell.
 
         Args:
             settings: By path.
             program: None leaves the one that is open.
+            home: Whether it puts the robot back to its start.
             runs: Whether it also runs the program; `told` says whether it does.
 
         Raises:
@@ -117,7 +118,7 @@ class AppView:
             while True:
                 self.told.get_nowait()
         parts = program and {"name": program.name, "text": program.text, "prelude": program.prelude}
-        self.ask("cell", settings=dict(settings), program=parts, runs=runs)
+        self.ask("cell", settings=dict(settings), program=parts, home=home, runs=runs)
 
     def _take(self, told: Mapping[str, Any]) -> None:
         match told:

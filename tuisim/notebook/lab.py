@@ -69,6 +69,8 @@ class Lab:
         self._spec: RunSpec | None = None
         self._view: AppView | None = None
         """The app in a cell, once there is one."""
+        self._followed: list[str] = []
+        """The ids of runs in the app that had not ended when the log was last asked for."""
         self._traces: tuple[Piece, ...] = ()
         """Pen traces on the mat, until it is cleared or replaced."""
 
@@ -109,6 +111,7 @@ class Lab:
     def clear_datalog(self) -> None:
         """Discard the log; the runs stay in the store."""
         self._catch_up()
+        self._followed.clear()
         self._runs.clear()
         self._images.clear()
 
@@ -232,10 +235,12 @@ class Lab:
             if not listener.answers:
                 self._run_in_app(view, plan, words, runs)
                 return
-            print("tuisim: note: the app in the cell cannot answer a program: it runs here", file=sys.stderr)
+            print("tuisim: note: a program that is answered runs here; the app shows its run", file=sys.stderr)
         stage = Stage(plan.settings)
         if runs:
             self._run(plan, stage, words, listener)
+            if view is not None and self._last is not None:
+                view.ask("run", id=self._last.id)
         else:
             scene, status = self._scene(plan)
             stage.show(scene, f"nothing is running · {status}" if words.stop else status)
@@ -310,20 +315,29 @@ class Lab:
 
         said = settings_of(plan.persistent, words.settings).given
         program = plan.program
-        view.take_cell({path: value for path, value in said.items() if path != "autorun"}, program, runs=runs)
+        view.take_cell(
+            {path: value for path, value in said.items() if path != "autorun"}, program, home=words.move_back, runs=runs
+        )
         if runs:
             stage = Stage(plan.settings.changed({"panels_on": (), "panels_off": ("world", "controls")}))
             self._run(plan, stage, words, Listener(), view)
 
     def _catch_up(self) -> None:
-        """Take the runs that have begun in the app into the log."""
-        while self._view is not None and not self._view.begun.empty():
+        """Take the runs that have begun in the app into the log, as far as they are."""
+        if self._view is None:
+            return
+        while not self._view.begun.empty():
+            self._followed.append(self._view.begun.get())
+        if self._followed:
             from tuisim.runs.store import RunStore
 
-            run = RunStore().load_run(self._view.begun.get())
-            if all(known.id != run.id for known in self._runs):
-                self._images.begin(run)
-                self._last, self._runs[len(self._runs) :] = run, [run]
+            for run in map(RunStore().load_run, tuple(self._followed)):
+                known = [one.id for one in self._runs]
+                at = known.index(run.id) if run.id in known else len(known)
+                self._last, self._runs[at : at + 1] = run, [run]
+                self._images.incomplete(run)
+                if run.end is not None:
+                    self._followed.remove(run.id)
 
     def _run(
         self, plan: _CellPlan, stage: Stage, words: Arguments, listener: Listener, view: AppView | None = None
