@@ -161,6 +161,7 @@ class LessonController:
         self._goals.judges_always = True
         # What the last run has shown belongs to another lesson.
         self._run_controller.close()
+        self._run_controller.companion = None
         self._app.run_changed()
 
     def _enter(self, lesson: Lesson) -> None:

@@ -111,6 +111,8 @@ class RunController:
         self.timeline = Timeline()
         self.earlier: Recording | None = None
         """The run before, or one that was compared with the run in view: it is drawn beside it."""
+        self.companion: Recording | None = None
+        """Drawn beside every run in place of the run before, such as that of a model answer."""
         self.shows_earlier = True
         self.pressed: frozenset[str] = frozenset()
         """The brick's buttons that the user holds down."""
@@ -126,6 +128,8 @@ class RunController:
         """Called instead of a user action while a past instant is in view: the action is only possible in a branch."""
         self.paused_line: tuple[int, int] | None = None
         """Tick and line at which the program is paused: more exact than the record of that tick."""
+        self.printed_line: tuple[int, int] | None = None
+        """Tick and line of the sample that was clicked in the chart."""
 
     @property
     def spec(self) -> RunSpec:
@@ -237,8 +241,8 @@ class RunController:
         noise = recording.noise_at(record) if self._is_of_run else self.next_run.spec.world.noise
         # Before a run, the pen is where the next run will have it.
         down = bool(record.flags & FLAG_PEN_DOWN) if self._is_of_run else self.next_run.spec.robot.pen.down
-        tick, line = self.paused_line or (-1, 0)
-        instant, line = instant_of(record, self.spec, noise), line if tick == record.tick else record.line
+        exact = dict(known for known in (self.paused_line, self.printed_line) if known)
+        instant, line = instant_of(record, self.spec, noise), exact.get(record.tick, record.line)
         if self.in_run and not self.in_past:
             instant, down = self._pending.done_to(record, instant, down)
         return instant, line, down
@@ -338,19 +342,25 @@ class RunController:
         later = self.timeline.recording
         self.earlier = earlier if earlier and later and is_comparable(earlier, later) else None
 
+    def accompany(self, companion: Recording | None) -> None:
+        """Draw a run beside every run from now on; None for the run before again."""
+        self.companion = companion
+        self.shows_earlier = True
+        self.show_earlier(companion)
+
     def _show_run(self, run: RunHandle, answers: tuple[str, ...] = ()) -> None:
         """Show a run that has been started, beside the one before; arguments as of `Recording`."""
         before = self.timeline.recording
         self.close()
         self.run, self._end = run, None
         self._show_recording(Recording(run, answers))
-        self.show_earlier(before)
+        self.show_earlier(self.companion or before)
 
     def _show_recording(self, recording: Recording) -> None:
         # What is drawn of a frame is of one instant.
         recording.hold()
         self.timeline.switch_to(recording)
-        self.show_earlier(None)
+        self.show_earlier(self.companion)
         self._pending.forget()
         self.pressed = frozenset()
         self._moved = False

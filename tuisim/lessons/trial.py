@@ -13,8 +13,11 @@ from tuisim.config.program_settings import program_settings
 from tuisim.data_class import dataclass
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.lessons.spec import Lesson, LessonStep, OtherWorld, QuestionCheck, RunCheck, Way
-from tuisim.runs.handle import RunOptions
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.recorded_run import Recording
 from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
+from tuisim.runs.temporary import temporary_home
 from tuisim.source import source_lines
 
 TIME_LIMIT_S = 180.0
@@ -72,6 +75,28 @@ def tried_elsewhere(lesson: Lesson, check: RunCheck, run: StoredRun) -> list[tup
     text, seed = run.program.text, run.spec.seed
     tasks = [task_of(lesson, text, seed, index, other) for index, other in enumerate(check.also)]
     return [(check.also[result.index], result.judgements) for result in run_many(tasks, jobs=1)]
+
+
+def model_run(lesson: Lesson, step: LessonStep | None) -> Recording:
+    """Run the model answer of a step, or else of the lesson, in the lesson's world; blocks meanwhile. It is not stored.
+
+    Raises:
+        TuisimError: it cannot run.
+    """
+    text = (step.answer if step else "") or lesson.model_answer
+    task = task_of(lesson, text, build_run_spec(settings_of(lesson.settings)).seed)
+    with temporary_home() as home:
+        handle = start_run(task.program, task.spec, task.options, RunStore(home))
+        try:
+            handle.wait()
+            run = handle.stored()
+            # Its folder goes.
+            for view in (run.telemetry, run.output):
+                view.read_on()
+                view.holds = True
+            return Recording(run, name="the model answer")
+        finally:
+            handle.close()
 
 
 def faults(lesson: Lesson) -> list[str]:

@@ -36,12 +36,15 @@ class Recording:
     Args:
         source: A running run, or a stored one.
         answers: Scripted answers of a running run; for a stored run they are read from its options.
+        name: Display name; by default the number, or the id if it has none.
     """
 
-    def __init__(self, source: RunHandle | StoredRun, answers: tuple[str, ...] = ()) -> None:
+    def __init__(self, source: RunHandle | StoredRun, answers: tuple[str, ...] = (), name: str = "") -> None:
         self.run_id = source.id if isinstance(source, StoredRun) else source.run_id
         self.number: int = source.number
         """Number in the catalogue; 0 if it is not listed."""
+        self.name = name or (f"run {self.number}" if self.number else self.run_id)
+        """Display name."""
         self.spec: RunSpec = source.spec
         self.folder: Path = source.folder
         self.telemetry: TelemetryView = source.telemetry
@@ -54,11 +57,6 @@ class Recording:
         self._marks: _TimedMarks | None = None
         self.answers = tuple(source.options.get("answers", ())) if isinstance(source, StoredRun) else answers
         """Scripted answers to `input()`."""
-
-    @property
-    def name(self) -> str:
-        """Display name: the number, or the id if it has none."""
-        return f"run {self.number}" if self.number else self.run_id
 
     def hold(self) -> None:
         """Stay as written up to now, until the next `RunHandle.pump` of a running run."""
@@ -248,6 +246,14 @@ class RowIndex:
         elif first < len(self):
             rows = self._output.rows_from(self._starts[first])
             yield from (row for row, _ in islice(rows, len(self) - first))
+
+    def line_of(self, name: str, tick: int) -> int:
+        """Return the line that printed the last sample of a name in a tick, 0 if there is none."""
+        for row in map(self.row, reversed(range(self.until(tick - 1), self.until(tick)))):
+            sample = parse_sample(row.text) if row.stream in SAMPLE_STREAMS else None
+            if sample is not None and sample[0] == name:
+                return row.line
+        return 0
 
     def ticks_of_line(self, line: int) -> list[int]:
         """Return the ticks at which a line of the program printed."""
