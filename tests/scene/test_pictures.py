@@ -36,6 +36,7 @@ from tuisim.scene.pictures import (
     world_view,
 )
 from tuisim.scene.robot import COLORED
+from tuisim.scene.view import whole_field
 from tuisim.terminal.pixels import Pixels
 
 WHITE: Pixels = np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8)
@@ -105,7 +106,7 @@ def test_a_robot_on_the_edge_is_not_cut_off(robot: str) -> None:
 
 def test_the_way_of_a_run_is_drawn_small(run: Run) -> None:
     done = run("tank_drive.on_for_seconds(50, 50, 2)\n", background="Empty_Map", pose=(500.0, 500.0, 0.0))
-    picture = path_picture(done.run.stored(), 50, 26, (0, 0, 0))
+    picture = path_picture(done.run.stored(), whole_field(50, 26), (0, 0, 0))
     reddish = (picture[..., 0] > 200) & (picture[..., 1] < 150)
     rows, columns = np.nonzero(reddish)
     assert len({*rows}) <= 2

@@ -405,13 +405,13 @@ class Loader:
         Raises:
             TuisimError: a setting is wrong.
         """
-        if source is not None:
+        if source is None:
+            self._apply_changed(_differences(self._magic_settings, settings), self._run_controller.program)
+            self._apply_app_settings(self._magic_settings, settings)
+            self._magic_settings = settings
+        else:
             self._file_prelude = source.program.prelude
             self._apply_program(source)
-            return
-        self._apply_changed(_differences(self._magic_settings, settings), self._run_controller.program)
-        self._apply_app_settings(self._magic_settings, settings)
-        self._magic_settings = settings
 
     def open_new(self, text: str, name: str) -> None:
         """Open a new program without a file. Not during a run.

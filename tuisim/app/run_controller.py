@@ -16,7 +16,7 @@ from tuisim.config.program_settings import require_library
 from tuisim.core.end_stops import flags_at_start
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.spec import BUTTONS, NoiseSpec, RunSpec
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.data_class import dataclass
@@ -219,7 +219,9 @@ class RunController:
     def _at_rest(self, pose: Pose) -> Instant:
         spec = self.next_run.spec
         flags = flags_at_start(spec.robot)
-        return Instant(0, pose, gyro_zero_deg=pose.heading_deg, end_flags=flags, noise=spec.world.noise, seed=spec.seed)
+        noise, drift = spec.world.noise, spec.world.drift
+        zero_deg = pose.heading_deg
+        return Instant(0, pose, gyro_zero_deg=zero_deg, end_flags=flags, noise=noise, drift=drift, seed=spec.seed)
 
     @property
     def _is_of_run(self) -> bool:
@@ -398,7 +400,7 @@ class RunController:
         if buttons == self.pressed:
             return
         self.pressed = buttons
-        self.send(protocol.SetButtons(tuple(name for name in protocol.BUTTONS if name in buttons)))
+        self.send(protocol.SetButtons(tuple(name for name in BUTTONS if name in buttons)))
 
     def set_noise(self, noise: NoiseSpec) -> None:
         """Change the noise, at once and for the next run."""
@@ -449,7 +451,8 @@ class RunController:
         """
         self.timeline.go(None)
         self.next_run = plan
-        self._still = replace(self._still, noise=plan.spec.world.noise, seed=plan.spec.seed)
+        world = plan.spec.world
+        self._still = replace(self._still, noise=world.noise, drift=world.drift, seed=plan.spec.seed)
 
     def close(self) -> None:
         """Release the run; a child process that still runs is killed."""

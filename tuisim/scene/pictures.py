@@ -15,7 +15,7 @@ from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, PenSpec, RobotSpec
 from tuisim.scene.painter import FRAME_PX, ScenePainter, SceneState
 from tuisim.scene.pen import PenTrace, Piece, pen_trace
 from tuisim.scene.robot import drawn_reach_mm
-from tuisim.scene.view import Viewport, whole_field
+from tuisim.scene.view import Viewport
 from tuisim.terminal.pixels import Pixels
 
 if TYPE_CHECKING:
@@ -124,8 +124,8 @@ _PATH = PenSpec(color="red", width_mm=12.0)
 _MOST_PATH_POINTS = 2000
 
 
-def path_picture(run: StoredRun, width_px: int, height_px: int, outside_rgb: Rgb) -> Pixels:
-    """Return a small picture of the way of a run on its mat, shape (height_px, width_px, 3).
+def path_picture(run: StoredRun, port: Viewport, outside_rgb: Rgb) -> Pixels:
+    """Return a small picture of the way of a run on its mat, in the size of a view.
 
     Raises:
         LogError: the recording is damaged, or the mat no longer exists.
@@ -138,4 +138,4 @@ def path_picture(run: StoredRun, width_px: int, height_px: int, outside_rgb: Rgb
     trace = PenTrace()
     trace.add(Piece.of(some["x_mm"].astype(float), some["y_mm"].astype(float), _PATH))
     painter = ScenePainter(mat_pixels(mat_files(run)), outside_rgb, trace)
-    return painter.paint(whole_field(width_px, height_px), scene_of(run.spec, None))
+    return painter.paint(port, scene_of(run.spec, None))

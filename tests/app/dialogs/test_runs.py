@@ -83,7 +83,7 @@ async def test_a_run_is_searched_for_and_chosen() -> None:
         assert isinstance(app.screen, RunChooser)
         assert app.screen.query_one(OptionList).option_count == 1
         way = app.screen.query_one(PixelView)
-        await until(pilot, lambda: way._square is not None)
+        await until(pilot, lambda: way._strips != [])
         await pilot.press(*["backspace"] * 6, *"LOLLI", "enter")
         await until(pilot, lambda: app.run_controller.run_id == ids[1])
         await until(pilot, lambda: app.run_controller.mat is not None and app.run_controller.mat.name == "Lollipop")

@@ -20,11 +20,12 @@ from textual.widgets.option_list import Option
 from tuisim import palette
 from tuisim.app import background
 from tuisim.app.branch import BRANCH_TAG
-from tuisim.app.dialogs.chooser import ListDialog
+from tuisim.app.dialogs.chooser import ListDialog, field_view
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.snapshot import GOOD_ENDS, end_label
 from tuisim.runs.catalogue import RunInfo
 from tuisim.runs.store import RunStore
+from tuisim.scene.view import Viewport
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.pixels import Pixels, Rgb
 from tuisim.terminal.text_runs import cut
@@ -156,7 +157,7 @@ class RunChooser(ListDialog):
         if not view.size:
             self.call_after_refresh(self._look, event)
             return
-        work = partial(_way, self._looked_at, view.size.width, 2 * view.size.height, view.ground_rgb)
+        work = partial(_way, self._looked_at, field_view(view), view.ground_rgb)
         show = partial(self._show_way, self._looked_at)
         # The list says of each run how it ended, and opening it says what is wrong.
         background.run(self, work, show, lambda _: show(None), group="way", exclusive=True)
@@ -165,7 +166,10 @@ class RunChooser(ListDialog):
         if not self.is_attached or run_id != self._looked_at:
             return
         view = self.query_one(PixelView)
-        view.clear_picture() if picture is None else view.set_picture(picture)
+        if picture is None:
+            view.clear_picture()
+        else:
+            view.set_fine_picture(picture, view.graphics)
 
     @on(Input.Changed)
     def _search(self, event: Input.Changed) -> None:
@@ -181,10 +185,10 @@ class RunChooser(ListDialog):
             self.dismiss(options.get_option_at_index(options.highlighted).id)
 
 
-def _way(run_id: str, width_px: int, height_px: int, outside_rgb: Rgb) -> Pixels:
+def _way(run_id: str, port: Viewport, outside_rgb: Rgb) -> Pixels:
     from tuisim.scene.pictures import path_picture
 
-    return path_picture(RunStore().load_run(run_id), width_px, height_px, outside_rgb)
+    return path_picture(RunStore().load_run(run_id), port, outside_rgb)
 
 
 def _stored_runs() -> list[RunInfo]:
