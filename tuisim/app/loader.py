@@ -83,8 +83,7 @@ class Loader:
             if program and program.path:
                 self._note_program(*_parts(_read_program(program.path)))
         except TuisimError:
-            # It was read a moment ago and is invalid now: the next check reports that.
-            pass
+            pass  # It was read a moment ago and is invalid now: the next check reports that.
         self._follow()
 
     # The mat
