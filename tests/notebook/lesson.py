@@ -95,7 +95,7 @@ def stream(cell: NotebookNode, name: str = "stdout") -> str:
     """Return what a cell printed, with what of it is folded."""
     text = "".join(output.text for output in cell.outputs if output.output_type == "stream" and output.name == name)
     pages = [output.data.get("text/html", "") for output in cell.outputs if "data" in output]
-    folded = [html.unescape(part) for page in pages for part in re.findall('<pre style="margin: 0">([^<]*)', page)]
+    folded = [html.unescape(part) for page in pages for part in re.findall('<pre style="margin: 0[^>]*>([^<]*)', page)]
     return text + "".join(f"{part}\n" for part in folded) if name == "stdout" else text
 
 

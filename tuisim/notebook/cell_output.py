@@ -100,4 +100,6 @@ def folded(lines: Sequence[str], count: int) -> dict[str, str]:
 
 
 def _pre(lines: Sequence[str]) -> str:
-    return f'<pre style="margin: 0">{html.escape(chr(10).join(lines))}</pre>'
+    # As large as what JupyterLab shows of printed text.
+    style = "margin: 0; font-size: var(--jp-code-font-size, inherit)"
+    return f'<pre style="{style}">{html.escape(chr(10).join(lines))}</pre>'
