@@ -83,8 +83,7 @@ class Loader:
             if program and program.path:
                 self._note_program(*_parts(_read_program(program.path)))
         except TuisimError:
-            # It was read a moment ago and is invalid now: the next check reports that.
-            pass
+            pass  # It was read a moment ago and is invalid now: the next check reports that.
         self._follow()
 
     # The mat
@@ -394,6 +393,24 @@ class Loader:
         from tuisim.config.program_file import program_of_text
 
         self._apply_program(program_of_text(text, Path(path) if path else None, name))
+
+    def take_cell(self, source: ProgramSource | None, settings: Mapping[str, Any]) -> None:
+        """Take the world and the program of a notebook's cell; what it repeats stays as the user has set it since.
+
+        Args:
+            source: The program; None leaves the one that is open.
+            settings: By path. Not during a run.
+
+        Raises:
+            TuisimError: a setting is wrong.
+        """
+        if source is None:
+            self._apply_changed(_differences(self._magic_settings, settings), self._run_controller.program)
+            self._apply_app_settings(self._magic_settings, settings)
+            self._magic_settings = settings
+        else:
+            self._file_prelude = source.program.prelude
+            self._apply_program(source)
 
     def open_new(self, text: str, name: str) -> None:
         """Open a new program without a file. Not during a run.
