@@ -10,6 +10,7 @@ import pytest
 from textual.driver import Driver
 
 from tuisim.app.terminal_app import TerminalApp
+from tuisim.terminal import kitty
 from tuisim.terminal.browser_driver import BrowserDriver
 from tuisim.terminal.driver import TerminalDriver
 from tuisim.terminal.probe import WEB_DRIVER
@@ -65,3 +66,23 @@ def test_packets_of_two_threads_are_not_mixed(driver: BrowserDriver) -> None:
         seen = reader.read(2 * size)
     os.close(driver.fileno)
     assert seen in (b"a" * size + b"b" * size, b"b" * size + b"a" * size)
+
+
+CODES = {
+    "text": ("a [8m\x1b[1mé", "a [8m\x1b[1mé"),
+    "a command of kitty": (f"a{kitty.delete(7)}b", "a\x1b]7766;Ga=d,d=I,q=2,i=7\x1b\\b"),
+    "placeholders": (
+        f"\x1b[38;5;7m{kitty.placeholder(0, 1)}{kitty.placeholder(1, 1)}a",
+        f"\x1b[38;5;7m\x1b[8m{kitty.placeholder(0, 1)}{kitty.placeholder(1, 1)}\x1b[28ma",
+    ),
+}
+
+
+@pytest.mark.parametrize(("codes", "expected"), CODES.values(), ids=CODES)
+def test_the_page_gets_what_its_terminal_passes_on(
+    codes: str, expected: str, driver: BrowserDriver, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[bytes] = []
+    monkeypatch.setattr(driver, "_write", written.append, raising=False)
+    driver.write(codes)
+    assert [packet[5:].decode() for packet in written] == [expected]

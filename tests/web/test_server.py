@@ -158,6 +158,7 @@ async def test_a_wrong_request_leaves_no_trace_in_the_terminal(
 VISITS = {
     "the page": ("", "text/html"),
     "its script": ("page/page.js", "javascript"),
+    "what draws pictures": ("page/pictures.js", "javascript"),
     "its style": ("page/page.css", "text/css"),
     "the terminal": ("static/js/textual.js", "javascript"),
     "the terminal's style": ("static/css/xterm.css", "text/css"),

@@ -48,9 +48,10 @@ from tuisim.runs.child.process import warm_up
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.source import Program
-from tuisim.terminal.pacer import Pacer
+from tuisim.terminal.pacer import PAGE_QUEUED_S, Pacer
 from tuisim.terminal.picture_mode import PictureMode
 from tuisim.terminal.picture_options import AUTO
+from tuisim.terminal.probe import in_browser
 from tuisim.terminal.textual_internals import is_leaving
 
 if TYPE_CHECKING:
@@ -145,7 +146,7 @@ class LabApp(PanelMessages):
         self.run_controller = RunController(settings.program, first, settings.speed)
         self.panel_area = PanelArea(settings.panels_on, settings.panels_off)
         self.key_footer = KeyFooter()
-        self.pacer = Pacer(settings.fps)
+        self.pacer = Pacer(settings.fps, most_queued_s=PAGE_QUEUED_S if in_browser() else None)
         self.picture_mode.is_slow, self.picture_mode.is_idle = lambda: self.pacer.is_slow, lambda: self.pacer.is_idle
         self.voice = Voice(settings.quiet)
         self.feed = PanelFeed(self.panel_area, self.run_controller)

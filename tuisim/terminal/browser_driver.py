@@ -10,7 +10,9 @@ from textual import events, messages
 from textual.app import App
 from textual.drivers.web_driver import WebDriver
 
-from tuisim.terminal.textual_internals import app_of, write_with
+from tuisim.terminal import kitty
+from tuisim.terminal.queries import QUESTIONS, AnswerParser
+from tuisim.terminal.textual_internals import app_of, parse_page_input_with, write_with
 
 
 class BrowserDriver(WebDriver):
@@ -38,6 +40,15 @@ class BrowserDriver(WebDriver):
                     self._server_is_gone = True
         return len(data)
 
+    def start_application_mode(self) -> None:
+        """Take the page over, and ask what it can do."""
+        super().start_application_mode()
+        self.write(QUESTIONS)
+
+    def write(self, data: str) -> None:
+        """Write to the page's terminal."""
+        super().write(kitty.for_page(data))
+
     def run_input_thread(self) -> None:
         """Pass on input until the app ends, or end it because the server has ended."""
         super().run_input_thread()
@@ -54,3 +65,6 @@ class BrowserDriver(WebDriver):
             app_of(self).call_later(app_of(self).post_message, event)
         else:
             super().on_meta(packet_type, payload)
+
+
+parse_page_input_with(AnswerParser)
