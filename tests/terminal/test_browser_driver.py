@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 from concurrent.futures import ThreadPoolExecutor
 from threading import Lock
+from types import SimpleNamespace
 
 import pytest
 from textual.driver import Driver
 
 from tuisim.app.terminal_app import TerminalApp
 from tuisim.terminal import kitty
+from tuisim.terminal.app import ActionAsked
 from tuisim.terminal.browser_driver import BrowserDriver
 from tuisim.terminal.driver import TerminalDriver
 from tuisim.terminal.probe import WEB_DRIVER
@@ -86,3 +88,10 @@ def test_the_page_gets_what_its_terminal_passes_on(
     monkeypatch.setattr(driver, "_write", written.append, raising=False)
     driver.write(codes)
     assert [packet[5:].decode() for packet in written] == [expected]
+
+
+def test_a_button_of_the_page_asks_the_app(driver: BrowserDriver) -> None:
+    asked: list[object] = []
+    driver._app = SimpleNamespace(post_message=asked.append)  # type: ignore[assignment]
+    driver.on_meta("act", {"type": "act", "name": "run"})
+    assert [message.name for message in asked if isinstance(message, ActionAsked)] == ["run"]

@@ -11,6 +11,7 @@ from textual.app import App
 from textual.drivers.web_driver import WebDriver
 
 from tuisim.terminal import kitty
+from tuisim.terminal.app import ActionAsked
 from tuisim.terminal.queries import QUESTIONS, AnswerParser
 from tuisim.terminal.textual_internals import app_of, parse_page_input_with, write_with
 
@@ -63,6 +64,8 @@ class BrowserDriver(WebDriver):
         if packet_type in ("focus", "blur"):
             event = events.AppFocus() if packet_type == "focus" else events.AppBlur()
             app_of(self).call_later(app_of(self).post_message, event)
+        elif packet_type == "act":
+            app_of(self).post_message(ActionAsked(str(payload["name"])))
         else:
             super().on_meta(packet_type, payload)
 

@@ -114,6 +114,9 @@ class Visit:
                     await self._session.set_terminal_size(*_within(width, height))
                 case ["ping", str(sent)]:
                     await self._socket.send_json(["pong", sent])
+                case ["act", str(name)]:
+                    self._activity.note()
+                    await self._session.send_meta({"type": "act", "name": name})
                 case ["focus"]:
                     await self._session.focus()
                 case ["blur"]:

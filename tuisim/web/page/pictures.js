@@ -120,12 +120,4 @@ class Pictures {
   }
 }
 
-// textual.js keeps its terminal to itself: it is the first that is set under this name.
-Object.defineProperty(Object.prototype, "terminal", {
-  configurable: true,
-  set(terminal) {
-    delete Object.prototype.terminal;
-    this.terminal = terminal;
-    if (window.DecompressionStream) new Pictures(terminal);
-  },
-});
+if (window.DecompressionStream) terminalUsers.push((terminal) => new Pictures(terminal));
