@@ -8,7 +8,10 @@ from threading import Lock
 from types import SimpleNamespace
 
 import pytest
+from textual import events
 from textual.driver import Driver
+from textual.drivers.web_driver import WebDriver
+from textual.message import Message
 
 from tuisim.app.terminal_app import TerminalApp
 from tuisim.terminal import kitty
@@ -16,6 +19,7 @@ from tuisim.terminal.app import ActionAsked
 from tuisim.terminal.browser_driver import BrowserDriver
 from tuisim.terminal.driver import TerminalDriver
 from tuisim.terminal.probe import WEB_DRIVER
+from tuisim.terminal.queries import AnswerParser
 
 CHOSEN = {
     "a server": (WEB_DRIVER, BrowserDriver),
@@ -95,3 +99,16 @@ def test_a_button_of_the_page_asks_the_app(driver: BrowserDriver) -> None:
     driver._app = SimpleNamespace(post_message=asked.append)  # type: ignore[assignment]
     driver.on_meta("act", {"type": "act", "name": "run"})
     assert [message.name for message in asked if isinstance(message, ActionAsked)] == ["run"]
+
+
+def test_the_page_tells_where_the_mouse_is_between_two_cells(
+    driver: BrowserDriver, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: list[Message] = []
+    monkeypatch.setattr(WebDriver, "process_message", lambda _, message: seen.append(message))
+    for message in AnswerParser().feed("\x1b[48;40;100;800;1000t\x1b[<0;26;51M"):
+        driver.process_message(message)
+    assert [(type(one), one.pointer_x, one.pointer_y) for one in seen if isinstance(one, events.MouseEvent)] == [
+        (events.MouseDown, 2.5, 2.5)
+    ]
+    assert not [one for one in seen if isinstance(one, events.Resize)]

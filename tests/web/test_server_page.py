@@ -85,11 +85,11 @@ async def test_fingers_drag_the_robot_and_press_buttons(serve: Serve, tmp_path: 
             await page.finger("touchMove", (x + 15 * step, y + 3 * step))
         await page.finger("touchEnd")
         dragged = robot_at(await until_seen(page, lambda seen: is_whole(seen) and robot_at(seen)[0] > before[0] + 200))
-        assert dragged == pytest.approx((before[0] + 300, before[1] + 60), abs=30)
+        assert dragged == pytest.approx((before[0] + 300, before[1] + 60), abs=3)
         tapped = "document.querySelector('[data-act=run]').click()"
         await page.js(tapped)
         driven = robot_at(await until_seen(page, lambda seen: is_whole(seen) and robot_at(seen)[0] > dragged[0] + 20))
-        assert driven[1] == pytest.approx(dragged[1], abs=30)
+        assert driven[1] == pytest.approx(dragged[1], abs=3)
 
 
 NOTES_COLUMNS = """

@@ -9,6 +9,7 @@ from typing import Any
 from textual import events, messages
 from textual.app import App
 from textual.drivers.web_driver import WebDriver
+from textual.message import Message
 
 from tuisim.terminal import kitty
 from tuisim.terminal.app import ActionAsked
@@ -49,6 +50,12 @@ class BrowserDriver(WebDriver):
     def write(self, data: str) -> None:
         """Write to the page's terminal."""
         super().write(kitty.for_page(data))
+
+    def process_message(self, message: Message) -> None:
+        """Pass on what the page sends, but not a size in pixels, which is for the places of the mouse: the server tells
+        the size of the app."""
+        if not isinstance(message, events.Resize):
+            super().process_message(message)
 
     def run_input_thread(self) -> None:
         """Pass on input until the app ends, or end it because the server has ended."""

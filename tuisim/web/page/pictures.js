@@ -10,6 +10,9 @@ const NAME = "\x1bP>|tuisim 1\x1b\\";
 const DONE = "\x1b_Gi=31;OK\x1b\\";
 const ATTRIBUTES = "\x1b[?1;2c";
 
+// The app numbers the images of each picture on their own.
+const pictureOf = (number) => (number - 1) >> 16;
+
 class Pictures {
   constructor(terminal) {
     this.terminal = terminal;
@@ -21,7 +24,7 @@ class Pictures {
     terminal.options.windowOptions = { getCellSizePixels: true };
     const parser = terminal.parser;
     parser.registerCsiHandler({ prefix: ">", final: "q" }, () => this.answer(NAME));
-    parser.registerCsiHandler({ final: "t" }, ([what]) => what === 16 && this.answer((this.told = this.size())));
+    parser.registerCsiHandler({ final: "t" }, ([what]) => what === 16 && this.tell());
     parser.registerOscHandler(COMMAND, (command) => this.take(command));
     terminal.onRender(({ start, end }) => this.draw(start, end));
   }
@@ -38,9 +41,19 @@ class Pictures {
     return [Math.round((width * devicePixelRatio) / cols), Math.round((height * devicePixelRatio) / rows)];
   }
 
+  // The size of a cell, and that of the terminal in cells and pixels of the mouse, which are those of the style sheet.
   size() {
     const [width, height] = this.cell();
-    return `\x1b[6;${height};${width}t`;
+    const { cols, rows, element } = this.terminal;
+    const area = element.querySelector(".xterm-screen").getBoundingClientRect();
+    return `\x1b[6;${height};${width}t\x1b[48;${rows};${cols};${Math.round(area.height)};${Math.round(area.width)}t`;
+  }
+
+  // Tells the sizes, and from now on the place of the mouse in pixels.
+  tell(more = "") {
+    this.told = this.size();
+    this.terminal.write("\x1b[?1016h");
+    return this.answer(this.told + more);
   }
 
   take(command) {
@@ -85,11 +98,11 @@ class Pictures {
       terminal.element.querySelector(".xterm-screen").append(canvas);
       [canvas.width, canvas.height] = [across, down];
       [canvas.style.width, canvas.style.height] = [`${across / devicePixelRatio}px`, `${down / devicePixelRatio}px`];
-      this.drawn = new Set();
+      this.drawn = new Map();
       [start, end] = [0, terminal.rows - 1];
     }
     // The app asks when the terminal has another size, but it is not told of other cells.
-    if (this.told && this.told !== this.size()) this.answer((this.told = this.size()) + ATTRIBUTES);
+    if (this.told && this.told !== this.size()) this.tell(ATTRIBUTES);
     for (let row = start; row <= end; row++) this.drawRow(row);
   }
 
@@ -99,23 +112,30 @@ class Pictures {
     const buffer = terminal.buffer.active;
     const line = buffer.getLine(buffer.viewportY + row);
     const [width, height] = [canvas.width / terminal.cols, canvas.height / terminal.rows];
+    const clear = (col) => {
+      if (drawn.delete(row * terminal.cols + col)) context.clearRect(col * width, row * height, width, height);
+    };
     let cell;
     for (let col = 0; line && col < terminal.cols; col++) {
       cell = line.getCell(col, cell);
       const text = cell.getChars();
       const place = row * terminal.cols + col;
       if (!text.startsWith(PLACEHOLDER)) {
-        if (drawn.delete(place)) context.clearRect(col * width, row * height, width, height);
+        clear(col);
         continue;
       }
-      const image = this.images.get(cell.getFgColor());
-      // What was there before stays until the image has arrived.
+      const number = cell.getFgColor();
+      const image = this.images.get(number);
       image?.awaitedIn.add(row);
-      if (!image?.bitmap) continue;
+      if (!image?.bitmap) {
+        // What was there before stays until the image has arrived, but not of another picture.
+        if (drawn.get(place) !== pictureOf(number)) clear(col);
+        continue;
+      }
       const [down, across] = [...text].slice(1).map((mark) => DIACRITICS.indexOf(mark));
       const [w, h] = [image.bitmap.width / image.cols, image.bitmap.height / image.rows];
       context.drawImage(image.bitmap, across * w, down * h, w, h, col * width, row * height, width, height);
-      drawn.add(place);
+      drawn.set(place, pictureOf(number));
     }
   }
 }
