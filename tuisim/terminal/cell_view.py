@@ -111,8 +111,7 @@ class PixelView(RowsView):
     def cell_for(self, graphics: Graphics | None) -> CellPoints:
         """Return the points of an image in a cell; `graphics` is None for the app's glyphs."""
         if graphics is not None:
-            width_px, height_px = graphics.cell_px
-            return CellPoints(*graphics.cell_points, height_px / width_px)
+            return graphics.cell
         glyphs = glyph_set(self.cell_set)
         return CellPoints(glyphs.cols, glyphs.rows)
 
