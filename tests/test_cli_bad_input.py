@@ -37,6 +37,11 @@ BAD = {
     "pen colour": ("run prog.py -P reed", "-P: no such colour 'reed' (did you mean red"),
     "unknown option": ("run prog.py --zigzag", "no such option: --zigzag (see `tuisim run --help`)"),
     "misspelt option": ("run prog.py --exprot x.csv", "no such option: --exprot (did you mean --export"),
+    "another word for an option": (
+        "run prog.py --time-limit 3",
+        "no such option: --time-limit (did you mean --timeout?)",
+    ),
+    "another word for a file": ("runs picture last --save a.png", "no such option: --save (did you mean --out?)"),
     "misspelt end of an option": ("run prog.py --nosie", "no such option: --nosie (did you mean --sensornoise"),
     "misspelt shared option": ("prog.py --backgroud Loop", "no such option: --backgroud (did you mean --background"),
     "misspelt option of an action": ("runs show 1 --jsno", "no such option: --jsno (did you mean --json?)"),

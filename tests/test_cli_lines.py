@@ -16,9 +16,9 @@ import pytest
 from tuisim import __version__
 from tuisim.cli import run_command
 from tuisim.commands.runs import compact, export, list_runs, rerun_runs, rm, show
+from tuisim.config.magic_line import parse_line
 from tuisim.config.options import Settings
 from tuisim.errors import ConfigError
-from tuisim.notebook.magic_line import parse_line
 from tuisim.runs.store import RunStore
 
 TABLE = Path(__file__).with_name("cli_lines.jsonl")

@@ -9,7 +9,6 @@ import errno
 import os
 import sys
 from collections.abc import Mapping, Sequence
-from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
 from typing import cast
@@ -20,7 +19,17 @@ from click.shell_completion import get_completion_class, shell_complete
 from tuisim import __version__
 from tuisim.config.command_line import Group, command
 from tuisim.data_class import dataclass
-from tuisim.errors import EXIT_BROKEN_PIPE, EXIT_INTERRUPTED, ConfigError, HostError, TuisimError, printable, shortened
+from tuisim.errors import (
+    EXIT_BROKEN_PIPE,
+    EXIT_INTERRUPTED,
+    ConfigError,
+    HostError,
+    TuisimError,
+    closest,
+    did_you_mean,
+    printable,
+    shortened,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,13 +81,13 @@ EXIT_OUR_MISTAKE = 70
 
 def _check_command(word: str) -> None:
     """Raise ConfigError if a word looks like a misspelt command and is not a program."""
-    close = get_close_matches(word, COMMANDS, 1)
+    close = closest(word, COMMANDS, 1)
     if not close or "." in word:
         return
     from tuisim.config.program_file import find_program
 
     if not os.path.exists(find_program(word)):
-        raise ConfigError(f"{word}: no such command or program", f"did you mean `tuisim {close[0]}`?")
+        raise ConfigError(f"{word}: no such command or program", did_you_mean([f"`tuisim {close[0]}`"]))
 
 
 def _check_open_files() -> None:

@@ -48,22 +48,29 @@ def counted(count: int, one: str, many: str = "") -> str:
     return f"{count:,} {one if count == 1 else many or one + 's'}"
 
 
-def nearest(name: str, allowed: Iterable[str]) -> str:
-    """Return the hint for an unknown name: the closest matches, else all names."""
+def closest(name: str, known: Iterable[str], most: int = 3, likeness: float = 0.6) -> list[str]:
+    """Return the known names that are most like a name, the best first; case does not matter.
+
+    Args:
+        most: How many names, at most.
+        likeness: The least likeness, from 0 to 1.
+    """
     from difflib import get_close_matches
 
+    by_lower = {one.lower(): one for one in known}
+    return [by_lower[lower] for lower in get_close_matches(name.lower(), by_lower, most, likeness)]
+
+
+def nearest(name: str, allowed: Iterable[str]) -> str:
+    """Return the hint for an unknown name: the closest matches, else all names."""
     names = list(allowed)
-    by_lower = {known.lower(): known for known in names}
-    close = [by_lower[lower] for lower in get_close_matches(name.lower(), by_lower, 3, 0.5)]
-    return did_you_mean(close) or f"one of {', '.join(names)}"
+    return did_you_mean(closest(name, names, 3, 0.5)) or f"one of {', '.join(names)}"
 
 
 def among(name: str, allowed: Iterable[str], unlisted: Iterable[str] = ()) -> str:
     """Return the hint for an unknown name in data: all names, after the closest one, which may be an unlisted one."""
-    from difflib import get_close_matches
-
     names = list(allowed)
-    close = get_close_matches(name, [*names, *unlisted], 1)
+    close = closest(name, [*names, *unlisted], 1)
     return f"{did_you_mean(list(map(repr, close)))} there are {listed(names)}".lstrip()
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from tests.batch.test_pool import LOGS, task
 from tests.running import over
+from tuisim.batch import execute as execute_module
 from tuisim.batch.execute import _prepared, execute
 from tuisim.batch.task import Keep
 from tuisim.errors import LogError
@@ -65,6 +66,19 @@ def test_failed_runs_are_kept(text: str, kept: bool, tmp_path: Path) -> None:
     result = execute(task(text, goals=goals, keep=Keep.FAILED), tmp_path)
     assert bool(result.run_id) is kept
     assert (result.judgements[0].state is GoalState.MET) is not kept
+
+
+def test_a_failed_run_that_printed_much_is_not_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert execute_module.MOST_OUTPUT_BYTES == 16 << 20
+    monkeypatch.setattr(execute_module, "MOST_OUTPUT_BYTES", 100)
+    for keep, kept in ((Keep.FAILED, False), (Keep.ALL, True)):
+        assert bool(execute(task("print('x' * 100)\n1 / 0", keep=keep), tmp_path).run_id) is kept
+
+
+def test_a_kept_run_of_some_size_is_packed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(execute_module, "PACKED_FROM_BYTES", 100)
+    kept = RunStore().load_run(execute(task(LOGS, 5, keep=Keep.ALL), tmp_path).run_id)
+    assert not (kept.folder / "telemetry.bin").exists() and len(kept.telemetry.array()) > 100
 
 
 OWN_FILES = """

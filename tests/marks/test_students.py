@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -47,6 +48,8 @@ CASES = {
     "not the one in the goals": (("ada/main.py",), "follow.py", "main.py", ""),
     "which one": (("ada/a.py", "ada/b.py"), "", "", "which of a.py, b.py is the main program? (main.py)"),
     "none": (("ada/notes.txt",), "", "", "there is no Python file (main.py)"),
+    "an archive": (("ada/robot.ZIP",), "", "", "robot.ZIP: it is an archive; unpack it (main.py)"),
+    "text": (("ada/main.py.txt",), "", "", "main.py.txt: its name ends in .txt; rename it to end in .py (main.py)"),
 }
 
 
@@ -56,6 +59,36 @@ def test_main_program_of_a_folder(
 ) -> None:
     (found,) = find_students([str(_folder(tmp_path, *files))], program).students
     assert (found.name, found.main, found.problem) == ("ada", main, problem)
+
+
+def test_archives_and_texts_among_the_files_are_students_without_points(tmp_path: Path) -> None:
+    found = find_students([str(_folder(tmp_path, "ada.zip", "ben.py.txt", "cleo.tar.gz", "dora.py", "list.txt"))])
+    assert [(one.name, one.problem.partition(":")[0]) for one in found.students] == [
+        ("ada", "ada.zip"), ("ben", "ben.py.txt"), ("cleo", "cleo.tar.gz"), ("dora", ""),
+    ]  # fmt: skip
+    assert found.ignored == ("list.txt",)
+
+
+def _notebook(path: Path, *cells: str) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps({"cells": [{"cell_type": "code", "source": cell} for cell in cells]}))
+    return path
+
+
+def test_a_notebook_is_a_program(tmp_path: Path) -> None:
+    cell = "%%sim_magic_preloaded -b Loop\nimport helper\nprint(helper.x)\n"
+    _notebook(tmp_path / "class" / "ada" / "robot.ipynb", "1 + 1", cell)
+    (tmp_path / "class" / "ada" / "helper.py").write_text("x = 3\n")
+    _notebook(tmp_path / "class" / "ben.ipynb", cell, cell.replace("3", "4"))
+    ada, ben = find_students([str(tmp_path / "class")]).students
+    assert ada.problem == "which of helper.py, robot.ipynb is the main program? (main.py)"
+    hint = '(in the goals file: program = "ben.ipynb#2")'
+    assert ben.problem == f"ben.ipynb: which of its 2 program cells is the program? {hint}"
+    _, chosen = find_students([str(tmp_path / "class")], "ben.ipynb#2").students
+    assert chosen.source is not None and chosen.source.program.name == "ben.ipynb#2"
+    folder = copy_of(chosen, tmp_path / "copy")
+    program = program_in(chosen, folder)
+    assert (program.path, program.module_folder) == ("", str(folder))
 
 
 def test_a_folder_with_a_main_program_and_a_file_are_students_themselves(tmp_path: Path) -> None:

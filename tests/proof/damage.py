@@ -26,6 +26,7 @@ from tuisim.app.panels import TerminalSize
 from tuisim.batch.batch_file import load_batch
 from tuisim.config.build import build_run_spec
 from tuisim.config.folders import home_folder
+from tuisim.config.notebook_file import notebook_programs
 from tuisim.config.options import Settings, settings_of
 from tuisim.config.preferences import preference, preferences_file
 from tuisim.config.profiles import profile_lines
@@ -39,7 +40,6 @@ from tuisim.lessons.catalogue import shipped_paths
 from tuisim.lessons.files import load_lesson
 from tuisim.lessons.progress import load_progress
 from tuisim.marks.journal import Journal
-from tuisim.notebook.cells import notebook_programs
 from tuisim.runs.side_files import (
     ACTIONS_FILE,
     MODULES_FILE,

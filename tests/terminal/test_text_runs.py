@@ -1,11 +1,12 @@
-"""Texts and lines that are too long say so."""
+"""Texts and lines that are too long say so, and brackets in them are no markup."""
 
 from __future__ import annotations
 
 import pytest
 from rich.style import Style
+from textual.content import Content
 
-from tuisim.terminal.text_runs import cut, cut_line
+from tuisim.terminal.text_runs import as_markup, cut, cut_line
 
 PLAIN, BOLD = Style(), Style(bold=True)
 
@@ -32,3 +33,8 @@ def test_a_text_is_cut(text: str, width: int, shown: str) -> None:
 def test_a_line_is_cut(texts: list[str], shown: list[str]) -> None:
     line = [(text, BOLD if at else PLAIN) for at, text in enumerate(texts)]
     assert [text for text, _ in cut_line(line, 6)] == shown
+
+
+@pytest.mark.parametrize("text", ["a[b]", "[bold]x[/]", "[ ]", "\\[a]", "[@click=app.quit]", '["=[(\\', "@=\\", "[/a"])
+def test_markup_shows_the_text(text: str) -> None:
+    assert Content.from_markup(as_markup(text)).plain == text

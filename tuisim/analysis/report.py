@@ -149,7 +149,7 @@ def _world(run: StoredRun, pins: Sequence[Pin], *, many: bool) -> str:
     text = clean(f"{said}the mat {mat} and the robot at its end pose; its path in orange, from the ring")
     text += "; numbers: where goals were met (✓) or missed (✗)" if pins else ""
     size = f'width="{picture.width}" height="{picture.height}"'
-    image = f'<img src="{_as_source(picture)}" {size} alt="{text}">'
+    image = f'<img src="{picture_source(picture)}" {size} alt="{text}">'
     shown = f'<div class="map">{image}{svg_of_pins(pins, run.spec.robot)}</div>' if pins else image
     return f"<figure>{shown}<figcaption>{text}</figcaption></figure>"
 
@@ -178,7 +178,8 @@ def _way_picture(run: StoredRun) -> Image:
     return picture
 
 
-def _as_source(picture: Image) -> str:
+def picture_source(picture: Image) -> str:
+    """Return a picture as the `src` of an `img`."""
     content = io.BytesIO()
     picture.save(content, "png", optimize=True)
     return _data("png", content.getvalue())

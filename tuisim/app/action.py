@@ -21,6 +21,7 @@ from textual.widget import Widget
 from tuisim import palette
 from tuisim.data_class import dataclass
 from tuisim.errors import TuisimError
+from tuisim.terminal.text_runs import as_markup
 from tuisim.terminal.textual_internals import bindings_of, is_leaving
 
 ACT = "act"
@@ -124,7 +125,7 @@ def with_keys_of(app: App[Any], text: str) -> str:
 
 def action_link(app: App[Any], action: str, word: str) -> str:
     """Return the markup of a word that runs an action when it is clicked, after the key of the action."""
-    key = with_keys_of(app, f"{{{action}}}").replace("[", "\\[")
+    key = as_markup(with_keys_of(app, f"{{{action}}}"))
     return f"[@click=app.act('{action}')]{key} {word}[/]"
 
 

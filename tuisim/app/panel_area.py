@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar, cast
 
 from textual import events
 from textual.containers import Container
+from textual.dom import DOMNode
 from textual.message import Message
 from textual.widget import Widget
 
@@ -183,6 +184,12 @@ class PanelArea(Container):
         focused = self.screen.focused
         around = focused.ancestors_with_self if focused else []
         return next((name for name, widget in self.panels.items() if widget in around), "")
+
+    def focused_widgets(self) -> list[DOMNode]:
+        """Return the widget with the focus and those around it, up to its panel."""
+        around = self.screen.focused.ancestors_with_self if self.screen.focused else []
+        panel = self.panels.get(self.focused_panel())
+        return [widget for widget in around if panel in widget.ancestors_with_self]
 
     def choose_preset(self, preset: Preset) -> Preset:
         """Show the panels of a preset, or the standard ones if it is shown already, and return which.

@@ -17,13 +17,18 @@ from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.protocol import End, Ended
 from tuisim.regular_file import of_the_machine
 from tuisim.runs.handle import RunHandle
+from tuisim.runs.packed_files import compact
 from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import samples_of
-from tuisim.runs.store import RunStore
+from tuisim.runs.store import RunStore, bytes_in
 from tuisim.runs.temporary import TemporaryRun
 
 MATS_KEPT = 20
+MOST_OUTPUT_BYTES = 16 << 20
+"""A failed run that printed more is not kept: its end says what happened, and nobody reads so much."""
+PACKED_FROM_BYTES = 1 << 18
+"""A run that is kept is packed if its files are larger."""
 
 
 def execute(task: Task, folder: Path) -> Result:
@@ -66,7 +71,7 @@ def execute(task: Task, folder: Path) -> Result:
             return nothing_known_of(task, End.FALSIFIED, why)
         finally:
             handle.close()
-        return replace(result, run_id=_keep(temporary, ended)) if _is_kept(task, ended, judgements) else result
+        return replace(result, run_id=_keep(temporary, ended)) if _is_kept(task, run, ended, judgements) else result
 
 
 def _to_the_end(handle: RunHandle, limit_s: float) -> Ended:
@@ -106,8 +111,10 @@ def _judged(task: Task, run: StoredRun) -> tuple[Judgement, ...]:
     return judge(task.goals, run)
 
 
-def _is_kept(task: Task, ended: Ended, judgements: Sequence[Judgement]) -> bool:
+def _is_kept(task: Task, run: StoredRun, ended: Ended, judgements: Sequence[Judgement]) -> bool:
     if task.keep is Keep.FAILED:
+        if run.output.length > MOST_OUTPUT_BYTES:
+            return False
         is_good = ended.end is End.FINISHED and not ended.exit_code
         return not is_good or any(one.state is not GoalState.MET for one in judgements)
     return task.keep is Keep.ALL
@@ -115,6 +122,9 @@ def _is_kept(task: Task, ended: Ended, judgements: Sequence[Judgement]) -> bool:
 
 def _keep(temporary: TemporaryRun, ended: Ended) -> str:
     temporary.write_end(ended)
+    # Thousands of runs are kept, and few are looked at. A short one is smaller than what packing costs.
+    if bytes_in(temporary.folder) > PACKED_FROM_BYTES:
+        compact(temporary.folder)
     return RunStore().adopt(temporary.folder).id
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tuisim.terminal.text_runs import Line
 
 _MOST_COLUMNS = 100
-_MOST_RESULTS = 8
+_MOST_RESULTS = 5
 
 
 def _names() -> Sequence[str]:

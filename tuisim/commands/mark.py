@@ -34,8 +34,10 @@ from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.goals.spec import Goal
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
 from tuisim.marks.feedback import write_feedback
+from tuisim.marks.gradebook import GradebookKind, Roster, read_roster, write_gradebook
 from tuisim.marks.journal import Journal, journal_of
 from tuisim.marks.outcome import Outcome
+from tuisim.marks.overrides import Override, overridden, read_overrides
 from tuisim.marks.page import page_of, reports_folder
 from tuisim.marks.runs import STALL_LIMIT_S, MarkPlan, RunEntry, outcomes_of
 from tuisim.marks.sheet import Sheet, export_marks, lines_of, sheet_of, summary_of
@@ -70,6 +72,16 @@ _OPTIONS = (
     keep_option(USUAL_KEEP, _RUNS),
     option("--export", multiple=True, metavar="FILE", type=WordType(), group=_RESULTS,
            help=f"Write the marks: .html is a page with a report of each stored run, else {ALLOWED}; may be repeated."),
+    option("--moodle", metavar="FILE", type=WordType(), group=_RESULTS,
+           help="Write a CSV file for Moodle's gradebook."),
+    option("--canvas", metavar="FILE", type=WordType(), group=_RESULTS,
+           help="Write a CSV file for Canvas's gradebook."),
+    option("--roster", metavar="FILE", type=WordType(), group=_RESULTS,
+           help="A CSV file that names the student of each submission, with the gradebook's columns."),
+    option("--goal-columns", "goal_columns", is_flag=True, group=_RESULTS,
+           help="Give each goal a column of its own in the gradebook's file."),
+    option("--overrides", metavar="FILE", type=WordType(), group=_RESULTS,
+           help="A TOML file with your own points and comments by student, which take precedence."),
     option("--feedback", metavar="FOLDER", type=WordType(), group=_RESULTS,
            help="Write a text file for each student: what was met, what was missed, and why."),
 )  # fmt: skip
@@ -105,6 +117,7 @@ def mark(**given: Any) -> int:
     found = find_students(
         arguments.folders, Path(task.program).name if task.program else "", _excluded(arguments, task)
     )
+    roster, overrides = _tutor_files(found, task, arguments)
     entries, students = _entries(found, task, arguments)
     plan = MarkPlan(
         goals=tuple(task.goals),
@@ -126,11 +139,12 @@ def mark(**given: Any) -> int:
         except Interrupted as interrupted:
             _tell_so_far(task, plan, students, outcomes)
             return interrupted.exit_code
-        sheet = sheet_of(task.title, _columns(task), seeds, students, outcomes)
+        sheet = overridden(sheet_of(task.title, _columns(task), seeds, students, outcomes), overrides)
         # First, so that marks are seen also if a file cannot be written.
         _print(sheet, found.ignored)
         _tell_refusals(students)
         _write(sheet, task.goals, students, found.ignored, arguments)
+        _write_gradebooks(sheet, students, roster, arguments)
     return max(_tell_unread(students), _tell_missing(outcomes))
 
 
@@ -153,6 +167,24 @@ def _isolates(arguments: Arguments) -> bool:
         echo_error(f"note: {reason}: programs can read and change your files ({see_page('security')})")
         return False
     return True
+
+
+def _tutor_files(found: StudentsFound, task: GoalsFile, arguments: Arguments) -> tuple[Roster, Mapping[str, Override]]:
+    """Return the class list and the tutor's overrides; say which submissions are not in the list, and who is absent.
+
+    Raises:
+        ConfigError: one of the files is wrong.
+    """
+    names = [student.name for student in found.students]
+    overrides = read_overrides(Path(arguments.overrides), _columns(task), names) if arguments.overrides else {}
+    if not arguments.roster:
+        return Roster({}), overrides
+    roster = read_roster(Path(arguments.roster))
+    if missing := roster.missing(names):
+        echo_error(f"note: not in {arguments.roster}: {listed(map(printable, missing))}")
+    if absent := roster.absent(names):
+        echo_error(f"note: in {arguments.roster}, but without a submission: {listed(map(printable, absent))}")
+    return roster, overrides
 
 
 def _tell_so_far(
@@ -216,9 +248,17 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
         else:
             allowed = f"a file ends in .html, {ALLOWED}"
             raise ExportError(f"cannot write {target}: unknown format {target.suffix!r}", allowed)
-    places = [os.path.realpath(target) for target in targets]
+    gradebooks = [Path(target) for kind in GradebookKind if (target := vars(arguments)[kind])]
+    for target in gradebooks:
+        check_place(target)
+    places = [os.path.realpath(target) for target in (*targets, *gradebooks)]
     if len(set(places)) < len(places):
         raise ConfigError("a file is named twice", "give each export its own file", key="--export")
+    for name in ("roster", "goal_columns"):
+        if vars(arguments)[name] and not gradebooks:
+            raise ConfigError(
+                "is for a gradebook", "give --moodle FILE or --canvas FILE", key=f"--{name.replace('_', '-')}"
+            )
     if arguments.feedback and os.path.exists(arguments.feedback) and not os.path.isdir(arguments.feedback):
         raise ConfigError(f"{arguments.feedback} is no folder", "name a folder", key="--feedback")
 
@@ -231,6 +271,8 @@ def _columns(task: GoalsFile) -> list[Goal]:
 def _excluded(arguments: Arguments, task: GoalsFile) -> frozenset[Path]:
     """Return what may lie among the students' files without being one: the goals, and results."""
     found = [task.path]
+    for name in (*GradebookKind, "roster", "overrides"):
+        found += [Path(vars(arguments)[name])] if vars(arguments)[name] else []
     for target in map(Path, arguments.export):
         found += [target, target.with_name(target.name + ".json"), reports_folder(target)]
     if arguments.feedback:
@@ -329,17 +371,35 @@ def _write(
             tell(f"writing {target}")
             export_marks(sheet, target)
             continue
-        # Their charts are slow to import, and a table needs none.
-        from tuisim.marks.reports import write_reports
-
-        kept = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
-        links = {}
-        for name, seed, path in write_reports(sheet, goals, target):
-            links[name, seed] = path
-            tell(f"report {len(links)} of {kept}", len(links), kept)
-        write_whole(target, page_of(sheet, links, ignored).encode())
+        _write_page(sheet, goals, students, ignored, target)
     if arguments.feedback:
         write_feedback(Path(arguments.feedback), sheet, [student.text for student in students])
+
+
+def _write_page(
+    sheet: Sheet, goals: Sequence[Goal], students: Sequence[Student], ignored: Sequence[str], target: Path
+) -> None:
+    # Their charts are slow to import, and a table needs none.
+    from tuisim.marks.class_map import class_maps
+    from tuisim.marks.copies import similar
+    from tuisim.marks.reports import write_reports
+
+    kept = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
+    links, misses = {}, []
+    for one in write_reports(sheet, goals, target):
+        links[one.student, one.seed] = one.path
+        misses.append(one.misses)
+        tell(f"report {len(links)} of {kept}", len(links), kept)
+    alike = similar({student.name: student.text for student in students})
+    write_whole(target, page_of(sheet, links, ignored, alike, class_maps(misses)).encode())
+
+
+def _write_gradebooks(sheet: Sheet, students: Sequence[Student], roster: Roster, arguments: Arguments) -> None:
+    for kind in GradebookKind:
+        if target := vars(arguments)[kind]:
+            tell(f"writing {target}")
+            sources = [student.text for student in students]
+            write_gradebook(Path(target), kind, sheet, sources, roster, goals=arguments.goal_columns)
 
 
 _NARROWER = ((40, 60), (24, 20), (16, 10), (12, 6))

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from tuisim.commands import exit_status
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines, table
+from tuisim.config.notebook_file import NotebookProgram, chosen_programs, is_notebook, notebooks_in
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, counted
-from tuisim.notebook.cells import NotebookProgram, chosen_programs, is_notebook, notebooks_in
 from tuisim.runs.run_folder import StoredRun
 
 NOT_RUN = "not_run"

@@ -18,6 +18,7 @@ from tuisim.commands.echo import echo_error
 from tuisim.commands.notebooks import NotRun, check_folder, known_programs, without_unknown
 from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import ARGUMENTS_FOLLOW, Arguments
+from tuisim.config.notebook_file import is_notebook, notebook_programs
 from tuisim.config.options import OF_THE_APP, Settings, settings_of
 from tuisim.config.program_file import ProgramSource, find_program, read_program
 from tuisim.config.program_settings import Decided, free_paths, program_settings
@@ -27,7 +28,6 @@ from tuisim.config.worlds import WorldFile, load_world, means_world
 from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
-from tuisim.notebook.cells import is_notebook, notebook_programs
 from tuisim.runs.run_folder import StoredRun, field_files
 from tuisim.runs.store import RunStore
 from tuisim.source import Program

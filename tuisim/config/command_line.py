@@ -8,7 +8,6 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from difflib import get_close_matches
 from glob import escape, glob
 from itertools import pairwise
 from types import SimpleNamespace
@@ -18,7 +17,7 @@ import click
 from click.core import ParameterSource
 from click.shell_completion import CompletionItem
 
-from tuisim.errors import ConfigError, did_you_mean, nearest
+from tuisim.errors import ConfigError, closest, did_you_mean, nearest
 
 ARGUMENTS_FOLLOW = "--"
 """Words after this one on the command line are passed to the program."""
@@ -102,12 +101,42 @@ def argument(name: str, metavar: str, names: Callable[[], Iterable[str]] | None 
     return click.Argument([name], metavar=metavar, type=WordType(names=names), **how)
 
 
+_SYNONYMS = tuple(
+    frozenset(words.split())
+    for words in (
+        "timeout limit time-limit max-time duration seconds deadline",
+        "out export output file csv save write destination",
+        "background mat map field board",
+        "angle heading direction rotation orientation",
+        "seeds repeat repetitions runs times trials",
+        "jobs processes threads parallel cores",
+        "speed rate factor fast",
+        "fps frame-rate framerate frames",
+        "break breakpoint stop-at",
+        "profile rules physics",
+        "input stdin answer answers",
+        "press button buttons key",
+        "search find query grep",
+        "from start begin since",
+        "to end until",
+        "isolate sandbox",
+        "solid collide collisions",
+        "pixels graphics images",
+        "json format",
+        "time at when",
+    )
+)
+"""Words for the same, of which options have one or two."""
+
+
 def _close_names(typed: str, names: Iterable[str]) -> list[str]:
-    """Return the names that may have been meant; a typed word may be the end of a longer name."""
+    """Return the names that may have been meant: those for the same, else like the typed word or ending like it."""
     known = [*names]
     ends = {name[-len(typed) :] for name in known}
-    close = [name for end in get_close_matches(typed, ends, 2, 0.75) for name in known if name.endswith(end)]
-    return list(dict.fromkeys([*close, *get_close_matches(typed, known, 2)]))[:2]
+    close = [name for end in closest(typed, ends, 2, 0.75) for name in known if name.endswith(end)]
+    like = [*close, *closest(typed, known, 2)]
+    same = [name for words in _SYNONYMS if typed.lower() in words for name in known if name in words]
+    return list(dict.fromkeys(same or like))[:2]
 
 
 def _wrong_use(error: click.UsageError, ctx: click.Context) -> ConfigError:

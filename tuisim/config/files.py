@@ -23,7 +23,7 @@ from tuisim.config.folders import user_path
 from tuisim.core.spec_fields import Spec
 from tuisim.core.values import NamedNumber, Value, WrongValue, shown, values_of
 from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, did_you_mean, nearest
+from tuisim.errors import ConfigError, closest, did_you_mean, nearest
 
 if TYPE_CHECKING:
     from msgspec import inspect as types
@@ -178,13 +178,11 @@ def _neighbours(path: Path) -> str:
 
 def close_beside(path: Path, suffixes: Collection[str]) -> list[str]:
     """Return the names of files beside a missing one that are like its name."""
-    import difflib
-
     try:
         beside = [other.name for other in path.parent.iterdir() if other.suffix.lower() in suffixes]
     except (OSError, ValueError):
         return []
-    return difflib.get_close_matches(path.name, beside, 3)
+    return closest(path.name, beside)
 
 
 def parse_toml(text: str, file: str, error: type[ConfigError]) -> Any:

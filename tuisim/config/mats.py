@@ -24,7 +24,7 @@ from tuisim.config.obstacles import obstacles_from_sides
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import Obstacle
 from tuisim.data_class import dataclass
-from tuisim.errors import BackgroundError
+from tuisim.errors import BackgroundError, closest, did_you_mean
 
 CATALOG = "catalog.toml"
 OWN_START = Pose(200.0, 800.0, 0.0)
@@ -144,12 +144,8 @@ def own_background(path: Path) -> Background:
 
 def names_hint(name: str, known: list[str]) -> str:
     """Return the hint for an unknown mat: the closest match, and all names."""
-    from difflib import get_close_matches
-
-    by_lower = {each.lower(): each for each in known}
-    near = get_close_matches(name.lower(), by_lower, n=1, cutoff=0.5)
-    guess = f"did you mean {by_lower[near[0]]}? " if near else ""
-    return f"{guess}one of {', '.join(known)}, or the path of an image"
+    guess = did_you_mean(closest(name, known, 1, 0.5))
+    return f"{guess} one of {', '.join(known)}, or the path of an image".lstrip()
 
 
 FOLDER = "backgrounds"

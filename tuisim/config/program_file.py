@@ -8,7 +8,6 @@ import re
 import shlex
 from collections.abc import Iterator, Mapping
 from dataclasses import field, replace
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -18,7 +17,7 @@ from tuisim.config.program_robot.course import global_names, uses_course_names
 from tuisim.config.program_robot.source import library_of, read_modules
 from tuisim.config.shared_options import parse_words
 from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, did_you_mean, nearest, see_page
+from tuisim.errors import ConfigError, closest, did_you_mean, nearest, see_page
 from tuisim.regular_file import read_regular
 from tuisim.source import LIBRARIES, PRELUDE_TEXTS, PRELUDES, Program, decode_source, source_lines
 
@@ -281,5 +280,5 @@ def _neighbours(path: Path) -> str:
     if not close and path.parent == Path():
         # A word without a folder may also be meant as an example, which needs no suffix.
         stems = [file.path.stem for file in programs()]
-        close = [f"{stem}{path.suffix}" for stem in get_close_matches(path.stem, stems, 3)]
+        close = [f"{stem}{path.suffix}" for stem in closest(path.stem, stems)]
     return did_you_mean(close) or "see `tuisim programs` for examples"

@@ -15,6 +15,8 @@ from dataclasses import Field
 from re import Pattern
 from typing import Any
 
+from tuisim.errors import closest, did_you_mean
+
 METADATA = "value"
 """Where a field has its value."""
 
@@ -443,11 +445,8 @@ class Color(Value):
 
         word = str(data)
         if css_rgb(word) is None:
-            import difflib
-
-            near = difflib.get_close_matches(word.lower(), css_names(), 3)
-            guess = f"did you mean {' or '.join(near)}? " if near else ""
-            raise WrongValue(f"no such colour {shown(word)}", f"{guess}any CSS colour name, or #rrggbb")
+            guess = did_you_mean(closest(word, css_names()))
+            raise WrongValue(f"no such colour {shown(word)}", f"{guess} any CSS colour name, or #rrggbb".lstrip())
         return word.lower()
 
 

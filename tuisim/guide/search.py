@@ -1,31 +1,40 @@
-"""Search: which pages answer words that somebody types, the best one first."""
+"""Search: which pages answer words that somebody types, the best one first.
+
+SQLite ranks pages, and their passages, by BM25 of the stems of their words. A page counts with its best passage.
+"""
 
 from __future__ import annotations
 
 import re
-from collections import Counter
+import sqlite3
 from collections.abc import Iterator, Mapping
 from functools import cache
-from math import log
 
 from tuisim.data_class import dataclass
 from tuisim.guide.catalogue import pages
 from tuisim.guide.tables import markdown_of
 
-_WORD = re.compile(r"[^\W_]+")
+_WORD = re.compile(r"\w+")
 _HEADING = re.compile(r"^##+ (.+)$", re.MULTILINE)
+_FENCE = re.compile(r"^```.*$", re.MULTILINE)
+_PASSAGE_END = re.compile(r"\n\s*\n|\n(?=- |\| )")
+"""A passage is a paragraph, an item of a list or a row of a table."""
+_CONTRACTED = re.compile(r"(n't|['’](s|m|d|re|ve|ll|t))\b")
+"""The ends of `doesn't`, `it's`, `I'm`."""
 _SAYS_NOTHING = """
-a an and are as at be by can do does for from get how i if in is it its me my not of on or same see show so somebody
-that the there these they this to use used want was what when where which while why will with you your
+a about all am an and any are as at be because been being both but by can come could did do does doing each few for from
+further get gets go goes going had has have having he her here hers him his how i if in into is it its itself just look
+make makes making me more most my nor not of on once only or our ours see she should show so some somebody such tell
+than that the their theirs them then there these they this those to too use used very want wanted was we were what when
+where whether which while who whom why will with would you your yours
 """
 _IGNORED = frozenset(_SAYS_NOTHING.split())
 """Words that say nothing about the subject of a question."""
-_ENDINGS = ("ings", "ing", "ies", "ed", "es", "s", "e")
 _SHORTEST = 3
-_TITLE, _WORDS, _HEADINGS, _TEXT = 4.0, 3.0, 1.5, 1.0
-"""How much a word counts, by where it is."""
-_ENOUGH = 2.0
-"""A word in a text counts half as much as it can after so many times."""
+"""Letters from which a word may be the beginning of another."""
+_FIELDS = "name UNINDEXED, heading UNINDEXED, passage, titles, words"
+_TITLES, _WORDS = 2.0, 2.0
+"""How much a word counts in title and heading, and among the page's further words; 1 in the text."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,94 +42,55 @@ class SearchResult:
     """A page that answers a question."""
 
     name: str
-    score: float
     heading: str
-    """The section with most of the words; empty for the beginning of the page."""
+    """The section that answers best; empty for the beginning of the page."""
+    passage: str
+    """The part of it that answers best, in Markdown: a paragraph, an item of a list or a row of a table."""
 
 
-def _stem(word: str) -> str:
-    for ending in _ENDINGS:
-        if word.endswith(ending) and len(word) - len(ending) >= _SHORTEST:
-            stem = word.removesuffix(ending)
-            # run, running; stop, stopped
-            return stem[:-1] if len(stem) > _SHORTEST and stem[-1] == stem[-2] and stem[-1] not in "lsz" else stem
-    return word
-
-
-def stems(text: str) -> list[str]:
-    """Return the words of a text that say something, without their endings."""
-    words = (word.lower() for word in _WORD.findall(text))
-    return [_stem(word) for word in words if word not in _IGNORED]
-
-
-@dataclass(frozen=True, slots=True)
-class _Entry:
-    title: frozenset[str]
-    words: frozenset[str]
-    headings: frozenset[str]
-    text: Mapping[str, int]
-    sections: tuple[tuple[str, frozenset[str]], ...]
-
-    def weight(self, stem: str) -> float:
-        """How much the page says about a word."""
-        count = self.text.get(stem, 0)
-        return (
-            _TITLE * (stem in self.title)
-            + _WORDS * (stem in self.words)
-            + _HEADINGS * (stem in self.headings)
-            + _TEXT * count / (count + _ENOUGH)
-        )
-
-    def has(self) -> frozenset[str]:
-        return self.title | self.words | self.headings | self.text.keys()
-
-
-def _sections(markdown: str) -> Iterator[tuple[str, frozenset[str]]]:
-    parts = _HEADING.split(markdown)
-    yield "", frozenset(stems(parts[0]))
-    for heading, text in zip(parts[1::2], parts[2::2], strict=True):
-        yield heading, frozenset(stems(f"{heading} {text}"))
+def _passages() -> Iterator[tuple[str, ...]]:
+    for name, page in pages().items():
+        parts = ["", *_HEADING.split(_FENCE.sub("", markdown_of(page)))]
+        for heading, text in zip(parts[::2], parts[1::2], strict=True):
+            for passage in filter(None, map(str.strip, _PASSAGE_END.split(text))):
+                yield name, heading, passage, f"{page.title} {name} {heading}", f"{page.words} {page.about}"
 
 
 @cache
-def _index() -> Mapping[str, _Entry]:
-    found = {}
-    for name, page in pages().items():
-        markdown = markdown_of(page)
-        found[name] = _Entry(
-            title=frozenset(stems(f"{page.title} {page.name}")),
-            words=frozenset(stems(f"{page.words} {page.about}")),
-            headings=frozenset(stems(" ".join(_HEADING.findall(markdown)))),
-            text=Counter(stems(markdown)),
-            sections=tuple(_sections(markdown)),
-        )
-    return found
+def _index() -> sqlite3.Connection:
+    # The app searches in threads, one at a time.
+    index = sqlite3.connect(":memory:", check_same_thread=False)
+    for table in ("passages", "whole"):
+        index.execute(f"CREATE VIRTUAL TABLE {table} USING fts5({_FIELDS}, tokenize = 'porter unicode61')")
+    index.executemany("INSERT INTO passages VALUES (?, ?, ?, ?, ?)", _passages())
+    index.execute(
+        "INSERT INTO whole SELECT name, '', group_concat(passage, ' '), group_concat(titles, ' '), words "
+        "FROM passages GROUP BY name"
+    )
+    return index
+
+
+def _found(table: str, query: str) -> Mapping[str, tuple[float, SearchResult]]:
+    """Return by page the best row of a table, with its score."""
+    ranked = (
+        f"SELECT -bm25({table}, 0, 0, 1, {_TITLES}, {_WORDS}) AS score, name, heading, passage FROM {table} "
+        f"WHERE {table} MATCH ? ORDER BY score"
+    )
+    return {name: (score, SearchResult(name, *rest)) for score, name, *rest in _index().execute(ranked, (query,))}
 
 
 def search(question: str) -> list[SearchResult]:
     """Return the pages that have words of a question, the best one first.
 
     Args:
-        question: Words; the end of the last one may still be missing.
+        question: Words; one that no page has may be the beginning of another.
     """
-    index = _index()
-    wanted = dict.fromkeys(stems(question))
-    every = {name: entry.has() for name, entry in index.items()}
-    known = frozenset().union(*every.values())
-    groups = [[stem] if stem in known else [one for one in known if one.startswith(stem)] for stem in wanted]
-    rarity = [log(1 + len(index) / (1 + sum(any(one in has for one in group) for has in every.values())))
-              for group in groups]  # fmt: skip
-    found = []
-    for name, entry in index.items():
-        weights = [rare * max((entry.weight(one) for one in group), default=0.0)
-                   for group, rare in zip(groups, rarity, strict=True)]  # fmt: skip
-        if score := sum(weights):
-            share = sum(weight > 0 for weight in weights) / len(weights)
-            found.append(SearchResult(name, score * share, _best_section(entry, groups)))
-    return sorted(found, key=lambda one: -one.score)
-
-
-def _best_section(entry: _Entry, groups: list[list[str]]) -> str:
-    counts = [(sum(any(one in stems_ for one in group) for group in groups), heading)
-              for heading, stems_ in entry.sections]  # fmt: skip
-    return max(counts, key=lambda pair: pair[0])[1]
+    words = dict.fromkeys(_WORD.findall(_CONTRACTED.sub("", question.lower())))
+    terms = [f'"{word}"' for word in words if word not in _IGNORED]
+    whole = [term if len(term) < _SHORTEST + 2 or _found("whole", term) else f"{term}*" for term in terms]
+    if not whole:
+        return []
+    query = " OR ".join(whole)
+    best, of_pages = _found("passages", query), _found("whole", query)
+    order = sorted(best, key=lambda name: -best[name][0] - of_pages[name][0])
+    return [best[name][1] for name in order]

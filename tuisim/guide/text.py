@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import re
+from itertools import accumulate
+from textwrap import wrap
 
 from rich.style import Style
 
 from tuisim.guide.catalogue import CONTENTS, Page, pages
 from tuisim.guide.search import SearchResult
 from tuisim.guide.tables import markdown_of
-from tuisim.lessons.markdown import PLAIN, markdown_lines
+from tuisim.lessons.markdown import PLAIN, markdown_lines, plain_text
 from tuisim.terminal.text_runs import Line
 
-_LINK = re.compile(r"\[([^\]]+)\]\(([\w-]+)\.md\)")
+_LINK = re.compile(r"\[([^\[\]]+)\]\(([\w-]+)\.md\)")
 _HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
+_LETTERS = re.compile(r"[\W_]+")
+_ENOUGH_LETTERS = 40, 20, 10, 5
+"""How many letters tell where a passage begins, those that tell it best first."""
+_PASSAGE_LINES = 2
+"""How much of a passage is shown among results."""
 NO_WORDS = "No page has these words"
 
 
@@ -47,13 +54,39 @@ def contents_lines(width: int) -> list[Line]:
 
 
 def result_lines(found: list[SearchResult], width: int) -> list[Line]:
-    """Return what a search has found, the best page first."""
-    items = [
-        f"- `{one.name}` **{pages()[one.name].title}**{f': {one.heading}' if one.heading else ''}. "
-        f"{pages()[one.name].about}"
-        for one in found
-    ]
-    return markdown_lines("\n".join(items), width)
+    """Return what a search has found, the best page first, each with the passage that answers."""
+    lines = []
+    for one in found:
+        title = f"- `{one.name}` **{pages()[one.name].title}**{f': {one.heading}' if one.heading else ''}"
+        passage = wrap(passage_text(one.passage), max(20, width - 3), max_lines=_PASSAGE_LINES, placeholder=" …")
+        lines += [*markdown_lines(title, width), *([("   " + line, PLAIN)] for line in passage)]
+    return lines
+
+
+def passage_text(markdown: str) -> str:
+    """Return a passage of a page as one line of plain text."""
+    cells = [cell.strip() for cell in markdown.strip("|").split(" | ")] if markdown.startswith("|") else [markdown]
+    text = _LINK.sub(lambda link: link[1], " · ".join(filter(None, cells)))
+    return " ".join(plain_text(text).removeprefix(" •").split())
+
+
+def rows_of(lines: list[Line], heading: str, passage: str) -> tuple[int, int]:
+    """Return the rows at which a section of a drawn page and a passage of it begin; that of the section for both.
+
+    Args:
+        lines: The page.
+        heading: As it is shown; empty for the beginning of the page.
+        passage: In Markdown; empty for none.
+    """
+    texts = ["".join(part for part, _ in line) for line in lines]
+    top = next((row for row, text in enumerate(texts) if heading and text.strip() == heading), 0)
+    # Lines break elsewhere than in the source, and a table puts cells side by side.
+    letters = [_LETTERS.sub("", text) for text in texts[top:]]
+    wanted = _LETTERS.sub("", passage_text(passage))
+    starts = ("".join(letters).find(wanted[:count]) for count in _ENOUGH_LETTERS if wanted)
+    at = next((start for start in starts if start >= 0), 0)
+    ends = accumulate(map(len, letters))
+    return top, top + next((row for row, end in enumerate(ends) if end > at), 0)
 
 
 def written(lines: list[Line], *, styled: bool) -> str:

@@ -46,6 +46,8 @@ def feedback_of(sheet: Sheet, row: SheetRow, source: str = "") -> str:
     """
     head = f"{row.name}: {in_words(row.points)} of {in_words(sheet.most_points)} points"
     parts = [head, "=" * min(len(head), WIDTH), "", sheet.title, ""] if sheet.title else [head, "", ""]
+    if row.comment:
+        parts += [_wrapped(f"Comment: {row.comment}"), ""]
     parts += _how_often(row)
     if row.failure:
         parts += [_wrapped(f"Your program did not run to its end: {row.failure}"), ""]

@@ -1,4 +1,4 @@
-"""The sheet of a class as one HTML page: no scripts, and every text of a student is escaped."""
+"""The sheet of a class as one HTML page: every text of a student is escaped; its script only sorts and filters."""
 
 from __future__ import annotations
 
@@ -8,11 +8,14 @@ from types import MappingProxyType
 from urllib.parse import quote
 
 from tuisim import palette
-from tuisim.analysis.report import page, paragraph, section, table
+from tuisim.analysis.report import page, paragraph, section
 from tuisim.charts.files import clean
 from tuisim.goals.spec import Goal
+from tuisim.marks.class_page import STYLE, goals_section, points_section, similar_section
+from tuisim.marks.copies import Similar
 from tuisim.marks.sheet import Cell, Sheet, SheetRow, in_words, summary_of
 
+_SCRIPT = Path(__file__).with_name("page.js")
 _VERDICTS = f"""\
 .met {{ background: {palette.MET}2e; }}
 .part {{ background: {palette.PARTLY}33; }}
@@ -24,8 +27,21 @@ _STYLE = """\
 body { max-width: 90rem; }
 td.number, th.number, td:last-child, th:last-child { padding-left: .7rem; }
 .student { min-width: 6rem; max-width: 14rem; overflow-wrap: anywhere; }
-.head { white-space: normal; overflow-wrap: anywhere; max-width: 9rem; }
-td:last-child { min-width: 16rem; }
+.head { white-space: normal; overflow-wrap: break-word; max-width: 9rem; }
+.students td:last-child { min-width: 16rem; }
+.sheet { max-height: 92vh; overflow: auto; }
+@media print { .sheet { max-height: none; } .filter { display: none; } }
+.students thead th { position: sticky; top: 0; background: var(--paper); }
+th button { all: unset; cursor: pointer; }
+th button:focus-visible { outline: 2px solid; }
+th[aria-sort="ascending"] button::after { content: " ▲"; }
+th[aria-sort="descending"] button::after { content: " ▼"; }
+.filter { display: flex; flex-wrap: wrap; gap: .6rem; align-items: center; margin: .5rem 0; }
+.filter input { width: min(22rem, 100%); }
+.filter input, .filter select { font: inherit; padding: .2rem .4rem; }
+.goals tbody tr { cursor: pointer; }
+ul { margin: 0; padding-left: 1.1rem; }
+.comment { border-left: 3px solid var(--rule); padding-left: .5rem; }
 tbody tr:hover { background: var(--area); }
 details pre { margin: .3rem 0; }
 code { font: .85rem ui-monospace, monospace; }
@@ -35,20 +51,31 @@ Links = Mapping[tuple[str, int], str]
 """Relative paths of reports by student and seed."""
 
 
-def page_of(sheet: Sheet, links: Links = MappingProxyType({}), ignored: Sequence[str] = ()) -> str:
+def page_of(
+    sheet: Sheet,
+    links: Links = MappingProxyType({}),
+    ignored: Sequence[str] = (),
+    similar: Similar | None = None,
+    maps: Sequence[str] = (),
+) -> str:
     """Return the page.
 
     Args:
         links: The reports of runs that were kept.
         ignored: Names of files that are no programs.
+        similar: Which programs resemble each other.
+        maps: Pictures of where goals were missed, as HTML.
     """
     title = f"Marks: {sheet.title}" if sheet.title else "Marks"
-    goals = [[one.name, one.say, in_words(one.points)] for one in sheet.columns]
     notes = paragraph(f"Not marked, because they are no Python programs: {', '.join(ignored)}", soft=True)
     body = [
-        f"<style>\n{_VERDICTS}{_STYLE}</style>\n<header>\n<h1>{clean(title)}</h1>\n{paragraph(summary_of(sheet))}\n</header>",
+        f"<style>\n{_VERDICTS}{_STYLE}{STYLE}</style>\n<header>\n<h1>{clean(title)}</h1>\n{paragraph(summary_of(sheet))}\n</header>",
+        points_section(sheet),
+        goals_section(sheet),
+        section("Places", *maps),
         section("Students", _students(sheet, links), notes if ignored else ""),
-        section("Goals", table(("goal", "", "points"), goals, numbers=2)),
+        similar_section(similar),
+        f"<script>\n{_SCRIPT.read_text(encoding='utf-8')}</script>",
     ]
     return page(title, body)
 
@@ -60,15 +87,18 @@ def _students(sheet: Sheet, links: Links) -> str:
                    for at, text in enumerate(heads))  # fmt: skip
     rows = [_row(row, sheet, links) for row in sheet.rows]
     return "\n".join((
-        f'<div class="wide"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>', *rows, "</tbody></table></div>",
+        f'<div class="wide sheet"><table class="students">\n<thead><tr>{head}</tr></thead>\n<tbody>',
+        *rows,
+        "</tbody></table></div>",
     ))  # fmt: skip
 
 
 def _row(row: SheetRow, sheet: Sheet, links: Links) -> str:
     level = _level(row.points, sheet.most_points) if sheet.most_points else _level(row.robustness, 1.0)
+    earned = "" if row.earned is None else f' title="the runs have earned {in_words(row.earned)}"'
     cells = (
         f'<th class="student" scope="row">{clean(row.name)}</th>',
-        f'<td class="number {level}">{in_words(row.points)}</td>',
+        f'<td class="number {level}"{earned}>{in_words(row.points)}</td>',
         f'<td class="number">{row.robustness:.0%}</td>',
         *(_cell(cell, column, row) for cell, column in zip(row.cells, sheet.columns, strict=True)),
         f"<td>{_reason(row, links)}</td>",
@@ -89,7 +119,10 @@ def _cell(cell: Cell, column: Goal, row: SheetRow) -> str:
 
 
 def _reason(row: SheetRow, links: Links) -> str:
-    found = [clean(row.reason)] if row.reason else []
+    found = [f'<div class="comment">{clean(row.comment)}</div>'] if row.comment else []
+    if row.earned is not None:
+        found.append(f'<div class="soft">set by the tutor; the runs have earned {in_words(row.earned)}</div>')
+    found += [clean(row.reason)] if row.reason else []
     if row.line:
         found.append(f"<br>line {row.line}: <code>{clean(row.source_line)}</code>")
     reports: dict[str, list[int]] = {}

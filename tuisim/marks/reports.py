@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,9 +13,11 @@ from tuisim.analysis.pins import Pin
 from tuisim.analysis.report import report_of, section, table
 from tuisim.analysis.source import LogRequest, opening
 from tuisim.charts.files import write_whole
+from tuisim.data_class import dataclass
 from tuisim.errors import ExportError, LogError
 from tuisim.goals.judgement import Change
 from tuisim.goals.spec import ConditionKind, Goal
+from tuisim.marks.class_map import Miss, MissesOfRun
 from tuisim.marks.feedback import file_stems
 from tuisim.marks.outcome import GoalOutcome, Outcome, portable
 from tuisim.marks.page import reports_folder
@@ -29,8 +31,20 @@ MOST_OUTPUT_BYTES = 4 << 20
 _HEADS = ("", "goal", "result", "why", "points")
 
 
-def write_reports(sheet: Sheet, goals: Sequence[Goal], page: Path) -> Iterator[tuple[str, int, str]]:
-    """Write the reports of kept runs; yield student, seed and path relative to the page.
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The report of a kept run."""
+
+    student: str
+    seed: int
+    path: str
+    """Relative to the page."""
+    misses: MissesOfRun
+    """Where it missed goals; none if another run with the same record has said so."""
+
+
+def write_reports(sheet: Sheet, goals: Sequence[Goal], page: Path) -> Iterator[Report]:
+    """Write the reports of kept runs; yield each once it is written.
 
     Runs of a student that recorded the same have one report. Runs that were removed from the store are left out.
     Reports of an earlier page of this name are replaced.
@@ -49,16 +63,18 @@ def write_reports(sheet: Sheet, goals: Sequence[Goal], page: Path) -> Iterator[t
             run = _stored(store, outcome.run_id) if outcome.run_id else None
             if run is None:
                 continue
-            recorded = _digest(run)
+            recorded, misses = _digest(run), tuple[Miss, ...]()
             if recorded not in written:
                 name = f"{stem}-seed-{outcome.seed}.html"
                 *_, opened = opening(LogRequest(runs=(run.id,)))
                 opened = replace(opened, runs=tuple(map(_portable, opened.runs)))
-                shown, pins = _verdicts(sheet.columns, goals, outcome, run)
+                judged = _judged(goals, outcome, run)
+                shown, pins = _verdicts(sheet.columns, judged, outcome)
+                misses = _misses(row.name, sheet.columns, judged, outcome, run)
                 title = f"{row.name}, seed {outcome.seed}"
                 _write(folder / name, report_of(opened, title=title, pins=pins, parts=[shown]))
                 written[recorded] = f"{folder.name}/{name}"
-            yield row.name, outcome.seed, written[recorded]
+            yield Report(row.name, outcome.seed, written[recorded], MissesOfRun(run, misses))
 
 
 def _write(path: Path, content: str) -> None:
@@ -97,18 +113,29 @@ def _digest(run: StoredRun) -> str:
     return found.hexdigest()
 
 
-def _verdicts(
-    columns: Sequence[Goal], goals: Sequence[Goal], outcome: Outcome, run: StoredRun
-) -> tuple[str, list[Pin]]:
+def _misses(
+    student: str, columns: Sequence[Goal], judged: Mapping[str, Change], outcome: Outcome, run: StoredRun
+) -> tuple[Miss, ...]:
+    """Return where a run missed goals: those that were decided nowhere, at the robot's last place."""
+    last = run.telemetry.last()
+    missed = {one.name: one for one in outcome.goals if not one.met}
+    found = []
+    for column in columns:
+        place = judged.get(column.name) or last
+        if column.name in missed and place is not None:
+            found.append(Miss(student, column.name, place.x_mm, place.y_mm, missed[column.name].reason))
+    return tuple(found)
+
+
+def _verdicts(columns: Sequence[Goal], judged: Mapping[str, Change], outcome: Outcome) -> tuple[str, list[Pin]]:
     """Return the section with the goals of a run, and a pin for each goal that was decided at a place.
 
     Args:
         columns: The goals that are shown, in their order.
-        goals: All goals of the task.
+        judged: When and where goals were decided, as of `_judged`.
         outcome: What the run has achieved.
     """
     found = {one.name: one for one in outcome.goals}
-    judged = _judged(goals, outcome, run)
     rows, pins = [], []
     for number, column in enumerate(columns, start=1):
         goal = found.get(column.name, GoalOutcome(column.name, False, outcome.failure))

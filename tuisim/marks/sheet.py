@@ -53,7 +53,7 @@ class SheetRow:
     program: str
     """Name of the main program; empty if there is none."""
     points: float
-    """Mean over the runs."""
+    """Mean over the runs, unless the tutor has set others."""
     robustness: float
     """Share of the runs with all points, 0 to 1; in a task without points, of those that met every goal."""
     cells: tuple[Cell, ...]
@@ -76,6 +76,10 @@ class SheetRow:
     refusal: str = ""
     """The first line of the program that the brick's Python would refuse, and how many follow; empty for none."""
     outcomes: tuple[Outcome, ...] = ()
+    earned: float | None = None
+    """The points that the runs have earned, if the tutor has set others."""
+    comment: str = ""
+    """The tutor's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +95,7 @@ class Sheet:
     @property
     def most_points(self) -> float:
         """The points of a program that meets every goal."""
-        return _rounded(math.fsum(column.points for column in self.columns))
+        return rounded(math.fsum(column.points for column in self.columns))
 
 
 def sheet_of(
@@ -128,8 +132,8 @@ def row_of(student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome
     return SheetRow(
         name=student.name,
         program=student.main,
-        points=_rounded(math.fsum(totals) / len(totals)),
-        robustness=_rounded(1 - len(incomplete) / len(ordered)),
+        points=rounded(math.fsum(totals) / len(totals)),
+        robustness=rounded(1 - len(incomplete) / len(ordered)),
         cells=tuple(_cell(column, ordered) for column in columns),
         reason=reason,
         line=line,
@@ -153,7 +157,7 @@ def _points(columns: Sequence[Goal], outcome: Outcome) -> float:
 def _cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
     goals = [(one, next((goal for goal in one.goals if goal.name == column.name), None)) for one in outcomes]
     met = sum(goal is not None and goal.met for _, goal in goals)
-    points = _rounded(column.points * met / len(goals))
+    points = rounded(column.points * met / len(goals))
     for outcome, goal in goals:
         if goal is None:
             return Cell(points, met, outcome.failure, 0, outcome.seed)
@@ -177,7 +181,8 @@ def _reason(outcome: Outcome, names: Sequence[str]) -> tuple[str, int]:
     return (missed[0].reason, missed[0].line) if missed else ("", 0)
 
 
-def _rounded(value: float) -> float:
+def rounded(value: float) -> float:
+    """Return points or a share as they are shown and stored."""
     # Without the sign of a zero.
     return round(value, DIGITS) + 0.0
 
@@ -237,6 +242,8 @@ def frame_of(sheet: Sheet) -> pd.DataFrame:
         "line": [row.line for row in rows],
         "source_line": [row.source_line for row in rows],
         "seed": [row.seed for row in rows],
+        "earned": [row.points if row.earned is None else row.earned for row in rows],
+        "comment": [row.comment for row in rows],
     }
     return pd.DataFrame(columns)
 

@@ -9,6 +9,8 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from tuisim.config.notebook_file import SUFFIX as NOTEBOOK_SUFFIX
+from tuisim.config.notebook_file import chosen_programs
 from tuisim.config.program_file import FILE_FIELDS, ProgramSource, names_file, read_program
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, listed, printable, see_page
@@ -16,6 +18,11 @@ from tuisim.runs.child.isolation import MOST_BYTES, MOST_FILES
 
 MAIN = "main.py"
 SUFFIX = ".py"
+_NO_PROGRAM = {
+    ".py.txt": "its name ends in .txt; rename it to end in .py",
+    **dict.fromkeys((".zip", ".tar", ".tgz", ".tar.gz", ".tar.xz", ".7z", ".rar"), "it is an archive; unpack it"),
+}
+"""What students hand in instead of a program, by the end of its name, and what to do."""
 LEFT_OUT = shutil.ignore_patterns("__pycache__", ".git", ".venv", "venv", "node_modules")
 """Folders that are no part of what a student has handed in."""
 _LINK = "it is a link; hand in the files themselves"
@@ -74,7 +81,8 @@ def find_students(words: Sequence[str], program: str = "", excluded: Collection[
         path = Path(word)
         if os.path.isdir(path) and not os.path.isfile(path / MAIN):
             for entry in _entries(path, excluded):
-                if entry.is_symlink() or entry.is_dir() or entry.suffix.lower() == SUFFIX:
+                is_program = entry.suffix.lower() in (SUFFIX, NOTEBOOK_SUFFIX) or _why_no_program(entry.name)
+                if entry.is_symlink() or entry.is_dir() or is_program:
                     students.append((path, _student(entry, program)))
                 else:
                     ignored.append(printable(entry.name))
@@ -124,12 +132,16 @@ def _named(students: Iterable[tuple[Path, Student]]) -> Iterator[Student]:
 def _student(path: Path, program: str) -> Student:
     own = _own_name(path)
     is_file = not os.path.isdir(path)
-    name = own[: -len(SUFFIX)] if is_file and own.lower().endswith(SUFFIX) and own.lower() != SUFFIX else own
+    endings = (SUFFIX, NOTEBOOK_SUFFIX, *_NO_PROGRAM)
+    ending = max((one for one in endings if own.lower().endswith(one)), key=len, default="")
+    name = own[: -len(ending)] if is_file and 0 < len(ending) < len(own) else own
     if path.is_symlink():
         return Student(name, path, problem=_LINK)
+    if is_file and (why := _why_no_program(own)):
+        return Student(name, path, problem=f"{own}: {why}")
     if is_file:
         # Its copy has the name of the file.
-        return _read(Student(name, path, own), path)
+        return _read(Student(name, path, own), path, program.partition("#")[2])
     try:
         if refused := _what_is_refused(path):
             return Student(name, path, problem=refused)
@@ -137,7 +149,12 @@ def _student(path: Path, program: str) -> Student:
     except (ConfigError, OSError) as error:
         problem = str(error).replace(f"{path}{os.sep}", "")
         return Student(name, path, problem=problem, is_unread=isinstance(error, OSError))
-    return _read(Student(name, path, main), path / main)
+    return _read(Student(name, path, main), path / main, program.partition("#")[2])
+
+
+def _why_no_program(name: str) -> str:
+    """Return what a student is to do with a file that is no program, but was meant as one; empty for others."""
+    return next((why for ending, why in _NO_PROGRAM.items() if name.lower().endswith(ending)), "")
 
 
 def _own_name(path: Path) -> str:
@@ -194,13 +211,37 @@ def _shown(name: str) -> str:
     return printable(name.encode("utf-8", "replace").decode())
 
 
-def _read(student: Student, path: Path) -> Student:
+def _read(student: Student, path: Path, cell: str) -> Student:
+    """Return a student with the program of a file.
+
+    Args:
+        cell: The number of the program cell, if the file is a notebook with several.
+    """
     try:
+        if path.suffix.lower() == NOTEBOOK_SUFFIX:
+            return replace(student, source=_program_cell(path, cell))
         source = read_program(path, as_python=True, alone=path == student.path)
         return replace(student, source=replace(source, program=replace(source.program, name=_shown(path.name))))
     except ConfigError as error:
         problem = printable(str(error).replace(str(path), path.name))
         return replace(student, problem=problem, is_unread=isinstance(error.__cause__, OSError))
+
+
+def _program_cell(path: Path, cell: str) -> ProgramSource:
+    """Return the program of a notebook.
+
+    Raises:
+        ConfigError: it cannot be read, has none, or it is not clear which one it is.
+    """
+    cells = chosen_programs(str(path))
+    if len(cells) > 1 and cell:
+        cells = chosen_programs(f"{path}#{cell}")
+    if len(cells) > 1:
+        hint = f'in the goals file: program = "{path.name}#{len(cells)}"'
+        raise ConfigError(f"which of its {len(cells)} program cells is the program?", hint, file=path.name)
+    if unknown := cells[0].unknown:
+        raise ConfigError(f"{unknown} in its magic line is defined only in the notebook", file=path.name)
+    return cells[0].source
 
 
 def _main_of(folder: Path, program: str) -> str:
@@ -210,13 +251,16 @@ def _main_of(folder: Path, program: str) -> str:
         ConfigError: there is none, or it is not clear which one it is.
         OSError: the folder cannot be read.
     """
-    if program and os.path.isfile(folder / program):
-        return program
-    names = sorted(
-        name for name in os.listdir(folder) if name.lower().endswith(SUFFIX) and os.path.isfile(folder / name)
-    )
-    if MAIN in names:
+    named = program.partition("#")[0]
+    if named and os.path.isfile(folder / named):
+        return named
+    files = sorted(name for name in os.listdir(folder) if os.path.isfile(folder / name))
+    if MAIN in files:
         return MAIN
+    names = [name for name in files if name.lower().endswith((SUFFIX, NOTEBOOK_SUFFIX))]
     if len(names) == 1:
         return names[0]
-    raise ConfigError(f"which of {listed(names)} is the main program?" if names else "there is no Python file", MAIN)
+    if names:
+        raise ConfigError(f"which of {listed(names)} is the main program?", MAIN)
+    instead = next((f"{name}: {why}" for name in files if (why := _why_no_program(name))), "")
+    raise ConfigError(instead or "there is no Python file", MAIN)

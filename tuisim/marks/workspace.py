@@ -56,8 +56,11 @@ def _copy_file(source: str | Path, target: str | Path) -> None:
 def program_in(student: Student, folder: Path, **changes: Any) -> Program:
     """Return a student's main program as one of the copy in a folder, which is its working directory."""
     assert student.source is not None
-    path = folder / student.main
-    return replace(student.source.program, path=str(path), working_directory=str(folder), **changes)
+    program = student.source.program
+    if program.module_folder:
+        # A cell of a notebook is no file.
+        return replace(program, module_folder=str(folder), working_directory=str(folder), **changes)
+    return replace(program, path=str(folder / student.main), working_directory=str(folder), **changes)
 
 
 def digest_of(student: Student) -> str:

@@ -229,11 +229,11 @@ class Lab:
 
     def _checked(self, words: Arguments, text: str | None, prelude: str) -> _CellPlan:
         from tuisim.config.build import build_run_spec
+        from tuisim.config.magic_line import persistent_after
         from tuisim.config.options import settings_of
         from tuisim.config.program_file import ProgramSource
         from tuisim.config.program_settings import program_settings
         from tuisim.config.robots import choose_robot
-        from tuisim.notebook.magic_line import persistent_after
         from tuisim.runs.run_folder import field_files
         from tuisim.source import Program
 

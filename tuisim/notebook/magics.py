@@ -49,7 +49,7 @@ def _lab(shell: InteractiveShell, name: str | None) -> Lab:
 
 def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
     def act(line: str, cell: str | None) -> str | None:
-        from tuisim.notebook.magic_line import parse_line
+        from tuisim.config.magic_line import parse_line
 
         words = parse_line(line, magic)
         ready = PRELUDE_TEXTS[words.settings.get("preload", PRELUDES[magic])]
@@ -74,7 +74,7 @@ Log = Callable[[Lab, "Arguments"], Any]
 
 def _log_magic(shell: InteractiveShell, magic: str, act: Log) -> Handler:
     def read(line: str, cell: str | None) -> Any:
-        from tuisim.notebook.magic_line import parse_log_line
+        from tuisim.config.magic_line import parse_log_line
 
         found = parse_log_line(line, magic)
         if found.help:

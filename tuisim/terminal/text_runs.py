@@ -17,6 +17,14 @@ Run: TypeAlias = tuple[str, Style]
 Line: TypeAlias = list[Run]
 
 
+def as_markup(text: str) -> str:
+    """Return a text that comes from a file or the user as markup that shows it as it is.
+
+    `textual.markup.escape` leaves some brackets that follow a backslash or stand in quotes.
+    """
+    return text.replace("[", "\\[")
+
+
 def rgb_of(color: Color | None) -> Rgb | None:
     """Return red, green and blue of a colour; None without one, and for a number of the terminal's palette."""
     if color is None or color.triplet is None:

@@ -27,6 +27,13 @@ def guide(pilot: Pilot[Any]) -> GuideScreen:
     return screen
 
 
+def page_text(pilot: Pilot[Any]) -> str:
+    """The words in sight of the page, without the contents beside it."""
+    page = guide(pilot)._page.region
+    rows = screen_text(lab(pilot)).splitlines()[page.y : page.bottom]
+    return " ".join(" ".join(row[page.x : page.right] for row in rows).split())
+
+
 async def opened(pilot: Pilot[Any], *keys: str) -> GuideScreen:
     """Press keys and open the guide."""
     app = await ready(pilot)
@@ -156,3 +163,38 @@ async def test_no_title_is_cut_off(size: tuple[int, int]) -> None:
         await until(pilot, lambda: tree.has_focus and tree.size.width > 0)
         titles = [*(page.title for page in pages().values()), "All keys"]
         assert [title for title in titles if len(title) + 4 > tree.scrollable_content_region.width] == []
+
+
+@pytest.mark.slow_cases("brick")
+@pytest.mark.parametrize(
+    ("panel", "first", "then"),
+    [
+        pytest.param("K", "Press this button of the brick", "The brick", id="brick"),
+        pytest.param("c", "Previous trace", "Pause or resume", id="chart"),
+        pytest.param("X", "enter  apply", "Move the robot to its start pose", id="fields"),
+    ],
+)
+async def test_the_keys_of_the_panel_come_first(panel: str, first: str, then: str) -> None:
+    async with LabApp(settings()).run_test(size=SMALL) as pilot:
+        await opened(pilot, panel)
+        await until_shown(pilot, first)
+        await until_shown(pilot, then)
+        text = screen_text(lab(pilot))
+        assert text.find("In the panel") < text.find(first) < text.find(then)
+
+
+@pytest.mark.parametrize(
+    ("question", "downs", "passage"),
+    [
+        pytest.param("How do I make the robot slower?", 2, "A smaller number makes", id="paragraph"),
+        pytest.param("leave a trace behind the robot", 2, "Clear the pen trace", id="row"),
+        pytest.param("colours look wrong in my terminal", 0, "does not announce", id="first"),
+    ],
+)
+async def test_the_passage_that_answers_is_in_sight(question: str, downs: int, passage: str) -> None:
+    async with LabApp(settings()).run_test(size=SMALL) as pilot:
+        screen = await opened(pilot)
+        screen.query_one(Input).value = question
+        await pilot.press("slash")
+        await until(pilot, lambda: screen.place != KEYS)
+        await pilot.press(*["down"] * downs)

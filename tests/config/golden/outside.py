@@ -24,6 +24,7 @@ from tuisim.commands import batch as batch_command
 from tuisim.commands import resolve
 from tuisim.commands import run as run_command_module
 from tuisim.config.folders import programs_folder
+from tuisim.config.magic_line import parse_line
 from tuisim.config.obstacles import save_obstacles
 from tuisim.config.robots import save_robot
 from tuisim.config.worlds import save_world
@@ -32,7 +33,6 @@ from tuisim.core.tree import from_plain, to_plain
 from tuisim.errors import TuisimError
 from tuisim.notebook import display
 from tuisim.notebook.lab import Lab
-from tuisim.notebook.magic_line import parse_line
 from tuisim.runs import run_folder
 
 MOST_TASKS = 12

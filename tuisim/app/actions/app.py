@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from tuisim.app.action import key_groups
+from tuisim.app.action import KeyWord, key_groups
 from tuisim.app.layout.arrangement import Preset
+from tuisim.app.panels import PANELS
 from tuisim.app.terminal_app import theme_list
 from tuisim.config.files import Scalar
 from tuisim.config.user_config import CELL_SET, THEME, Setting, load_config
@@ -85,13 +87,20 @@ _NUDGES = (
 def show_help(context: ActionContext) -> None:
     """Open the guide: the page of the focused panel, or every key of the app and of the editor."""
     from tuisim.app.editor.area import EDITOR_KEYS
-    from tuisim.app.guide.key_tables import EVERYWHERE
+    from tuisim.app.guide.key_tables import EVERYWHERE, own_keys
     from tuisim.app.guide.screen import TOPICS, GuideScreen, KeyPage, Topic
 
     groups = key_groups(action for action in context.app.ACTIONS.values() if not action.id.startswith("nudge-"))
     groups["Robot"] += _NUDGES
-    keys = KeyPage("All keys", context.app.with_keys(_START), {**groups, "In the code": EDITOR_KEYS, "": EVERYWHERE})
-    context.app.push_screen(GuideScreen(keys, TOPICS.get(context.panels.focused_panel(), Topic())))
+    every: Mapping[str, Iterable[KeyWord]] = {**groups, "In the code": EDITOR_KEYS, "": EVERYWHERE}
+    panel, widgets = context.panels.focused_panel(), context.panels.focused_widgets()
+    topic = TOPICS.get(panel, Topic())
+    # The keys of the code have a group already.
+    if panel != "code" and (own := own_keys(widgets)):
+        here = f"In the panel {PANELS[panel].title}"
+        every, topic = {here: own, **every}, replace(topic, groups=(here, *topic.groups))
+    keys = KeyPage("All keys", context.app.with_keys(_START), every)
+    context.app.push_screen(GuideScreen(keys, topic))
 
 
 def choose_cells(context: ActionContext) -> None:

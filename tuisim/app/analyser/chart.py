@@ -20,7 +20,7 @@ from tuisim.data_class import dataclass
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.picture import MOST_POINTS
 from tuisim.terminal.picture_mode import shows_ascii
-from tuisim.terminal.text_runs import Run
+from tuisim.terminal.text_runs import Run, as_markup
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model
@@ -172,7 +172,7 @@ class LogChart(LinesPanel):
         if time_s is not None and self._model is not None:
             unit = "mm" if self._model.alignment == DISTANCE else "s"
             read = values_at(self._model.traces.drawn(), time_s, unit, self.size.width - 4)
-        self.border_subtitle = "".join(text for text, _ in read).replace("[", "\\[")
+        self.border_subtitle = as_markup("".join(text for text, _ in read))
 
 
 def _around_selected(facets: list[LogTrace], selected: str, most: int) -> list[LogTrace]:

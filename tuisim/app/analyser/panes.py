@@ -27,7 +27,7 @@ from tuisim.logs.bands import Band
 from tuisim.logs.plateaus import Search, plateaus, plateaus_in_subprocess
 from tuisim.logs.signals import QUANTILES
 from tuisim.terminal.cell_view import LinesPanel
-from tuisim.terminal.text_runs import Line, cut, first_shown
+from tuisim.terminal.text_runs import Line, as_markup, cut, first_shown
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -438,4 +438,4 @@ def _summary(model: Model) -> str:
     rows, total = model.rows, model.log.rows
     words = f"{len(rows):,} of {total:,} rows" if len(rows) != total else counted(total, "row")
     conditions = " and ".join(map(str, rows.view.conditions))
-    return f"{words}: {conditions}".replace("[", "\\[") if conditions else words
+    return as_markup(f"{words}: {conditions}") if conditions else words

@@ -15,6 +15,7 @@ from textual.widgets import Input, Static
 
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.errors import TuisimError
+from tuisim.terminal.text_runs import as_markup
 
 if TYPE_CHECKING:
     from tuisim.app.branch import Branch
@@ -36,7 +37,7 @@ class Question(Dialog[str]):
     def __init__(self, title: str, text: str, answers: Sequence[Answer], escape: str = "decides later") -> None:
         super().__init__()
         self.HINT = f"Escape {escape}"
-        self.TITLE_TEXT = title.replace("[", "\\[")
+        self.TITLE_TEXT = as_markup(title)
         self._text = text
         self._answers = answers
 
@@ -208,7 +209,7 @@ class LinePrompt(Dialog[bool]):
         self._text = text
         self._placeholder = placeholder
         self._words = words
-        self.TITLE_TEXT = title.replace("[", "\\[")
+        self.TITLE_TEXT = as_markup(title)
         self._do = do
         self._value = value
         self._forms = forms

@@ -7,7 +7,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 
-from tuisim.app.editor.names import UnknownName, closest, column_of, readable_tree
+from tuisim.app.editor.names import UnknownName, column_of, likely, readable_tree
 from tuisim.config.program_file import parse_unfinished
 from tuisim.errors import did_you_mean
 
@@ -55,7 +55,7 @@ class AttributeCheck:
             row, end = _place_after(lines, node)
             start = end - len(node.attr)
             if lines[row][start:end] == node.attr:
-                close = closest(node.attr, members)
+                close = likely(node.attr, members)
                 hint = did_you_mean([f"`{close}`"]) if close else ""
                 found.append(UnknownName(node.attr, row, start, end, hint, name.id))
         return tuple(found)

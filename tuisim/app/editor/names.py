@@ -11,13 +11,12 @@ import types
 import warnings
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import field
-from difflib import get_close_matches
 from functools import cache
 
 from tuisim.config.program_file import parse_unfinished
 from tuisim.config.program_robot.course import global_names
 from tuisim.data_class import dataclass
-from tuisim.errors import did_you_mean
+from tuisim.errors import closest, did_you_mean
 from tuisim.source import PRELUDE_TEXTS, source_lines
 
 MOST_MENDED = 3
@@ -177,14 +176,14 @@ def _hint(name: str, follows: str, own: set[str], within: Mapping[str, str]) -> 
         return f"`import {name}`"
     if function := within.get(name):
         return f"it exists only inside `{function}`"
-    if close := closest(name, own | within.keys()) or closest(name, _BUILTINS):
+    if close := likely(name, own | within.keys()) or likely(name, _BUILTINS):
         return did_you_mean([f"`{close}`"])
     if module := _modules().get(name):
         return f"`from {module} import {name}`"
     return "put `# %%sim_magic_preloaded` into line 1" if name in _prelude_names("preloaded") else ""
 
 
-def closest(name: str, names: Set[str]) -> str:
-    """Return the name that is most like a name, empty if none is; case does not matter."""
-    by_lower = {known.lower(): known for known in sorted(names) if not known.startswith("_") or name.startswith("_")}
-    return next((by_lower[lower] for lower in get_close_matches(name.lower(), by_lower, 1, _LIKENESS)), "")
+def likely(name: str, names: Set[str]) -> str:
+    """Return the name that may have been meant, empty if there is none."""
+    known = (one for one in sorted(names) if not one.startswith("_") or name.startswith("_"))
+    return next(iter(closest(name, known, 1, _LIKENESS)), "")

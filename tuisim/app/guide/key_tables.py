@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from importlib import import_module
 from typing import Any
 
-from tuisim.app.action import Action, label_of_key
+from textual.binding import Binding
+from textual.dom import DOMNode
+from textual.widgets import Input
+
+from tuisim.app.action import FIELD_KEYS, Action, KeyWord, label_of_key
 from tuisim.app.editor.area import EDITOR_KEYS
 from tuisim.app.keymap import with_keys
 from tuisim.app.panels import PANELS
@@ -17,6 +21,28 @@ from tuisim.guide.tables import Table, code
 
 EVERYWHERE = (("ctrl+p", "Command palette"), ("tab", "Next panel or field"), ("Escape", "Leave a field"))
 """Keys that are no lines of the app's table."""
+
+
+_FEW = 3
+"""Of more keys that do the same, the first and the last are named."""
+
+
+def own_keys(widgets: Iterable[DOMNode]) -> list[KeyWord]:
+    """Return the keys that widgets themselves take, such as a field and the panel around it."""
+    keys: dict[str, list[str]] = {}
+    fields: Sequence[KeyWord] = ()
+    for widget in widgets:
+        fields = FIELD_KEYS if isinstance(widget, Input) else fields
+        # Textual's own classes name keys for scrolling and selecting that nobody looks for.
+        kinds = [kind for kind in type(widget).__mro__ if kind.__module__.startswith("tuisim.")]
+        for bound in [bound for kind in kinds for bound in kind.__dict__.get("BINDINGS", ())]:
+            assert isinstance(bound, Binding)
+            keys.setdefault(bound.description, []).extend(map(label_of_key, bound.key.split(",")))
+    return [*fields, *((_listed(labels), does) for does, labels in keys.items())]
+
+
+def _listed(keys: Sequence[str]) -> str:
+    return " ".join(keys) if len(keys) <= _FEW else f"{keys[0]} … {keys[-1]}"
 
 
 def _keys(actions: Iterable[Action[Any, Any]]) -> list[tuple[str, ...]]:

@@ -21,7 +21,7 @@ from tuisim.app.dialogs.dialog import Dialog
 from tuisim.data_class import dataclass
 from tuisim.guide.catalogue import CONTENTS, pages
 from tuisim.guide.search import SearchResult, search
-from tuisim.guide.text import NO_WORDS, headings_in, linked_names, page_lines
+from tuisim.guide.text import NO_WORDS, headings_in, linked_names, page_lines, rows_of
 from tuisim.terminal.text_runs import Line
 
 
@@ -42,13 +42,13 @@ class Topic:
     page: str = ""
     """Empty for the page with every key."""
     groups: tuple[str, ...] = ()
-    """The groups of keys that stand above the page."""
+    """The groups of keys that stand above the page, or before all others."""
 
 
 _TIME = ("Program", "Time")
 
 TOPICS: Mapping[str, Topic] = {
-    "world": Topic(),
+    "world": Topic(groups=("Program", "Robot")),
     "lesson": Topic("lessons", ("Lesson",)),
     "instrumentation": Topic("how-sensors-see"),
     "output": Topic("writing-programs", ("Program",)),
@@ -70,6 +70,9 @@ TOPICS: Mapping[str, Topic] = {
 _SIDE_BY_SIDE, _PREVIEW = 100, 66
 """Columns from which the contents stay beside a page that is being read, and from which a page is shown beside them."""
 _SEARCH_AGAIN_S = 0.15
+
+_ROWS_OF_PASSAGE = 6
+"""Of a passage, so many rows at least are in sight."""
 
 Place: TypeAlias = tuple[str, str]
 """The name of a page, empty for the keys, and a heading in it, empty for its beginning."""
@@ -117,9 +120,9 @@ class _Contents(Tree[Place | None]):
         """Show the results of a search."""
         self.clear()
         for one in found:
-            node = self.root.add(pages()[one.name].title, (one.name, one.heading), expand=True)
-            if one.heading:
-                node.add_leaf(one.heading, (one.name, one.heading))
+            title = pages()[one.name].title
+            label = Text.assemble(one.heading, (f" · {title}", "dim")) if one.heading else Text(title)
+            self.root.add_leaf(label, (one.name, one.heading))
         if not found:
             self.root.add_leaf(NO_WORDS, None)
 
@@ -153,6 +156,8 @@ class _Page(VerticalScroll):
         """What is in view, and the section that was gone to."""
         self._with_keys = bool(topic.page)
         """Whether the keys of the topic stand above the page."""
+        self._passage = ""
+        """What a search has found in view, in Markdown."""
         self.drawn_columns = 0
         """The columns that it was drawn for; 0 if it was not in view."""
         self._text = Static(markup=False)
@@ -164,9 +169,9 @@ class _Page(VerticalScroll):
         if self.scrollable_content_region.width != self.drawn_columns:
             self._draw()
 
-    def show(self, place: Place) -> None:
-        """Show another page or section."""
-        self.place, self._with_keys = place, False
+    def show(self, place: Place, found: SearchResult | None = None) -> None:
+        """Show another page or section, or what a search has found there."""
+        self.place, self._with_keys, self._passage = place, False, found.passage if found else ""
         self._draw()
 
     def _draw(self) -> None:
@@ -175,16 +180,18 @@ class _Page(VerticalScroll):
             return
         name, heading = self.place
         if not name:
-            self._text.update(Text(f"{self._keys.start}\n\n").append_text(key_table(self._keys.groups, width)))
+            groups = {group: self._keys.groups[group] for group in (*self._topic.groups, *self._keys.groups)}
+            self._text.update(Text(f"{self._keys.start}\n\n").append_text(key_table(groups, width)))
             self.scroll_home(animate=False)
             return
         lines = page_lines(pages()[name], width)
         drawn = _text_of(lines)
         groups = {group: self._keys.groups[group] for group in self._topic.groups if self._with_keys}
         self._text.update(key_table(groups, width).append("\n").append_text(drawn) if groups else drawn)
-        rows = [number for number, line in enumerate(lines) if heading == "".join(part for part, _ in line).strip()]
-        row = rows[0] if heading and rows else 0
-        self.call_after_refresh(self.scroll_to, y=row, animate=False)
+        top, row = rows_of(lines, heading, self._passage)
+        # The heading stays in sight where the passage does, too.
+        first = top if row - top < self.scrollable_content_region.height - _ROWS_OF_PASSAGE else row - 1
+        self.call_after_refresh(self.scroll_to, y=first, animate=False)
 
 
 class GuideScreen(Dialog[None]):
@@ -201,7 +208,7 @@ class GuideScreen(Dialog[None]):
         Binding("question_mark,q", "leave", "Close", show=False),
         Binding("slash", "search", "Search", show=False),
         Binding("tab,shift+tab", "other_side", "Contents or page", show=False),
-        Binding("left", "contents", "Contents", show=False),
+        Binding("left,down", "contents", "Contents", show=False),
         Binding("right", "page", "Page", show=False),
     ]
 
@@ -209,6 +216,7 @@ class GuideScreen(Dialog[None]):
         super().__init__()
         self._keys, self._topic = keys, topic
         self._question = self._answered = ""
+        self._found: Mapping[Place, SearchResult] = {}
 
     def is_ready_for(self, event: events.Event) -> bool:
         """Return whether what a key is meant for is there: the results of the search, where it leads to them."""
@@ -259,15 +267,18 @@ class GuideScreen(Dialog[None]):
     @on(Tree.NodeHighlighted)
     def _preview(self, event: Tree.NodeHighlighted[Place | None]) -> None:
         if event.node.data is not None and self._contents.has_focus:
-            self._page.show(event.node.data)
+            self._show(event.node.data)
 
     @on(Tree.NodeSelected)
     def _open(self, event: Tree.NodeSelected[Place | None]) -> None:
         if event.node.data is None:
             event.node.toggle()
             return
-        self._page.show(event.node.data)
+        self._show(event.node.data)
         self.action_page()
+
+    def _show(self, place: Place) -> None:
+        self._page.show(place, self._found.get(place))
 
     @on(Input.Changed)
     def _type(self, event: Input.Changed) -> None:
@@ -278,6 +289,7 @@ class GuideScreen(Dialog[None]):
         if question != self._question:
             return
         if not question.strip():
+            self._found = {}
             self._contents.show_all(self._keys.title)
             self._now_answered(question)
             return
@@ -288,10 +300,11 @@ class GuideScreen(Dialog[None]):
     def _answer(self, question: str, found: list[SearchResult]) -> None:
         if question != self._question or self.is_closed:
             return
+        self._found = {(one.name, one.heading): one for one in found}
         self._contents.show_found(found)
         if found:
             self._contents.cursor_line = 0
-            self._page.show((found[0].name, found[0].heading))
+            self._show((found[0].name, found[0].heading))
         self._now_answered(question)
 
     def _now_answered(self, question: str) -> None:

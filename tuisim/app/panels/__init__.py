@@ -14,6 +14,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
 
 from tuisim.data_class import dataclass
+from tuisim.terminal.text_runs import as_markup
 
 if TYPE_CHECKING:
     from tuisim.app.setup.next_run import NextRun
@@ -82,7 +83,7 @@ class PanelInfo:
     def titled(self, name: str) -> str:
         """Return its title, with the name of what it shows unless that is empty, as markup."""
         # A file name is no markup.
-        return f"{self.title}: {name}".replace("[", "\\[") if name else self.title
+        return as_markup(f"{self.title}: {name}") if name else self.title
 
     def load(self) -> type[Panel]:
         """Import the panel's class."""

@@ -34,8 +34,11 @@ class Brick(LinesPanel, can_focus=True):
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
-        *(Binding(name, f"tap('{name}')", f"Press {name}", show=False) for name in BUTTONS),
-        *(Binding(f"shift+{name}", f"latch('{name}')", f"Hold {name}", show=False) for name in BUTTONS),
+        *(Binding(name, f"tap('{name}')", "Press this button of the brick", show=False) for name in BUTTONS),
+        *(
+            Binding(f"shift+{name}", f"latch('{name}')", "Hold this button down, or release it", show=False)
+            for name in BUTTONS
+        ),
     ]
 
     @dataclass

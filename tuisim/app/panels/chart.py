@@ -20,7 +20,7 @@ from tuisim.data_class import dataclass
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.pacer import Throttle
 from tuisim.terminal.picture_mode import shows_ascii
-from tuisim.terminal.text_runs import Run
+from tuisim.terminal.text_runs import Run, as_markup
 
 _PERIOD_S = 0.33
 """Drawing a chart takes tens of milliseconds: three times a second is enough to follow it."""
@@ -34,11 +34,8 @@ class Chart(LinesPanel, can_focus=True):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("up", "select(-1)", "Previous trace"),
         Binding("down", "select(1)", "Next trace"),
-        Binding("space", "tick", "Show or hide the trace"),
-        *(
-            Binding(str(number), f"tick({number})", f"Show or hide trace {number}", show=False)
-            for number in range(1, 10)
-        ),
+        Binding("space", "tick", "Show or hide the selected trace"),
+        *(Binding(str(number), f"tick({number})", "Show or hide this trace", show=False) for number in range(1, 10)),
         Binding("left", "move_cursor(-1)", "Cursor back"),
         Binding("right", "move_cursor(1)", "Cursor forward"),
         Binding("shift+left", "move_cursor(-10)", "Cursor far back", show=False),
@@ -214,7 +211,7 @@ class Chart(LinesPanel, can_focus=True):
             self.border_subtitle = self.FROZEN if self._state.x_limits else ""
             return
         read = values_at(self._traces.drawn(), time_s, self._state.unit, self.size.width - 4)
-        self.border_subtitle = "".join(text for text, _ in read).replace("[", "\\[")
+        self.border_subtitle = as_markup("".join(text for text, _ in read))
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
         if self._dragging:

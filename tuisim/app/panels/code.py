@@ -26,6 +26,7 @@ from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
 from tuisim.data_class import dataclass
 from tuisim.source import source_lines
+from tuisim.terminal.text_runs import as_markup
 
 LIT_GAP_S = 0.1
 """Minimum time between two moves of the highlight while the program runs: more often would only flicker."""
@@ -173,7 +174,7 @@ class Code(Vertical):
         words = self._error_words if self.error_line else ""
         told = words or "  ".join(filter(None, ["running text differs" if self.differs else "", keys]))
         helped = Text() if words else self._assistant.said(self.size.width - _FRAME)
-        self.border_subtitle = helped if helped else told.replace("[", "\\[")
+        self.border_subtitle = helped if helped else as_markup(told)
 
     def set_running(self, text: str | None, tells: bool = True) -> None:
         """Set the text of the run in view.

@@ -27,8 +27,8 @@ class Debug(LinesPanel, can_focus=True):
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up", "scroll_lines(-1)", "Up", show=False),
-        Binding("down", "scroll_lines(1)", "Down", show=False),
+        Binding("up", "scroll_lines(-1)", "Scroll up", show=False),
+        Binding("down", "scroll_lines(1)", "Scroll down", show=False),
         Binding("pageup", "scroll_lines(-10)", "Page up", show=False),
         Binding("pagedown", "scroll_lines(10)", "Page down", show=False),
         Binding("left", "frame(-1)", "The called frame", show=False),

@@ -10,6 +10,7 @@ from tuisim.app.action import with_keys_of
 from tuisim.app.panels import PANELS
 from tuisim.app.render.lesson import Away, LessonPicture, LessonView, draw_lesson
 from tuisim.terminal.cell_view import LinesPanel
+from tuisim.terminal.text_runs import as_markup
 
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot
@@ -26,8 +27,8 @@ class LessonPanel(LinesPanel, can_focus=True):
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up", "scroll_text(-1)", "Up", show=False),
-        Binding("down", "scroll_text(1)", "Down", show=False),
+        Binding("up", "scroll_text(-1)", "Scroll up", show=False),
+        Binding("down", "scroll_text(1)", "Scroll down", show=False),
         Binding("pageup", "scroll_text(-8)", "Page up", show=False),
         Binding("pagedown", "scroll_text(8)", "Page down", show=False),
         Binding("left", "turn(-1)", "The step before", show=False),
@@ -93,7 +94,7 @@ class LessonPanel(LinesPanel, can_focus=True):
         key = "{lesson-back} {lesson-on} read on" if self._is_typing else "{lesson-down} reads on"
         is_read = self.can_focus and (below or (self._is_typing and self.reads_on))
         pages = with_keys_of(self.app, key) if is_read else ""
-        words = "↑↓ text · ←→ steps · M menu" if self.has_focus else pages.replace("[", "\\[")
+        words = "↑↓ text · ←→ steps · M menu" if self.has_focus else as_markup(pages)
         if words != self.border_subtitle:
             self.border_subtitle = words
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Command
-from tuisim.notebook.cells import notebook_programs
+from tuisim.config.notebook_file import notebook_programs
 
 LESSON = [
     ("markdown", "# Lesson\n"),

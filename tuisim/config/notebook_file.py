@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.config.files import read_bytes
+from tuisim.config.magic_line import parse_line, persistent_after
 from tuisim.config.program_file import ProgramSource, beside
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest
-from tuisim.notebook.magic_line import parse_line, persistent_after
 from tuisim.source import PRELUDES, Program, source_lines
 
 MAX_NOTEBOOK_BYTES = 64 << 20

@@ -1,0 +1,137 @@
+"""The marks of a class as files that the gradebooks of Moodle and Canvas import.
+
+Moodle finds a student by one column, which one chooses when one imports: user name, ID number or e-mail address.
+Canvas finds a student by `ID` or one of the SIS columns, and reads the most points from a row `Points Possible`.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from enum import StrEnum
+from pathlib import Path
+
+from tuisim.charts.files import write_whole
+from tuisim.config.files import read_bytes
+from tuisim.data_class import dataclass
+from tuisim.errors import ConfigError, listed
+from tuisim.logs.csv_cells import harmless, restored
+from tuisim.marks.feedback import feedback_of
+from tuisim.marks.sheet import Sheet, SheetRow, in_words
+
+MOST_BYTES = 16 << 20
+ITEM = "tuisim"
+"""Name of the assignment, if the task has no title."""
+
+
+class GradebookKind(StrEnum):
+    """Whose gradebook imports the file."""
+
+    MOODLE = "moodle"
+    CANVAS = "canvas"
+
+
+SUBMISSION = "submission"
+"""Column of a roster: the name of the student's file or folder."""
+
+_IDENTITY: Mapping[GradebookKind, Sequence[str]] = {
+    GradebookKind.MOODLE: ("Username", "ID number", "Email address"),
+    GradebookKind.CANVAS: ("Student", "ID", "SIS User ID", "SIS Login ID", "Section"),
+}
+"""Columns that say who a student is."""
+_BY_NAME: Mapping[GradebookKind, str] = {GradebookKind.MOODLE: "Username", GradebookKind.CANVAS: "SIS Login ID"}
+"""The column that is the name of the submission, unless a roster says more."""
+
+
+@dataclass(frozen=True, slots=True)
+class Roster:
+    """Who the students of a class are."""
+
+    people: Mapping[str, Mapping[str, str]]
+    """By the name of the submission: the cells of the row by the column's name in lower case."""
+
+    def missing(self, names: Sequence[str]) -> list[str]:
+        """Return which submissions have no row."""
+        return [name for name in names if name not in self.people]
+
+    def absent(self, names: Sequence[str]) -> list[str]:
+        """Return which rows have no submission."""
+        return [name for name in self.people if name not in names]
+
+
+def read_roster(path: Path) -> Roster:
+    """Read a class list: CSV with a heading, one row a student.
+
+    The column `submission` has the name of the student's file or folder; where there is none, the user name is that
+    name. The other columns have the names that the gradebook gives them, such as `Email address` or `SIS User ID`.
+
+    Raises:
+        ConfigError: it cannot be read, has no such column, or names a submission twice.
+    """
+    shown = str(path)
+    data = read_bytes(path, MOST_BYTES, ConfigError, "there is no such file", "is a folder", "name a CSV file")
+    try:
+        text = data.decode("utf-8-sig")
+        heading = text.partition("\n")[0]
+        separator = max(",;\t", key=heading.count)
+        reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
+        rows = [cells for row in reader if any(cells := [restored(cell.strip()) for cell in row])]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise ConfigError(
+            f"is no CSV in UTF-8: {error}", "a heading, and one row for each student", file=shown
+        ) from error
+    heads = [cell.casefold() for cell in rows[0]] if rows else []
+    keys = (SUBMISSION, *(name.casefold() for name in _BY_NAME.values()))
+    key = next((name for name in keys if name in heads), None)
+    if key is None:
+        raise ConfigError(
+            "has no column that names the submissions",
+            f"name one of the columns: {listed([SUBMISSION, *_BY_NAME.values()])}",
+            file=shown,
+        )
+    people: dict[str, Mapping[str, str]] = {}
+    for row in rows[1:]:
+        person = dict(zip(heads, row, strict=False))
+        name = person.get(key, "")
+        if name in people:
+            raise ConfigError(f"has two rows for {name!r}", "one row for each student", file=shown)
+        if name:
+            people[name] = person
+    return Roster(people)
+
+
+def write_gradebook(
+    path: Path, kind: GradebookKind, sheet: Sheet, sources: Sequence[str], roster: Roster, *, goals: bool
+) -> None:
+    """Write the marks for a gradebook; an existing file is replaced.
+
+    Args:
+        sources: The texts of the students' programs, in the order of the rows, which the feedback quotes.
+        goals: Whether each goal has a column of its own, beside the one of the total.
+
+    Raises:
+        ExportError: it cannot be written.
+    """
+    item = sheet.title or ITEM
+    columns = sheet.columns if goals else ()
+    names = [item, *(f"{item}: {column.name}" for column in columns)]
+    heads = [*_IDENTITY[kind], *names]
+    table = []
+    if kind is GradebookKind.CANVAS:
+        most = [in_words(points) for points in (sheet.most_points, *(column.points for column in columns))]
+        table.append(["Points Possible", *[""] * (len(_IDENTITY[kind]) - 1), *most])
+    else:
+        heads.append("Feedback")
+    for row, source in zip(sheet.rows, sources, strict=True):
+        points = [row.points, *(cell.points for cell in row.cells)][: len(names)]
+        cells = [*_identity(row, kind, roster), *map(in_words, points)]
+        table.append(cells if kind is GradebookKind.CANVAS else [*cells, feedback_of(sheet, row, source)])
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([*map(harmless, row)] for row in [heads, *table])
+    write_whole(path, text.getvalue().encode("utf-8", "backslashreplace"))
+
+
+def _identity(row: SheetRow, kind: GradebookKind, roster: Roster) -> list[str]:
+    person = {_BY_NAME[kind].casefold(): row.name, **roster.people.get(row.name, {})}
+    return [person.get(head.casefold(), "") or (row.name if head == "Student" else "") for head in _IDENTITY[kind]]
