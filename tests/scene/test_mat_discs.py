@@ -50,23 +50,6 @@ def test_discs_show_their_pixels(diameter: int) -> None:
     assert tuple(picture[-1, 0]) == GROUND
 
 
-@pytest.mark.parametrize(
-    ("diameter", "width", "times"),
-    [pytest.param(20, 40, 4, id="whole"), pytest.param(8, 40, 4, id="small"), pytest.param(20, 30, 3, id="narrow")],
-)
-@pytest.mark.parametrize("cell", [(4, 9), (4, 8), (5, 9)], ids=["tall cells", "cells", "wide cells"])
-def test_discs_of_points_have_square_pixels(cell: tuple[int, int], diameter: int, width: int, times: int) -> None:
-    layout = lay_out(2, width, 20)
-
-    picture = draw_discs(layout, [box(diameter, 100), box(diameter, 200)], GROUND, CORNER, cell)
-
-    assert picture.shape == (10 * cell[1], width * cell[0], 3)
-    seen = (picture == 200).all(axis=2)
-    assert seen.sum() == times**2 * disc_pixels(diameter)
-    rows, cols = np.nonzero(seen)
-    assert np.ptp(rows) == np.ptp(cols)
-
-
 def test_a_disc_made_smaller_keeps_its_halves() -> None:
     pixels = np.zeros((20, 20, 3), np.uint8)
     pixels[:, 10:] = 250

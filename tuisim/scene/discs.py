@@ -70,7 +70,7 @@ def lay_out(count: int, width_px: int, height_px: int) -> DiscLayout:
 
 
 def draw_discs(
-    layout: DiscLayout, boxes: Sequence[bytes], ground_rgb: Rgb, corner_rgb: Rgb, cell: tuple[int, int] = (1, 2)
+    layout: DiscLayout, boxes: Sequence[bytes], ground_rgb: tuple[int, int, int], corner_rgb: tuple[int, int, int]
 ) -> Pixels:
     """Return the picture of some discs.
 
@@ -79,28 +79,24 @@ def draw_discs(
         boxes: The pixels of each box: d × d, three bytes a pixel, row-major.
         ground_rgb: Background colour.
         corner_rgb: Colour of the corners of the boxes.
-        cell: The points that are drawn in a cell, two pixels of the layout one above the other: across, and down.
 
     Returns:
-        Shape (points down, points across, 3).
+        Shape (layout.height_px, layout.width_px, 3).
     """
-    across, down = cell
-    height, width = layout.height_px * down // 2, layout.width_px * across
-    side, unit = layout.side_px, min(across, down // 2)
-    picture = np.empty((height, width, 3), np.uint8)
+    picture = np.empty((layout.height_px, layout.width_px, 3), np.uint8)
     picture[:] = ground_rgb
     for (col, row), box in zip(layout.corners, boxes, strict=False):
-        disc = _scaled(disc_in_box(box, corner_rgb), side * unit, unit)
-        top, left = (row * down + side * down - 2 * len(disc)) // 2, col * across + (side * across - len(disc)) // 2
-        picture[top : top + len(disc), left : left + len(disc)] = disc
+        disc = _scaled(box, layout.side_px, corner_rgb)
+        at = (layout.side_px - len(disc)) // 2
+        picture[row + at : row + at + len(disc), col + at : col + at + len(disc)] = disc
     return picture
 
 
-def _scaled(pixels: Pixels, side_px: int, unit: int) -> Pixels:
-    """Return a disc of at most `side_px`, with each pixel up to `unit` times as large, or area-averaged if shrunk."""
+def _scaled(box: bytes, side_px: int, corner_rgb: tuple[int, int, int]) -> Pixels:
+    """Return a disc of at most `side_px`, area-averaged if it has to be shrunk."""
+    pixels = disc_in_box(box, corner_rgb)
     if len(pixels) <= side_px:
-        times = min(unit, side_px // len(pixels))
-        return pixels.repeat(times, axis=0).repeat(times, axis=1)
+        return pixels
     return np.dstack([shrunk(channel, side_px, side_px) for channel in np.moveaxis(pixels, 2, 0)]).astype(np.uint8)
 
 

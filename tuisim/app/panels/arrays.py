@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -26,23 +26,6 @@ _PERIOD_S = 0.25
 _LABEL = Style(color=palette.LABEL)
 
 
-class _Discs(PixelView):
-    """The picture of the discs.
-
-    Args:
-        redraw: Draws it again.
-    """
-
-    def __init__(self, redraw: Callable[[], None]) -> None:
-        super().__init__()
-        self._draw_again = redraw
-
-    def redraw(self) -> None:
-        """Draw the image again: the app's glyphs or colours have changed."""
-        self._raw = None
-        self._draw_again()
-
-
 class Arrays(Widget):
     """The sensor arrays panel: a line of names above the discs if there is room for it."""
 
@@ -54,7 +37,7 @@ class Arrays(Widget):
     def __init__(self) -> None:
         super().__init__()
         self._names = LinesView()
-        self._discs = _Discs(self._redraw)
+        self._discs = PixelView()
         self._snapshot: Snapshot | None = None
         self._drawn: object = None
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
@@ -71,17 +54,14 @@ class Arrays(Widget):
     def on_resize(self) -> None:
         """Show the line of names if there is room for it."""
         self._names.display = self._has_names
-        self.call_after_refresh(self._redraw)
+        self._drawn = None
+        self.call_after_refresh(self._draw)
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment; at most a few updates per second, and the last one with the world."""
         has_stopped = snapshot.has_stopped_since(self._snapshot)
         self._snapshot = snapshot
         self._throttle.ask(at_once=has_stopped)
-
-    def _redraw(self) -> None:
-        self._drawn = None
-        self._draw()
 
     def _draw(self) -> None:
         now = self._snapshot
@@ -101,12 +81,7 @@ class Arrays(Widget):
         boxes = [pixel_array(sensor, now.instant, now.field) for sensor in sensors]
         mode = self._discs.color_mode
         corner_rgb = CORNER_16_RGB if mode.dithers and not mode.grey else CORNER_RGB
-        graphics = self._discs.graphics
-        if graphics is None:
-            self._discs.set_picture(draw_discs(layout, boxes, self._discs.ground_rgb, corner_rgb))
-        else:
-            fine = draw_discs(layout, boxes, self._discs.ground_rgb, corner_rgb, graphics.cell_points)
-            self._discs.set_fine_picture(fine, graphics)
+        self._discs.set_picture(draw_discs(layout, boxes, self._discs.ground_rgb, corner_rgb))
         self._label_discs(layout, [sensor.name for sensor in sensors])
 
     def _label_discs(self, layout: DiscLayout, names: list[str]) -> None:
