@@ -111,7 +111,8 @@ class PixelView(RowsView):
     def cell_for(self, graphics: Graphics | None) -> CellPoints:
         """Return the points of an image in a cell; `graphics` is None for the app's glyphs."""
         if graphics is not None:
-            return graphics.cell
+            width_px, height_px = graphics.cell_px
+            return CellPoints(*graphics.cell_points, height_px / width_px)
         glyphs = glyph_set(self.cell_set)
         return CellPoints(glyphs.cols, glyphs.rows)
 

@@ -15,7 +15,7 @@ import numpy as np
 from tuisim.terminal import kitty, sixel
 from tuisim.terminal.cells import TRUECOLOR, CellRun, color_codes, runs_of
 from tuisim.terminal.picture_options import Protocol
-from tuisim.terminal.pixels import CellPoints, Pixels, packed_rgb
+from tuisim.terminal.pixels import Pixels, packed_rgb
 
 MOST_POINTS, MOST_PAGE_POINTS = 12, 32
 """Most points of a picture across a cell: in a terminal, and in a page, which shows each pixel of a fine screen."""
@@ -46,11 +46,6 @@ class Graphics:
             # It cannot be scaled by the terminal.
             return width_px, height_px
         return max(width_px // self.scale, 1), max(height_px // self.scale, 1)
-
-    @property
-    def cell(self) -> CellPoints:
-        """The points of a picture in a cell."""
-        return CellPoints(*self.cell_points, self.cell_px[1] / self.cell_px[0])
 
 
 class PictureCell(NamedTuple):

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 from rich.text import Text
 from textual import events, on
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
-from textual.geometry import Size
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
@@ -31,8 +30,7 @@ from tuisim.logs.export import is_companion
 from tuisim.scene.mat import shrink
 from tuisim.scene.view import whole_field
 from tuisim.terminal.cell_view import PixelView
-from tuisim.terminal.picture import Graphics
-from tuisim.terminal.pixels import SQUARE, Pixels, Rgb
+from tuisim.terminal.pixels import Pixels
 
 if TYPE_CHECKING:
     from tuisim.app.setup.next_run import NextRun
@@ -41,9 +39,6 @@ if TYPE_CHECKING:
 MAX_FILES = 200
 MAX_TRIED = 50
 """Most files of the folder that are opened to check their format."""
-
-_Preview: TypeAlias = tuple[str, Size, Graphics | None]
-"""The name of a mat, the cells of its picture, and how its pixels are drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -247,7 +242,7 @@ class MatPicker(ListDialog):
         super().__init__()
         self._current, self._mats, self._folder = current, known, folder
         self._shown = ""
-        self._pictures: dict[_Preview, Pixels] = {}
+        self._pictures: dict[tuple[str, int, int], Pixels] = {}
 
     def content(self) -> ComposeResult:
         listed = OptionList(*(Option(name, id=name) for name in self._mats), markup=False)
@@ -287,36 +282,29 @@ class MatPicker(ListDialog):
         if name not in self._mats or not view.size:
             return
         self.query_one("#title", Static).update(self._mats[name].title)
-        key = name, view.size, view.graphics
-        if (picture := self._pictures.get(key)) is not None:
-            self._draw(view, picture)
+        width, height = view.size.width, 2 * view.size.height
+        if (picture := self._pictures.get((name, width, height))) is not None:
+            view.set_picture(picture)
         else:
-            work = partial(self._decode, name, view.size, view.graphics, view.ground_rgb)
-            then, failed = partial(self._decoded, key), partial(self._failed, name)
+            work = partial(self._decode, name, width, height, view.ground_rgb)
+            then, failed = partial(self._decoded, (name, width, height)), partial(self._failed, name)
             background.run(self, work, then, failed, group="picture", exclusive=True)
 
-    def _decode(self, name: str, size: Size, graphics: Graphics | None, outside_rgb: Rgb) -> Pixels:
+    def _decode(self, name: str, width: int, height: int, outside_rgb: tuple[int, int, int]) -> Pixels:
         found = find_mat(name, self._folder)
         mat = decode(read_file(found.image), found.image, found.fit or "stretch")
-        cell = SQUARE if graphics is None else graphics.cell
-        return shrink(mat, whole_field(cell.cols * size.width, cell.rows * size.height, cell), outside_rgb)
+        return shrink(mat, whole_field(width, height), outside_rgb)
 
-    def _decoded(self, key: _Preview, picture: Pixels) -> None:
+    def _decoded(self, key: tuple[str, int, int], picture: Pixels) -> None:
         self._pictures[key] = picture
         if not self.is_attached or key[0] != self._shown:
             return
         view = self.query_one(PixelView)
-        if key[1:] == (view.size, view.graphics):
-            self._draw(view, picture)
-        else:
-            # The view got its height, or other cells, while the image was decoded.
-            self._show_again()
-
-    def _draw(self, view: PixelView, picture: Pixels) -> None:
-        if view.graphics is None:
+        if key[1:] == (view.size.width, 2 * view.size.height):
             view.set_picture(picture)
         else:
-            view.set_fine_picture(picture, view.graphics)
+            # The view got its height while the image was decoded.
+            self._show_again()
 
     def _failed(self, name: str, error: TuisimError) -> None:
         if self.is_attached and name == self._shown:
