@@ -138,6 +138,19 @@ def test_a_lost_question_holds_it_up_but_once() -> None:
     assert 19 <= line.drive(1.0) <= 21
 
 
+def test_questions_to_a_page_that_is_gone_are_no_slow_link() -> None:
+    line = Line(most_queued_s=PAGE_QUEUED_S)
+    line.drive(1.0)
+    line.answers = False
+    line.drive(0.2)
+    line.pacer.shown_elsewhere()
+    line.clock.now_s += 5.0
+    line.answers = True
+
+    assert line.drive(1.0) > 15
+    assert not line.pacer.is_slow
+
+
 def test_what_is_no_frame_is_asked_about_only_if_it_is_large() -> None:
     pacer = Pacer(20, clock=Clock())
 

@@ -8,9 +8,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from textual import events
+from textual import events, on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
+from textual.driver import Driver
 from textual.timer import Timer
 from textual.widget import Widget
 from textual.widgets import Input
@@ -443,6 +444,11 @@ class LabApp(PanelMessages):
 
     def on_cursor_position(self, event: events.CursorPosition) -> None:
         self.pacer.answered()
+
+    @on(Driver.SignalResume)
+    def pace_again(self) -> None:
+        """Wait for no answers of a terminal that was away, or of another page."""
+        self.pacer.shown_elsewhere()
 
     def situation_changed(self) -> None:
         """Update the footer; together with the world once it stands still, or it would be said to before it does."""

@@ -166,6 +166,11 @@ class Pacer:
         self._loose_bytes = 0
         return True
 
+    def shown_elsewhere(self) -> None:
+        """Note that what was sent is not answered any more: another program, or page, had the terminal."""
+        self._asked.clear()
+        self._queued_s = None
+
     def answered(self) -> None:
         """Note an answer of the terminal."""
         self._heard_s = self._clock()
