@@ -21,6 +21,10 @@ class Fingers {
       this.place.addEventListener(kind, (event) => this[kind](event), { passive: false, capture: true });
     }
     this.prepareBar();
+    const first = terminal.onRender(() => {
+      first.dispose();
+      this.prepareKeyboard();
+    });
     // A keyboard on the screen takes its place from the page.
     visualViewport.addEventListener("resize", () => {
       document.body.style.height = `${visualViewport.height}px`;
@@ -45,20 +49,19 @@ class Fingers {
         else if (opens || act) menu.hidden = true;
       }
       for (const button of bar.querySelectorAll("[aria-controls]")) {
-        button.ariaExpanded = !document.getElementById(button.getAttribute("aria-controls")).hidden;
+        const menu = document.getElementById(button.getAttribute("aria-controls"));
+        button.setAttribute("aria-expanded", String(!menu.hidden));
       }
-      if (opens) this.showKeyboard();
+      this.prepareKeyboard();
+      if (opens) this.input.blur();
+      this.input.focus();
       this.fit();
     });
   }
 
   // The keyboard of the screen appears when it is asked for, and not with each touch.
-  showKeyboard() {
-    if (!this.isCoarse) return;
-    const shown = !document.getElementById("keys").hidden;
-    this.input.inputMode = shown ? "text" : "none";
-    this.input.blur();
-    this.input.focus();
+  prepareKeyboard() {
+    if (this.isCoarse) this.input.inputMode = document.getElementById("keys").hidden ? "none" : "text";
   }
 
   get isCoarse() {
@@ -96,7 +99,6 @@ class Fingers {
       this.touch = { kind: "pinch", apart: apart(first, second), px: this.terminal.options.fontSize };
       return;
     }
-    this.input.inputMode = document.getElementById("keys").hidden ? "none" : "text";
     this.touch = { kind: "tap", x: first.clientX, y: first.clientY };
     // A picture is dragged at once; text may be swiped.
     if (this.isOnPicture(first)) this.drag();
