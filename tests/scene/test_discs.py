@@ -1,25 +1,103 @@
-"""Whole pictures of what sensors see, for movies, notebooks and reports."""
+"""What colour sensors see, as pictures and in words."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from tuisim.core.field import disc_pixels
-from tuisim.core.spec import ColorSensorSpec, RobotSpec
-from tuisim.scene.discs import ARRAY_PX, arrays_picture
+from tuisim.config.program_robot.thresholds import AIM, Threshold
+from tuisim.core.sensors.color import ColorReading, LightRead
+from tuisim.scene.discs import RIM_RGB, RINGS, DiscFace, draw_disc
 
-SENSOR: ColorSensorSpec = RobotSpec().color_sensors[0]
+GROUND = (1, 2, 3)
+FACE = DiscFace("left", bytes([128]) * 1200, ColorReading(211.0, 211.0, 211.0), LightRead.PERCENT, 255)
 
 
-@pytest.mark.parametrize("grey", [255, 220, 211, 128, 0])
-def test_a_disc_is_seen_on_paper_whatever_its_colour(grey: int) -> None:
-    side = SENSOR.diameter_mm
-    picture = np.asarray(arrays_picture([(SENSOR, bytes([grey]) * (3 * side**2))])).astype(int)
-    box = picture[: side * ARRAY_PX, : side * ARRAY_PX]
+@pytest.mark.parametrize(
+    ("width", "height", "tall"),
+    [
+        pytest.param(20, 20, 1.0, id="square"),
+        pytest.param(13, 12, 1.0, id="half blocks at 80x24"),
+        pytest.param(26, 18, 4 / 3, id="sextants"),
+        pytest.param(26, 48, 0.5, id="wide pixels"),
+        pytest.param(200, 300, 1.0, id="pixels"),
+    ],
+)
+@pytest.mark.parametrize("grey", [255, 128, 0])
+def test_a_disc_is_whole_and_round_at_every_size(width: int, height: int, tall: float, grey: int) -> None:
+    picture = draw_disc(bytes([grey]) * 1200, width, height, GROUND, RIM_RGB, tall)
 
-    is_disc = (box == grey).all(axis=2)
-    assert is_disc.sum() == disc_pixels(side) * ARRAY_PX**2
-    corner = box[0, 0]
-    assert (box[~is_disc] == corner).all()
-    assert abs(corner - grey).max() > 40 and abs(corner - 255).max() > 40
+    is_disc = (picture == grey).all(axis=2)
+    rows, cols = np.flatnonzero(is_disc.any(axis=1)), np.flatnonzero(is_disc.any(axis=0))
+    assert picture.shape == (height, width, 3)
+    assert abs(rows[0] + rows[-1] + 1 - height) <= 1 and abs(cols[0] + cols[-1] + 1 - width) <= 1
+    across, down = len(cols), len(rows) * tall
+    assert abs(across - down) <= 2 * max(1.0, tall)
+    assert across >= 0.6 * min(width, height * tall)
+
+
+def test_there_may_be_hardly_any_room() -> None:
+    assert draw_disc(bytes([255]) * 1200, 1, 1, GROUND, RIM_RGB).shape == (1, 1, 3)
+
+
+@pytest.mark.parametrize("paper", [(255, 255, 255), (16, 21, 28)], ids=["paper", "screen"])
+@pytest.mark.parametrize("grey", [255, 220, 211, 128, 16, 0])
+def test_the_outline_of_a_disc_is_seen_whatever_its_colour(paper: tuple[int, int, int], grey: int) -> None:
+    picture = draw_disc(bytes([grey]) * 1200, 120, 120, paper, RIM_RGB).astype(int)
+
+    column = picture[:60, 60]
+    disc, ground = column[-1], column[0]
+    apart = [min(abs(pixel - disc).max(), abs(pixel - ground).max()) for pixel in column]
+    assert abs(disc - ground).max() > 40 or max(apart) > 25
+
+
+def test_a_disc_made_smaller_keeps_its_halves() -> None:
+    pixels = np.zeros((20, 20, 3), np.uint8)
+    pixels[:, 10:] = 250
+
+    picture = draw_disc(pixels.tobytes(), 10, 10, GROUND, RIM_RGB)
+
+    assert picture[5, 2, 0] == 0
+    assert picture[5, 7, 0] == 250
+
+
+def test_rings_are_means_from_the_inside() -> None:
+    pixels = np.zeros((20, 20, 3), np.uint8)
+    pixels[8:12, 8:12] = 255
+
+    face = replace(FACE, box=pixels.tobytes())
+
+    assert face.rings[0] > 30 and face.rings[1:] == (0, 0)
+    assert len(face.ring_words) == len(RINGS)
+
+
+@pytest.mark.parametrize(
+    ("read", "most", "words"),
+    [
+        (LightRead.PERCENT, 255, "82.7 %"),
+        (LightRead.REFLECTED, 255, "211 of 255"),
+        (LightRead.REFLECTED, 100, "82 of 100"),
+        (LightRead.REFLECTION, 100, "82 %"),
+        (LightRead.MEAN, 255, "mean 82.7 %"),
+    ],
+)
+def test_the_value_is_what_the_program_gets(read: LightRead, most: int, words: str) -> None:
+    assert replace(FACE, read=read, reflected_max=most).value_words == words
+
+
+def test_thresholds_say_what_they_give_now() -> None:
+    thresholds = (
+        Threshold(LightRead.PERCENT, ">", 90, 15),
+        Threshold(LightRead.COLOR, "==", 6, 16),
+        Threshold(LightRead.PERCENT, AIM, 50, 17),
+        Threshold(LightRead.REFLECTED, "<", 300, 18),
+    )
+
+    face = replace(FACE, thresholds=thresholds)
+
+    assert face.limit_words(99) == "> 90: no, line 15; == White: yes, line 16; aim 50, line 17; < 300: yes, line 18"
+    assert face.limit_words(50) == "> 90: no; == White: yes; aim 50; < 300: yes"
+    assert face.limit_words(13) == "> 90: no"
+    assert face.limit_shares == (0.9, 0.5)

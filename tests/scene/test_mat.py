@@ -5,8 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tuisim.core.spec import FIELD_HEIGHT_MM
 from tuisim.scene.mat import MatPictures, shrink
 from tuisim.scene.view import Viewport, whole_field
+from tuisim.terminal.glyphs import glyph_set
+from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import CellPoints, Pixels
 
 OUTSIDE = (1, 2, 3)
@@ -48,7 +51,31 @@ def test_a_thin_line_is_kept(width_mm: int, ground: int, ink: int) -> None:
     strongest = max(abs(value - ground) for value in middle_row(pixels))
 
     # The mean alone would leave 4 of 31 parts of the contrast.
-    assert strongest > 0.24 * abs(ink - ground)
+    assert strongest > 0.3 * abs(ink - ground)
+
+
+@pytest.mark.parametrize("cells", list(CellSet))
+@pytest.mark.parametrize("size", [(50, 12), (74, 20), (120, 36)], ids=str)
+@pytest.mark.parametrize("across_per_down", [0.0, 0.37, 1.0, 3.1], ids=["upright", "steep", "even", "flat"])
+def test_a_thin_line_has_no_gaps(cells: CellSet, size: tuple[int, int], across_per_down: float) -> None:
+    """Each point of the line is seen in the picture at its place or beside it."""
+    pixels, down = mat(), np.arange(100, 1000)
+    middle = (600 + across_per_down * (down - 100)).astype(int)
+    rows = down[middle < 2300]
+    thick = 10 * np.hypot(1, across_per_down)
+    for row, col in zip(rows, middle, strict=False):
+        pixels[row, round(col - thick / 2) : round(col + thick / 2)] = 0
+
+    glyphs = glyph_set(cells)
+    view = whole_field(size[0] * glyphs.cols, size[1] * glyphs.rows, CellPoints(glyphs.cols, glyphs.rows))
+    picture = shrink(pixels, view, OUTSIDE)[..., 0].astype(int)
+
+    around = np.pad(picture, 1, constant_values=255)
+    near = np.min([around[r : r + len(picture), c : c + picture.shape[1]] for r in range(3) for c in range(3)], axis=0)
+    at = [view.to_px(float(col), float(FIELD_HEIGHT_MM - row)) for row, col in zip(rows, middle, strict=False)]
+    seen = [255 - near[int(row), int(col)] for col, row in at]
+    assert min(seen) > 60
+    assert min(seen) > 0.5 * max(seen)
 
 
 def test_bands_keep_their_grey() -> None:

@@ -94,9 +94,9 @@ def test_the_robot_in_signs_has_a_sign_of_its_own(heading: int) -> None:
     signs = body(view, Pose(1181, 571, heading), outline_of(RobotSpec()))
 
     assert {GLYPHS[cell >> 48] for cell in signs.values()} == {"&"}
-    assert 8 <= len(signs) <= 18
+    assert 8 <= len(signs) <= 22
     rows, cols = ({at[axis] for at in signs} for axis in (0, 1))
-    assert rows <= {8, 9, 10, 11} and cols <= set(range(21, 29))
+    assert rows <= set(range(8, 13)) and cols <= set(range(21, 30))
     assert "&" not in SIGNS
 
 

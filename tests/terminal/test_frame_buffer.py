@@ -222,7 +222,7 @@ async def test_the_terminal_shows_a_picture_after_partial_updates() -> None:
     picture = photo()
     rng = np.random.default_rng(4)
     async with app.run_test(size=(80, 24)) as pilot:
-        app.view.set_picture(picture)
+        app.view.set_fine_picture(picture)
         await pilot.pause()
         compositor = app.screen._compositor
         stream.feed(sent(frame_buffer, compositor.render_full_update()))
@@ -230,7 +230,7 @@ async def test_the_terminal_shows_a_picture_after_partial_updates() -> None:
             picture = picture.copy()
             for y, x in zip(rng.integers(0, 2 * ROWS, 12), rng.integers(0, WIDTH, 12), strict=True):
                 picture[y, x] = rng.integers(0, 256, 3)
-            app.view.set_picture(picture)
+            app.view.set_fine_picture(picture)
             compositor._dirty_regions = {app.view.region}
             update = compositor.render_partial_update()
             assert update is not None

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tuisim.terminal.probe import colors_without_asking
+from tuisim.terminal.probe import colors_without_asking, name_around
 
 AROUND = {"COLORTERM": "truecolor"}
 TMUX = {"TMUX": "/run/tmux/default,1,0"}
@@ -45,6 +45,23 @@ def tmux(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_the_colours_in_a_multiplexer(tmux: Path, environment: Mapping[str, str], features: str, colors: str) -> None:
     tmux.write_text(f"{features}\n")
     assert colors_without_asking({**AROUND, **environment}) == colors
+
+
+@pytest.mark.parametrize(
+    ("name", "environment", "told", "around"),
+    [
+        pytest.param("tmux 3.5a", TMUX, "kitty(0.42.1)", "kitty(0.42.1)", id="kitty around tmux"),
+        pytest.param("tmux 3.5a", TMUX, "", "tmux 3.5a", id="unknown"),
+        pytest.param("tmux 3.5a", {}, "kitty(0.42.1)", "tmux 3.5a", id="over SSH"),
+        pytest.param("tmux 3.5a", {"STY": "1.pts", **TMUX}, "kitty(0.42.1)", "tmux 3.5a", id="screen in tmux"),
+        pytest.param("foot(1.22.0)", TMUX, "kitty(0.42.1)", "foot(1.22.0)", id="no tmux"),
+    ],
+)
+def test_the_terminal_around_tmux(
+    tmux: Path, name: str, environment: Mapping[str, str], told: str, around: str
+) -> None:
+    tmux.write_text(f"{told}\n")
+    assert name_around(name, environment) == around
 
 
 def test_a_tmux_that_is_not_there_or_does_not_answer_means_256_colours(

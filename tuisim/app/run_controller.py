@@ -203,6 +203,7 @@ class RunController:
             now_tick=now_tick,
             now_pose=newest.pose if newest and past else None,
             earlier_pose=self._earlier_pose(instant) if record else None,
+            program=self.program,
         )
 
     def _earlier_pose(self, instant: Instant) -> Pose | None:

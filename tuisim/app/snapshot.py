@@ -16,6 +16,7 @@ from tuisim.core.state import Instant
 from tuisim.data_class import dataclass
 from tuisim.protocol import End, Ended, Inspected, Paused, RunState, Unended
 from tuisim.runs.brick_state import BrickState
+from tuisim.source import Program
 
 
 class RunPhase(StrEnum):
@@ -80,6 +81,8 @@ class Snapshot:
     """The current pose of the robot, while another instant is viewed."""
     earlier_pose: Pose | None = None
     """The pose of the robot of an earlier run at the same time; None if none is shown, or if it is the same."""
+    program: Program | None = None
+    """The program of the run, or of the next one."""
 
     @cached_property
     def time_s(self) -> float:

@@ -20,11 +20,11 @@ from tuisim.charts.layout import (
     drawn_until,
     laid_out,
     moved,
-    shortened,
 )
 from tuisim.charts.sample_chart import sample_chart
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, printable
+from tuisim.movies.arrays import arrays_drawing
 from tuisim.movies.clip import ClipMoment, ClipPanel, Recorded
 from tuisim.movies.pictures import MovingWorld, SensorArrays
 from tuisim.scene.pictures import fitting_view
@@ -44,8 +44,10 @@ _STRIP_PX = 190
 _STRIP_SHARE = 0.34
 """Their share of a given height."""
 _CAPTION_PX = LINE_PX + 8
-_LABEL_PX = LINE_PX
-_ARRAYS_SHARE = 0.4
+_LABELS_PX = 5 * LINE_PX
+_FACE_PX = 130
+"""Width of a disc with its words."""
+_ARRAYS_SHARE = 0.45
 """Largest share of the width that the arrays take beside a chart."""
 
 
@@ -124,22 +126,9 @@ class FramePainter:
             picture = self._world.at(moment)
             yield _centred(box, picture.size), picture
         if box := self._boxes.get(ClipPanel.ARRAYS):
-            yield from self._arrays_at(moment, box)
+            yield box, arrays_drawing(self._arrays.at(moment), box.width, box.height)
         if box := self._boxes.get(ClipPanel.CHART):
             yield box, drawn_until(self._chart, moment.time_s)
-
-    def _arrays_at(self, moment: ClipMoment, box: PictureBox) -> Iterable[tuple[PictureBox, Drawing | Image]]:
-        from PIL import Image
-
-        arrays = self._arrays.at(moment)
-        each = box.width // max(len(arrays), 1)
-        side = min(each - PAD, box.height - _LABEL_PX)
-        for at, (name, picture) in enumerate(arrays):
-            place = PictureBox(box.left + at * each + (each - side) // 2, box.top + _LABEL_PX, side, side)
-            yield place, picture.resize((side, side), Image.Resampling.NEAREST)
-            label = shortened(name, side)
-            words = Words(side / 2, _LABEL_PX / 2, label, "middle")
-            yield PictureBox(place.left, box.top, side, _LABEL_PX), Drawing(label, side, _LABEL_PX, (words,))
 
 
 def _boxes(panels: Sequence[ClipPanel], size: Size, sensors: int) -> dict[ClipPanel, PictureBox]:
@@ -160,7 +149,7 @@ def _boxes(panels: Sequence[ClipPanel], size: Size, sensors: int) -> dict[ClipPa
         boxes[ClipPanel.WORLD] = PictureBox(PAD, _CAPTION_PX, width, height - strip)
     left, top = PAD, size[1] - PAD - strip
     if ClipPanel.ARRAYS in below:
-        wanted = sensors * (strip - _LABEL_PX + PAD)
+        wanted = sensors * max(strip - _LABELS_PX + PAD, _FACE_PX)
         taken = min(wanted, round(width * _ARRAYS_SHARE)) if ClipPanel.CHART in below else width
         boxes[ClipPanel.ARRAYS] = PictureBox(left, top, taken, strip)
         left, width = left + taken, width - taken

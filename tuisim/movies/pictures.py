@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tuisim.config.mat_cache import mat_pixels
-from tuisim.core.sensors.color import pixel_array
 from tuisim.movies.clip import ClipMoment, Recorded
 from tuisim.runs.recorded_run import Recording
 from tuisim.runs.run_folder import mat_files, open_mat
 from tuisim.runs.views import instant_of
-from tuisim.scene.discs import arrays_picture
+from tuisim.scene.discs import DiscFace, disc_faces
 from tuisim.scene.pen import pen_trace
 from tuisim.scene.pictures import scene_of, sound_pose, world_painter
 from tuisim.scene.view import Viewport
@@ -59,16 +58,10 @@ class SensorArrays:
         self._run = recorded.run
         self._mat, self._recording = open_mat(recorded.run), Recording(recorded.run)
 
-    def at(self, moment: ClipMoment) -> list[tuple[str, Image]]:
-        """Return name and square picture of each sensor."""
+    def at(self, moment: ClipMoment) -> list[DiscFace]:
+        """Return what is shown of each sensor; nothing for a damaged record."""
         if sound_pose(moment.record) is None:
             return []
-        spec = self._run.spec
-        instant = instant_of(moment.record, spec, self._run.noise_at(moment.record))
-        field = self._recording.field_at(moment.tick, self._mat)
-        found = []
-        for sensor in spec.robot.color_sensors:
-            picture = arrays_picture([(sensor, pixel_array(sensor, instant, field))])
-            # Without the gap to a neighbour.
-            found.append((sensor.name, picture.crop((0, 0, picture.height, picture.height))))
-        return found
+        run = self._run
+        instant = instant_of(moment.record, run.spec, run.noise_at(moment.record))
+        return disc_faces(run.spec, instant, self._recording.field_at(moment.tick, self._mat), run.program)

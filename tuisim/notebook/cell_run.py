@@ -308,7 +308,7 @@ class _Screen:
                 self._position = after
         last = run.telemetry.last() or start_record(cell.spec)
         traces = (*cell.traces, pen_trace(cell.spec, run.telemetry.array()))
-        self._stage.show(Scene(cell.spec, cell.files, cell.program.text, last, traces, self._samples), status)
+        self._stage.show(Scene(cell.spec, cell.files, cell.program, last, traces, self._samples), status)
 
 
 def shown_text(row: OutputRow) -> str:

@@ -22,13 +22,13 @@ from tuisim.core.sensors import readings
 from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
-from tuisim.notebook.image_log import arrays_at
+from tuisim.movies.arrays import FACE_PX, arrays_drawing
 from tuisim.runs.samples import Sample
 from tuisim.runs.views import TickRecord, instant_of
-from tuisim.scene.discs import arrays_picture
+from tuisim.scene.discs import disc_faces
 from tuisim.scene.pen import Piece
 from tuisim.scene.pictures import world_picture
-from tuisim.source import source_lines
+from tuisim.source import Program, source_lines
 
 _LEFT_RIGHT = ("left", "right")
 
@@ -72,8 +72,8 @@ class Scene:
 
     spec: RunSpec
     files: FieldFiles
-    text: str
-    """The program."""
+    program: Program | None
+    """None if there is none yet."""
     last: TickRecord
     """The tick to display."""
     traces: Sequence[Piece] = ()
@@ -127,7 +127,9 @@ _TABLES: Mapping[str, Callable[[Scene], list[Row]]] = {
     "positioning": _positioning,
     "noise": lambda scene: [(name, str(level)) for name, level in asdict(scene.spec.world.noise).items()],
     "settings": _settings,
-    "code": lambda scene: [(str(number), line) for number, line in enumerate(source_lines(scene.text), 1)],
+    "code": lambda scene: [
+        (str(number), line) for number, line in enumerate(source_lines(scene.program.text if scene.program else ""), 1)
+    ],
 }
 """The rows of each panel's table."""
 
@@ -169,8 +171,10 @@ class Stage:
             picture = world_picture(spec, mat, pose, scene.traces, rays=self._settings["rays"])
             self._put("world", picture_bundle(picture, "world"))
         if "arrays" in on:
-            arrays = arrays_at(spec, scene.last, spec.world.noise, open_field(scene.files))
-            self._put("arrays", picture_bundle(arrays_picture(arrays), "sensor arrays"))
+            instant = instant_of(scene.last, spec, spec.world.noise)
+            faces = disc_faces(spec, instant, open_field(scene.files), scene.program)
+            drawing = arrays_drawing(faces, FACE_PX[0] * max(len(faces), 1), FACE_PX[1])
+            self._put("arrays", picture_bundle(image_of(drawing), "sensor arrays"))
         if "chart" in on:
             drawing = laid_out(sample_chart(scene.samples, CHART_SIZE[0]), *CHART_SIZE, titled=False)
             self._put("chart", picture_bundle(image_of(drawing), "chart"))

@@ -305,14 +305,14 @@ class Lab:
         from tuisim.runs.records import TEXT_STREAMS
         from tuisim.runs.samples import samples_of
 
-        text, start = plan.program.text if plan.program else "", start_record(plan.spec)
+        program, start = plan.program, start_record(plan.spec)
         if self._last is None:
-            return Scene(plan.spec, plan.files, text, start, self._traces, printed=()), (
-                "ready: -R runs the program" if text else "ready")  # fmt: skip
+            return Scene(plan.spec, plan.files, program, start, self._traces, printed=()), (
+                "ready: -R runs the program" if program and program.text else "ready")  # fmt: skip
         rows = self._last.output.all_rows()
         printed = [shown_text(row) for row in rows if row.stream in TEXT_STREAMS]
         last, samples = self._last.telemetry.last() or start, list(samples_of(rows))
-        return Scene(plan.spec, plan.files, text, last, self._traces, samples, printed), end_text(self._last)
+        return Scene(plan.spec, plan.files, program, last, self._traces, samples, printed), end_text(self._last)
 
 
 roboSim = Lab()  # noqa: N816 - the course's cells call it so

@@ -1,103 +1,178 @@
-"""What colour sensors see: discs of pixels, side by side."""
+"""What colour sensors see: discs of pixels, drawn in any size from one description."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+import math
 
 import numpy as np
 import numpy.typing as npt
 
+from tuisim.config.program_robot.thresholds import Threshold, read_in, thresholds_in
 from tuisim.core.css_colors import Rgb
-from tuisim.core.field import disc_mask
-from tuisim.core.spec import ColorSensorSpec
+from tuisim.core.field import Field, disc_mask
+from tuisim.core.sensors.color import ColorReading, LightRead, pixel_array, reading
+from tuisim.core.spec import RunSpec
+from tuisim.core.state import Instant
 from tuisim.data_class import dataclass
+from tuisim.source import Program
 from tuisim.terminal.pixels import Pixels
 
-if TYPE_CHECKING:
-    from PIL.Image import Image
+RIM_RGB = (58, 70, 88)
+"""Around a disc: neither black, white nor a colour of a mat, so that its outline is seen on any of them."""
 
-ARRAY_PX = 6
-"""Side of one sensor pixel in the arrays' picture."""
+RIM_16_RGB = (0, 0, 135)
+"""In place of `RIM_RGB` for 8 or 16 colours: they have no grey to spare, and a pattern would outshine the disc."""
 
-CORNER_RGB = (58, 70, 88)
-"""Outside the disc of a sensor: neither black, white nor a colour of a mat, so that its outline is seen on any of them.
-"""
+RINGS = ("centre", "middle", "edge")
+"""Rings of equal width, from the inside."""
 
-FULL_PX = 20
-"""Largest size of a disc, besides its own diameter."""
-
-CORNER_16_RGB = (0, 0, 135)
-"""In place of `CORNER_RGB` for 8 or 16 colours: they have no grey to spare, and a pattern would outshine the disc."""
+_RIM_SHARE = 0.06
+"""Width of the rim, as a share of the diameter."""
+_FINEST = 80
+"""Samples across a disc: of a small one, several a pixel."""
 
 
 @dataclass(frozen=True, slots=True)
-class DiscLayout:
-    """Where the discs are in a picture, in pixels."""
+class DiscFace:
+    """What is shown of a colour sensor."""
 
-    width_px: int
-    height_px: int
-    side_px: int
-    """Side of the box around a disc."""
-    corners: tuple[tuple[int, int], ...]
-    """Column and row of the upper left corner of each box."""
-    beside: bool
-    """Whether they are side by side, and not one above the other."""
+    name: str
+    box: bytes
+    """The pixels of the box around its disc: d × d, three bytes a pixel, row-major."""
+    seen: ColorReading
+    read: LightRead
+    """What the program reads of it."""
+    reflected_max: int
+    """Value of `reflected_light_intensity` on white."""
+    thresholds: tuple[Threshold, ...] = ()
+    """What the program compares it with."""
+
+    @property
+    def value_words(self) -> str:
+        """What the program gets."""
+        value = self.read.measured(self.seen, self.reflected_max)
+        match self.read:
+            case LightRead.REFLECTED:
+                return f"{value:.0f} of {self.reflected_max}"
+            case LightRead.MEAN:
+                return f"mean {value:.1f} %"
+            case LightRead.REFLECTION:
+                return f"{value:.0f} %"
+            case _:
+                return f"{value:.1f} %"
+
+    @property
+    def share(self) -> float:
+        """What the program gets, as a share of what it gets on white."""
+        return self.read.measured(self.seen, self.reflected_max) / self.read.most(self.reflected_max)
+
+    @property
+    def limit_shares(self) -> tuple[float, ...]:
+        """The thresholds on the same scale, those on it."""
+        shares = [one.value / one.read.most(self.reflected_max) for one in self.thresholds if not one.read.is_color]
+        return tuple(share for share in dict.fromkeys(shares) if 0 <= share <= 1)
+
+    def limit_words(self, width: int) -> str:
+        """Return the comparisons of the program and what they give now, such as `> 90: no, line 15`.
+
+        Args:
+            width: Letters; the lines are left out to fit, then all but the first comparison.
+        """
+        said = []
+        for one in self.thresholds:
+            holds = one.holds(one.read.measured(self.seen, self.reflected_max))
+            said.append(one.words + ("" if holds is None else ": yes" if holds else ": no"))
+        with_lines = (f"{words}, line {one.line}" for words, one in zip(said, self.thresholds, strict=True))
+        variants = ("; ".join(with_lines), "; ".join(said), *said[:1])
+        return next((words for words in variants if len(words) <= width), variants[-1])
+
+    @property
+    def rings(self) -> tuple[float, ...]:
+        """The mean red of each of `RINGS`, in percent: red is what programs read as light."""
+        red = np.frombuffer(self.box, np.uint8)[::3]
+        side = round(len(red) ** 0.5)
+        at = np.arange(side) - side / 2
+        ring = np.hypot(at[:, None], at[None, :]).ravel() / (side / 2) * len(RINGS)
+        found = [red[(ring >= first) & (ring < first + 1)] for first in range(len(RINGS))]
+        # The disc of a sensor of 2 mm has no middle.
+        return tuple(float(part.mean()) / 255 * 100 if len(part) else math.nan for part in found)
+
+    @property
+    def ring_words(self) -> list[str]:
+        """The rings as whole numbers."""
+        return ["–" if math.isnan(value) else f"{value:.0f}" for value in self.rings]
 
 
-def lay_out(count: int, width_px: int, height_px: int) -> DiscLayout:
-    """Side by side rather than one above the other.
+def disc_faces(spec: RunSpec, instant: Instant, field: Field, program: Program | None) -> list[DiscFace]:
+    """Return what is shown of each colour sensor of a run at an instant.
 
     Args:
-        count: How many discs.
-        width_px: Width of the picture.
-        height_px: Height of the picture, an even number.
+        spec: The run.
+        instant: The instant.
+        field: The mat, prepared for the sensors.
+        program: What tells which value is shown, and its thresholds; None for none.
     """
-    count = max(count, 1)
-    beside_px = min(FULL_PX, width_px // count, height_px)
-    # Boxes start on even rows: a cell holds two pixels, one above the other.
-    stacked_px = min(FULL_PX, width_px, height_px // count // 2 * 2)
-    beside = beside_px >= stacked_px
-    side = max(beside_px if beside else stacked_px, 1)
-    if beside:
-        spare = width_px - count * side
-        gap = min(spare // (count + 1), 4)
-        left = (width_px - count * side - (count - 1) * gap) // 2
-        corners = [(left + at * (side + gap), 0) for at in range(count)]
-    else:
-        corners = [((width_px - side) // 2, at * side) for at in range(count)]
-    return DiscLayout(width_px, height_px, side, tuple(corners), beside)
+    thresholds = thresholds_in(program, spec.robot) if program else {}
+    faces = []
+    for sensor in spec.robot.color_sensors:
+        limits = thresholds.get(sensor.name, ())
+        read = next((one.read for one in limits if not one.read.is_color), read_in(program))
+        box, seen = pixel_array(sensor, instant, field), reading(sensor, instant, field)
+        faces.append(DiscFace(sensor.name, box, seen, read, spec.profile.reflected_max, limits))
+    return faces
 
 
-def draw_discs(
-    layout: DiscLayout, boxes: Sequence[bytes], ground_rgb: tuple[int, int, int], corner_rgb: tuple[int, int, int]
-) -> Pixels:
-    """Return the picture of some discs.
+def draw_disc(box: bytes, width_px: int, height_px: int, ground_rgb: Rgb, rim_rgb: Rgb, tall: float = 1.0) -> Pixels:
+    """Return the picture of a disc, as large as it fits, in the middle.
 
     Args:
-        layout: Their places.
-        boxes: The pixels of each box: d × d, three bytes a pixel, row-major.
+        box: The pixels of its box: d × d, three bytes a pixel, row-major.
+        width_px: Width of the picture, at least 1.
+        height_px: Its height, at least 1.
         ground_rgb: Background colour.
-        corner_rgb: Colour of the corners of the boxes.
+        rim_rgb: Colour around the disc.
+        tall: Height of a pixel, as a multiple of its width.
 
     Returns:
-        Shape (layout.height_px, layout.width_px, 3).
+        Shape (height_px, width_px, 3).
     """
-    picture = np.empty((layout.height_px, layout.width_px, 3), np.uint8)
+    pixels = np.frombuffer(box, np.uint8).reshape(-1, 3)
+    diameter = round(len(pixels) ** 0.5)
+    side_px = min(width_px, height_px * tall)
+    fine = max(1, min(6, math.ceil(_FINEST / side_px)))
+    rim_mm = _RIM_SHARE * diameter
+    mm_per_px = (diameter + 2 * rim_mm) / side_px
+    east = _from_middle(width_px, fine) * mm_per_px
+    north = _from_middle(height_px, fine) * mm_per_px * tall
+    # A disc lies around the middle of a pixel of its box, see `disc_mask`.
+    cols, rows = (np.floor(at + diameter / 2 + 0.5).astype(np.intp) for at in (east, north))
+    inside = np.zeros((diameter + 2, diameter + 2), bool)
+    inside[1:-1, 1:-1] = disc_mask(diameter)
+    cols, rows = cols.clip(-1, diameter), rows.clip(-1, diameter)
+    within = inside[rows[:, None] + 1, cols[None, :] + 1]
+    is_rim = np.hypot(north[:, None], east[None, :]) <= diameter / 2 + rim_mm
+    inside_share, rim_share = (_means(part[..., None], fine)[..., 0] for part in (within, is_rim))
+    # Each pixel has one colour of disc, rim or ground: mixed ones would blur the outline.
+    picture = np.empty((height_px, width_px, 3), np.uint8)
     picture[:] = ground_rgb
-    for (col, row), box in zip(layout.corners, boxes, strict=False):
-        disc = _scaled(box, layout.side_px, corner_rgb)
-        at = (layout.side_px - len(disc)) // 2
-        picture[row + at : row + at + len(disc), col + at : col + at + len(disc)] = disc
+    picture[rim_share >= 0.5] = rim_rgb
+    at = rows.clip(0, diameter - 1)[:, None] * diameter + cols.clip(0, diameter - 1)[None, :]
+    seen = _means(pixels[at] * within[..., None], fine) / np.maximum(inside_share, 1e-9)[..., None]
+    is_disc = inside_share >= 0.5
+    picture[is_disc] = np.rint(seen[is_disc])
     return picture
 
 
-def _scaled(box: bytes, side_px: int, corner_rgb: tuple[int, int, int]) -> Pixels:
-    """Return a disc of at most `side_px`, area-averaged if it has to be shrunk."""
-    pixels = disc_in_box(box, corner_rgb)
-    if len(pixels) <= side_px:
-        return pixels
-    return np.dstack([shrunk(channel, side_px, side_px) for channel in np.moveaxis(pixels, 2, 0)]).astype(np.uint8)
+def _means(samples: npt.NDArray[np.generic], fine: int) -> npt.NDArray[np.float64]:
+    """Return the mean of each block of `fine` × `fine` samples, shape (rows, columns, channels)."""
+    rows, cols, channels = samples.shape
+    means: npt.NDArray[np.float64] = samples.reshape(rows // fine, fine, cols // fine, fine, channels).mean(axis=(1, 3))
+    return means
+
+
+def _from_middle(size_px: int, fine: int) -> npt.NDArray[np.float64]:
+    """Return the places of samples in pixels from the middle; the middle of an odd size is that of a pixel."""
+    return (np.arange(size_px * fine) + 0.5) / fine - size_px / 2
 
 
 def shrunk(pixels: npt.NDArray[np.uint8], rows: int, columns: int) -> npt.NDArray[np.float64]:
@@ -116,31 +191,3 @@ def shrunk(pixels: npt.NDArray[np.uint8], rows: int, columns: int) -> npt.NDArra
     sums = np.add.reduceat(np.add.reduceat(pixels, down[:-1], axis=0, dtype=np.float64), across[:-1], axis=1)
     means: npt.NDArray[np.float64] = sums / (np.diff(down)[:, None] * np.diff(across)[None, :])
     return means
-
-
-def disc_in_box(box: bytes, corner_rgb: Rgb) -> Pixels:
-    """Return the pixels of a square around a disc, d × d, three bytes a pixel, with the corners in one colour."""
-    diameter = round((len(box) / 3) ** 0.5)
-    pixels = np.frombuffer(box, np.uint8).reshape(diameter, diameter, 3).copy()
-    pixels[~np.array(disc_mask(diameter))] = corner_rgb
-    return pixels
-
-
-def arrays_picture(arrays: Sequence[tuple[ColorSensorSpec, bytes]]) -> Image:
-    """Return side by side the discs that sensors see, each given as RGB bytes, d × d pixels, row by row."""
-    from PIL import Image
-
-    tiles = [
-        Image.fromarray(disc_in_box(pixels, CORNER_RGB)).resize(
-            (sensor.diameter_mm * ARRAY_PX,) * 2, Image.Resampling.NEAREST
-        )
-        for sensor, pixels in arrays
-    ]
-    whole = Image.new(
-        "RGB", (sum(t.width + 12 for t in tiles) or 1, max((t.height for t in tiles), default=1)), "white"
-    )
-    left = 0
-    for tile in tiles:
-        whole.paste(tile, (left, 0))
-        left += tile.width + 12
-    return whole

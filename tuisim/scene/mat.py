@@ -15,8 +15,12 @@ from tuisim.scene.view import Viewport
 from tuisim.terminal.pixels import Pixels
 
 _REMEMBERED = 4
-_RARE = 0.25
-"""What covers less of a pixel than this is drawn stronger."""
+_STRONGER, _CLEAR = 2.5, 0.6
+"""What covers less of a pixel than `_CLEAR` is drawn as if it covered `_STRONGER` times as much, up to that."""
+_PLAIN = 0.15
+"""A pixel of which less than this is of another colour is one of an area, and not of a thin line."""
+_FINE_COLS = 2
+"""Pixels of so many across a cell, or of fewer, are so large that thin lines need it."""
 
 
 def shrink(
@@ -24,8 +28,9 @@ def shrink(
 ) -> Pixels:
     """Return what a viewport shows of a mat.
 
-    Each picture pixel is the mean of the mat pixels under it. Where a pixel is as wide as a cell, it is moved toward
-    the colour that is rarer there, so that a line of 10 mm can still be seen when a pixel covers 30 mm.
+    Each picture pixel is the mean of the mat pixels under it. Where a pixel is as wide as a cell or half of it, it is
+    moved toward the colour that is rarer around it, so that a line of 10 mm can still be seen when a pixel covers
+    30 mm, and looks the same whether it lies in one row of pixels or between two.
 
     Args:
         mat: The mat, one pixel a mm, row 0 at the top of the field.
@@ -45,7 +50,7 @@ def shrink(
     rows, row_edges = _edges(height_mm - view.top_mm, view.mm_per_row, view.height_px, height_mm)
     if len(col_edges) < 2 or len(row_edges) < 2:
         return picture
-    picture[rows, cols] = _reduced(mat, row_edges, col_edges, keep_detail=view.cell.cols == 1 and not exact)
+    picture[rows, cols] = _reduced(mat, row_edges, col_edges, keep_detail=view.cell.cols <= _FINE_COLS and not exact)
     if whole_cells:
         _end_with_a_cell(picture, rows, view.cell.rows, outside_rgb)
         _end_with_a_cell(picture.swapaxes(0, 1), cols, view.cell.cols, outside_rgb)
@@ -105,18 +110,23 @@ def _reduced_rows(
 
 
 def _keep_detail(mean: npt.NDArray[np.float32], low: npt.NDArray[np.float32], high: npt.NDArray[np.float32]) -> Pixels:
-    """Move each mean toward whichever of low and high is the rarer one.
+    """Move each mean toward whichever of low and high is further from the mean of the pixels around it.
 
-    Where the brighter colour has a share below a quarter, that is doubled, up to a quarter, and the same seen from the
-    other end above three quarters: 5 % become 10 %, and 0 and 25 to 75 % stay, so that plain areas, gradients and
-    edges are hardly touched.
+    Plain areas and gradients are hardly touched: low and high are nearly the same there. Nor are the edges of areas: a
+    pixel beside has nearly the colour of the area, which is none of a thin line.
     """
-    span = high - low
-    share = (mean - low) / np.where(span > 0, span, 1)
-    rare = np.minimum(share, 1 - share)
-    kept = np.maximum(rare, np.minimum(2 * rare, _RARE))
-    share = np.where(share < 0.5, kept, 1 - kept)
-    picture: Pixels = np.rint(low + span * share).astype(np.uint8)
+    around = np.pad(mean, ((1, 1), (1, 1), (0, 0)), mode="edge")
+    rows, cols = mean.shape[:2]
+    nine = [around[row : row + rows, col : col + cols] for row in range(3) for col in range(3)]
+    near = sum(nine) / len(nine)
+    is_dark = high - near < near - low
+    line, ground = np.where(is_dark, low, high), np.where(is_dark, high, low)
+    span = line - ground
+    share = (mean - ground) / np.where(span == 0, 1, span)
+    nearest = np.where(is_dark, np.minimum.reduce(nine), np.maximum.reduce(nine))
+    is_edge = np.abs(line - nearest) < _PLAIN * np.abs(span)
+    stronger = np.where(is_edge, share, np.minimum(_STRONGER * share, _CLEAR))
+    picture: Pixels = np.rint(ground + span * np.maximum(share, stronger)).astype(np.uint8)
     return picture
 
 

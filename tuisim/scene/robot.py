@@ -18,7 +18,7 @@ from tuisim.terminal.pixels import Pixels
 _SAMPLES = (4, 8)
 """Samples across and down a character cell."""
 
-_MIN_CELLS = 6.0
+_MIN_CELLS = 7.0
 """A robot narrower than this many cells is drawn enlarged, to be recognisable."""
 
 _FEW_PX = {1: 8.0, 2: 18.0}
@@ -26,8 +26,12 @@ _FEW_PX = {1: 8.0, 2: 18.0}
 the body."""
 _NOSE_PX = {1: 1.2, 2: 2.5}
 """How far it projects."""
-_THIN_PX = {1: 0.4, 2: 0.7}
+_THIN_PX = {1: 0.4, 2: 1.0}
 """Half of its width at the tip: in two colours a cell, less of it is lost in what is behind."""
+
+_CRISP_PX = 40.0
+"""A robot narrower than this many pixels has no mixed colours: each pixel shows the part that weighs most in it, and
+its centre is that of a pixel, so that its shape stays the same while it drives straight on."""
 
 _BUMPER_MM = 8.0
 """Thickness of the bar of a touch sensor."""
@@ -36,6 +40,8 @@ _SPOT_MM = 10.0
 """Radius of a further sensor."""
 
 _NONE, _EDGE, _BODY, _WHEEL, _SENSOR, _MARKER, _BUMPER, _PRESSED, _SPOT = range(9)
+_WEIGHTS = np.array([1.0, 1.5, 1.0, 2.0, 1.5, 2.0, 2.0, 2.0, 1.2])
+"""Of each part where a pixel shows one only: what tells place and heading wins over the body."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,17 +61,19 @@ class RobotColors:
     edge_mm: float = 12.0
     """Largest width of the edge."""
     has_marker: bool = True
+    has_small_edge: bool = False
+    """Whether a robot of few pixels has an edge too: one without colours would not be seen without."""
 
 
 COLORED = RobotColors()
 GREY = RobotColors(
     body=(48, 48, 48), wheel=(0, 0, 0), sensor=(188, 188, 188), marker=(255, 255, 255),
-    bumper=(108, 108, 108), pressed=(0, 0, 0), spot=(128, 128, 128),
+    bumper=(108, 108, 108), pressed=(0, 0, 0), spot=(128, 128, 128), has_small_edge=True,
 )  # fmt: skip
 """For a terminal without colours: dark body, white edge and marker, to stand out on any grey."""
 MONO = RobotColors(
     edge=(0, 0, 0), body=(255, 255, 255), wheel=(0, 0, 0), sensor=(0, 0, 0), marker=(0, 0, 0), edge_cells=0.6,
-    edge_mm=100.0,
+    edge_mm=100.0, has_small_edge=True,
 )  # fmt: skip
 """For a terminal of two colours: a black arrow on white within a black edge."""
 CLEARED = RobotColors((255,) * 3, (255,) * 3, (255,) * 3, (255,) * 3, has_marker=False)
@@ -112,6 +120,9 @@ def draw_robot(
     detail_cols = detail_cols or min(view.cell.cols, 2)
     scale = drawn_scale(outline, view)
     col, row = view.to_px(pose.x_mm, pose.y_mm)
+    is_crisp = 2 * outline.half_width_mm * scale < _CRISP_PX * view.mm_per_px
+    if is_crisp:
+        col, row = math.floor(col) + 0.5, math.floor(row) + 0.5
     step_mm, row_mm = view.mm_per_px / scale, view.mm_per_row / scale
     reach_mm = drawn_reach_mm(outline)
     left, right = _around(col, reach_mm / step_mm + 2, view.width_px)
@@ -127,9 +138,12 @@ def draw_robot(
     detail_mm = step_mm * view.cell.cols / detail_cols
     # Fine pixels are too small for a part of one to be seen.
     edge_mm = min(colors.edge_cells * detail_cols * detail_mm, colors.edge_mm)
+    if is_crisp and not colors.has_small_edge:
+        edge_mm = 0.0
     parts = _parts(outline, side, ahead, detail_mm, detail_cols, edge_mm, has_marker=colors.has_marker)
     _mount(parts, outline, side, ahead, detail_mm, pressed)
-    _blend(picture[top:bottom, left:right], parts.reshape(bottom - top, down, right - left, across), colors, opacity)
+    blocks = parts.reshape(bottom - top, down, right - left, across)
+    _blend(picture[top:bottom, left:right], _strongest(blocks) if is_crisp else blocks, colors, opacity)
 
 
 def _around(middle_px: float, reach_px: float, size_px: int) -> tuple[int, int]:
@@ -197,6 +211,13 @@ def _mount(
         parts[bar & free] = _PRESSED if at < len(pressed) and pressed[at] else _BUMPER
     for x_mm, y_mm in outline.other_sensors_mm if 2 * _SPOT_MM >= 1.5 * px_mm else ():
         parts[np.hypot(side - x_mm, ahead - y_mm) <= _SPOT_MM] = _SPOT
+
+
+def _strongest(blocks: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+    """Return the part that weighs most in each pixel, as blocks of one sample."""
+    weights = np.stack([(blocks == part).sum(axis=(1, 3)) * weight for part, weight in enumerate(_WEIGHTS)])
+    strongest: npt.NDArray[np.intp] = weights.argmax(axis=0)[:, None, :, None]
+    return strongest
 
 
 def _blend(target: Pixels, blocks: npt.NDArray[np.intp], colors: RobotColors, opacity: float) -> None:

@@ -79,8 +79,6 @@ class PixelView(RowsView):
     def __init__(self) -> None:
         super().__init__()
         self._raw: Pixels | None = None
-        self._square: Pixels | None = None
-        """The image, if its pixels are square."""
         self._shown: Pixels = np.empty((0, 0, 3), np.uint8)
         self._cells: Cells = np.empty((0, 0), np.int64)
         self._coarse: npt.NDArray[np.bool_] = np.empty((0, 0), bool)
@@ -115,19 +113,6 @@ class PixelView(RowsView):
             return CellPoints(*graphics.cell_points, height_px / width_px)
         glyphs = glyph_set(self.cell_set)
         return CellPoints(glyphs.cols, glyphs.rows)
-
-    def set_picture(self, picture: Pixels) -> None:
-        """Show an image of square pixels, two in a cell; only cells that differ are repainted."""
-        self._square = picture
-        if (graphics := self.graphics) is not None:
-            width, height = graphics.cell_points
-            self._show_pixels(_in_halves(picture, width, height), graphics)
-            return
-        if self.cell_set in BLOCKS:
-            self._show(picture, CellSet.HALF)
-            return
-        fine = glyph_set(self.cell_set)
-        self._show(picture.repeat(fine.rows // 2, axis=0).repeat(fine.cols, axis=1), self.cell_set)
 
     def set_fine_picture(self, picture: Pixels, graphics: Graphics | None = None, *, stands: bool = False) -> None:
         """Show an image with the points of `cell_for(graphics)`; only cells that differ are repainted.
@@ -234,13 +219,19 @@ class PixelView(RowsView):
     def redraw(self) -> None:
         """Draw the image again: the app's glyphs or colours have changed."""
         self._raw = None
-        if self._square is not None:
-            self.set_picture(self._square)
+        self.draw_picture()
+
+    def on_resize(self) -> None:
+        """Draw the image for the new size."""
+        self.draw_picture()
+
+    def draw_picture(self) -> None:
+        """Draw the image of the widget, if it knows one, for its size, glyphs and colours."""
 
     def clear_picture(self) -> None:
         """Clear the image."""
         if self._strips:
-            self._raw = self._square = self._tiles = None
+            self._raw = self._tiles = None
             self._forget_cells()
             self.refresh()
 
@@ -528,12 +519,3 @@ class PictureStrip(CellStrip):
 
     def _part(self, start: int, end: int) -> PictureStrip:
         return PictureStrip(self.parts[start:end])
-
-
-def _in_halves(picture: Pixels, width: int, height: int) -> Pixels:
-    """Return an image of two pixels in a cell with so many points across and down a cell."""
-    upper, lower = picture[0::2].repeat(height // 2, axis=0), picture[1::2].repeat(height - height // 2, axis=0)
-    cols = picture.shape[1]
-    halves = (upper.reshape(-1, height // 2, cols, 3), lower.reshape(-1, height - height // 2, cols, 3))
-    points: Pixels = np.concatenate(halves, axis=1).reshape(-1, cols, 3).repeat(width, axis=1)
-    return points

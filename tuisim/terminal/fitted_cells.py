@@ -64,12 +64,27 @@ def _fitted(points: npt.NDArray[np.uint8], glyphs: GlyphSet, before: npt.NDArray
         # The two points are the two colours.
         halves: Cells = packed[0] << 24 | packed[1]
         return halves
+    if len(glyphs.numbers) == 1:
+        return _half_blocks(points, glyphs)
     cells: Cells = packed[0] << 24 | packed[0]
     uneven = np.flatnonzero((points.max(axis=1) - points.min(axis=1)).max(axis=0) > _FLAT)
     lab = _lab(points[..., uneven])
     chosen = _best_glyphs(lab, glyphs, None if before is None else before[uneven])
     fore, back = _typical(lab, glyphs.covered[chosen].T)
     cells[uneven] = glyphs.numbers[chosen] << 48 | packed[fore, uneven] << 24 | packed[back, uneven]
+    return cells
+
+
+def _half_blocks(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
+    """Return cells of the half block alone, in the mean colours of two of their rows of points.
+
+    Of a line in one of the two points of a row, either colour alone would lose the line, or the ground.
+    """
+    of_rows = np.rint(points.reshape(3, glyphs.rows, glyphs.cols, -1).mean(axis=2)).astype(np.uint8)
+    covered = np.repeat(glyphs.covered[0, :: glyphs.cols, None], of_rows.shape[2], axis=1)
+    fore, back = _typical(_lab(of_rows), covered)
+    packed, at = packed_rgb(of_rows.astype(np.int64)), np.arange(of_rows.shape[2])
+    cells: Cells = glyphs.numbers[0] << 48 | packed[fore, at] << 24 | packed[back, at]
     return cells
 
 

@@ -72,7 +72,7 @@ def cells_of(name: str, octant_cols: int | None) -> CellSet:
     """Return the finest set that a terminal with UTF-8 is known to show.
 
     Args:
-        name: What it answered to XTVERSION; empty if nothing.
+        name: What it answered to XTVERSION, see `name_around`; empty if nothing.
         octant_cols: By how many columns an octant moved its cursor; None if it did not answer.
     """
     found = _NAME_AND_VERSION.match(name)
@@ -154,16 +154,29 @@ def has_all_colors(environment: Mapping[str, str]) -> bool:
     of such a colour for blinking, underlined and coloured text, and has no way to be asked. tmux has; inside GNU screen
     (STY) it may be the one around it.
     """
+    return _ALL_COLORS in _told_by_tmux("client_termfeatures", environment).split(",")
+
+
+def name_around(name: str, environment: Mapping[str, str]) -> str:
+    """Return the name of a terminal that answered with one; of tmux, that of the terminal around it, if it tells.
+
+    tmux passes glyphs on, so that terminal draws them.
+    """
+    return (name.startswith("tmux") and _told_by_tmux("client_termtype", environment)) or name
+
+
+def _told_by_tmux(what: str, environment: Mapping[str, str]) -> str:
+    """Return what tmux knows of the terminal around it; empty if it is not the innermost program, or says nothing."""
     if "TMUX" not in environment or "STY" in environment:
-        return False
-    command = ["tmux", "display-message", "-p", "#{client_termfeatures}"]
+        return ""
+    command = ["tmux", "display-message", "-p", f"#{{{what}}}"]
     try:
         done = subprocess.run(
             command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=_TMUX_ANSWER_S, check=False
         )
     except (OSError, subprocess.TimeoutExpired):
-        return False
-    return _ALL_COLORS in done.stdout.strip().split(",")
+        return ""
+    return done.stdout.strip()
 
 
 WEB_DRIVER = "textual.drivers.web_driver:WebDriver"
@@ -290,7 +303,7 @@ def _asked() -> CellSet:
             return cells_of("", cols)
         answers = _ask(fd, NAME_QUERY + ATTRIBUTES_QUERY, _has_attributes)
         position += answers
-        return cells_of(facts_in(answers.decode("latin-1")).name, cols)
+        return cells_of(name_around(facts_in(answers.decode("latin-1")).name, os.environ), cols)
     finally:
         _typed.append(_without_answers(position))
         termios.tcsetattr(fd, termios.TCSANOW, before)

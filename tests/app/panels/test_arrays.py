@@ -2,45 +2,75 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from array import array
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from textual.geometry import Region
 
-from tests.app.panel_help import PanelApp, moment, screen_text, small_field
-from tuisim.app.panels.arrays import Arrays, name_line
-from tuisim.core.field import Field
+from tests.app.panel_help import SPEC, PanelApp, moment, screen_text, small_field
+from tuisim.app.panels.arrays import Arrays
 from tuisim.core.geometry import Pose
-from tuisim.scene.discs import lay_out
+from tuisim.source import Program
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.cells import PALETTE_8, PALETTE_16, ColorMode
+from tuisim.terminal.picture_mode import PictureMode
+from tuisim.terminal.picture_options import CellSet
 
-FIELD = small_field()
+FIELD = replace(small_field(), sums={20: memoryview(array("I", [305 * 128]) * (320 * 420 * 3))})
+PROGRAM = Program("test.py", "while colorLeft.reflected_light_intensity_pc > 5:\n    pass\n", "preloaded")
+POSE = Pose(100.0, 1000.0, 90.0)
+
+
+async def shown(size: tuple[int, int], program: Program | None = None) -> tuple[list[Region], str]:
+    """Return the places of the discs, and the text of the panel."""
+    app = PanelApp(Arrays())
+    async with app.run_test(size=size) as pilot:
+        app.panel.show(moment(POSE, field=FIELD, program=program))
+        await pilot.pause()
+        await pilot.pause()
+        assert all(app.panel.region.contains_region(view.region) for view in app.panel.query(PixelView))
+        return [view.region for view in app.panel.query(PixelView)], "\n".join(screen_text(app))
 
 
 @pytest.mark.parametrize(
-    ("size", "names"),
+    ("size", "across"),
     [
-        pytest.param((40, 11), ["Sensor1 left", "Sensor2 right"], id="with names"),
-        pytest.param((44, 14), ["Sensor1 left", "Sensor2 right"], id="with room"),
-        pytest.param((40, 10), [], id="just the discs"),
-        pytest.param((20, 6), [], id="small"),
-        pytest.param((24, 20), [], id="stacked"),
+        pytest.param((26, 8), True, id="80x24"),
+        pytest.param((40, 10), True, id="120x40"),
+        pytest.param((44, 12), True, id="200x60"),
+        pytest.param((40, 18), True, id="much room"),
+        pytest.param((80, 6), True, id="low"),
+        pytest.param((20, 30), False, id="narrow"),
+        pytest.param((20, 6), True, id="small"),
     ],
 )
-async def test_discs_and_names(size: tuple[int, int], names: list[str]) -> None:
-    app = PanelApp(Arrays())
-    async with app.run_test(size=size) as pilot:
-        app.panel.show(moment(Pose(100.0, 1000.0, 90.0), field=FIELD))
-        await pilot.pause()
-        shown = app.panel.query_one(PixelView)._shown
-        text = "\n".join(screen_text(app))
+async def test_both_discs_are_whole_with_what_the_program_gets(size: tuple[int, int], across: bool) -> None:
+    (left, right), text = await shown(size)
 
-    # The left disc lies on red, the right one on white.
-    assert (shown.reshape(-1, 3) == shown[shown.shape[0] // 2, shown.shape[1] // 2]).any()
-    assert len({tuple(pixel) for pixel in shown.reshape(-1, 3).tolist()}) >= 3
-    assert all(name in text for name in names)
-    assert bool(app.panel.border_subtitle) == (not names)
+    assert (left.y == right.y) is across
+    assert left.size == right.size and left.height >= 4
+    assert text.count("128 ") == 2
+
+
+async def test_a_threshold_is_on_the_scale_and_in_words() -> None:
+    _, text = await shown((60, 14), PROGRAM)
+
+    assert "50.2 %" in text and "> 5: yes" in text and "┃" in text and "rings" in text
+
+
+@pytest.mark.parametrize("cells", [CellSet.HALF, CellSet.SEXTANT, CellSet.OCTANT, CellSet.BRAILLE, CellSet.ASCII])
+async def test_discs_use_the_cells_of_the_app(cells: CellSet) -> None:
+    app = PanelApp(Arrays())
+    app.picture_mode = PictureMode(cells)  # type: ignore[attr-defined]
+    async with app.run_test(size=(40, 11)) as pilot:
+        app.panel.show(moment(POSE, field=FIELD))
+        await pilot.pause()
+        await pilot.pause()
+        view = app.panel.query(PixelView).first()
+        cell = view.cell_for(None)
+        assert view._shown.shape[:2] == (view.size.height * cell.rows, view.size.width * cell.cols)
 
 
 @pytest.mark.parametrize("depth", [PALETTE_8, PALETTE_16])
@@ -49,54 +79,49 @@ async def test_with_few_colours_what_is_around_a_disc_is_plain_and_darker(
 ) -> None:
     monkeypatch.setattr(PixelView, "color_mode", ColorMode(depth))
     app = PanelApp(Arrays())
-    grey = Field(400, 300, memoryview(bytes([128]) * (3 * 300 * 400)), {})
     async with app.run_test(size=(40, 11)) as pilot:
-        app.panel.show(moment(Pose(200.0, 1000.0, 90.0), field=grey))
+        app.panel.show(moment(POSE, field=FIELD))
         await pilot.pause()
-        shown = app.panel.query_one(PixelView)._shown @ np.array([0.299, 0.587, 0.114])
-    disc, corner = shown[8:12, 8:12], shown[:2, :2]
+        picture = app.panel.query(PixelView).first()._shown @ np.array([0.299, 0.587, 0.114])
+    high, wide = picture.shape
+    # In the middle is the edge between red and white, the left half lies on the former.
+    disc, corner = picture[high // 2 - 2 : high // 2 + 2, wide // 2 + 1 : wide // 2 + 3], picture[:1, :1]
     assert np.ptp(corner) == 0
     assert corner.max() < disc.mean()
 
 
-@pytest.mark.parametrize(
-    "names",
-    [["left", "right"], ["one"], ["left", "middle", "right"], ["at the far left", "at the far right"]],
-    ids=["two", "one", "three", "long"],
-)
-def test_names_never_run_together(names: list[str]) -> None:
-    for width in range(4 * len(names), 90):
-        layout = lay_out(len(names), width, 20)
-        if not layout.beside:
-            continue
-        line = name_line(layout, names)
-        boxes = [line[col : col + layout.side_px] for col, _ in layout.corners]
-        assert len(line) <= width and "".join(boxes).replace(" ", "") == line.replace(" ", ""), width
-        assert all(box.strip()[:1] in (name[0], "S") for box, name in zip(boxes, names, strict=True)), width
-        for box, after in pairwise(boxes):
-            assert box.endswith(" ") or after.startswith(" "), width
+async def test_another_robot_has_other_discs() -> None:
+    app = PanelApp(Arrays())
+    one = replace(SPEC, robot=replace(SPEC.robot, color_sensors=SPEC.robot.color_sensors[:1]))
+    async with app.run_test(size=(40, 11)) as pilot:
+        app.panel.show(moment(POSE, field=FIELD))
+        await pilot.pause()
+        app.panel.show(moment(POSE, field=FIELD, spec=one))
+        app.panel._throttle.now()
+        await pilot.pause()
+        assert len(app.panel.query(PixelView)) == 1
 
 
 async def test_without_a_mat_it_is_blank() -> None:
     app = PanelApp(Arrays())
     async with app.run_test(size=(40, 11)) as pilot:
-        app.panel.show(moment(field=FIELD))
+        app.panel.show(moment(POSE, field=FIELD))
         await pilot.pause()
-        app.panel.show(moment())
+        app.panel.show(moment(POSE))
         app.panel._throttle.now()
 
-        assert app.panel.query_one(PixelView)._cells.size == 0
+        assert all(view._cells.size == 0 for view in app.panel.query(PixelView))
 
 
 async def test_the_same_pose_is_not_drawn_again(monkeypatch: pytest.MonkeyPatch) -> None:
     app = PanelApp(Arrays())
     async with app.run_test(size=(40, 11)) as pilot:
-        app.panel.show(moment(field=FIELD))
+        app.panel.show(moment(POSE, field=FIELD))
         await pilot.pause()
         drawn: list[object] = []
-        monkeypatch.setattr(app.panel.query_one(PixelView), "set_picture", drawn.append)
+        monkeypatch.setattr(PixelView, "set_fine_picture", lambda *given: drawn.append(given))
 
-        app.panel.show(moment(field=FIELD, time_s=99.0))
+        app.panel.show(moment(POSE, field=FIELD, time_s=99.0))
         app.panel._throttle.now()
 
         assert not drawn

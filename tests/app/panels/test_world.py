@@ -94,7 +94,7 @@ async def test_only_cells_about_the_robot_are_repainted(monkeypatch: pytest.Monk
         regions: list[Region] = []
         monkeypatch.setattr(view(app.panel), "refresh", lambda *changed, **_: regions.extend(changed))
 
-        app.panel.show(moment(Pose(1010.0, 500.0, 0.0)))
+        app.panel.show(moment(Pose(1040.0, 500.0, 0.0)))
 
     assert 0 < sum(region.area for region in regions) < 50
 

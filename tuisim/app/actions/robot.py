@@ -84,7 +84,8 @@ def choose_mat(context: ActionContext) -> None:
 
 def choose(context: ActionContext, what: str) -> None:
     """Ask for a robot, a profile or a set of obstacles, and apply the choice to the plan."""
-    from tuisim.app.dialogs.chooser import OF_PROGRAM, obstacle_chooser, profile_chooser, robot_chooser
+    from tuisim.app.dialogs.chooser import obstacle_chooser, profile_chooser
+    from tuisim.app.dialogs.robots import OF_PROGRAM, robot_chooser
 
     chooser, change = {
         "robot": (robot_chooser, plans.with_robot),

@@ -81,9 +81,9 @@ class _Card(PixelView):
     def show(self, name: str) -> None:
         """Draw the picture with a set."""
         self._tried = self._best if name == AUTO else CellSet(name)
-        self.on_resize()
+        self.draw_picture()
 
-    def on_resize(self) -> None:
+    def draw_picture(self) -> None:
         """Draw it for the current size."""
         cell = self.cell_for(None)
         if self.size.width and self.size.height:

@@ -21,14 +21,13 @@ from tuisim.config.mat_image import decode, read_file
 from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import OBSTACLES, load_obstacles
 from tuisim.config.profiles import load_profile
-from tuisim.config.robots import ROBOTS, load_robot, ports_of
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.data_class import dataclass
 from tuisim.errors import TuisimError
 from tuisim.logs.export import is_companion
 from tuisim.scene.mat import shrink
-from tuisim.scene.view import whole_field
+from tuisim.scene.view import Viewport, whole_field
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.pixels import Pixels
 
@@ -131,6 +130,10 @@ class Chooser(ListDialog):
     def content(self) -> ComposeResult:
         if self._path_hint:
             yield Input(placeholder=self._path_hint, compact=True, select_on_focus=False)
+        yield self.listed()
+
+    def listed(self) -> OptionList:
+        """Return the list."""
         options: list[Option | None] = []
         for group in self._groups:
             if options:
@@ -149,7 +152,7 @@ class Chooser(ListDialog):
         names = [option.id for option in listed.options]
         if self._current in names:
             listed.highlighted = names.index(self._current)
-        yield listed
+        return listed
 
 
 def program_chooser() -> Chooser:
@@ -172,34 +175,6 @@ def program_chooser() -> Chooser:
     ]
     hint = "Path of a program, world or goals file, or choose below"
     return Chooser("Programs, worlds and goals", groups, path_hint=hint)
-
-
-OF_PROGRAM = "*program"
-"""What the dialog for robots returns for the robot that was built for the program; no name or path of a robot."""
-
-
-def robot_chooser(plan: NextRun) -> Chooser:
-    """Return the dialog for robots: the one built for the program, with its ports, those known by name, and files."""
-    built = plan.program_robot
-    own = (
-        [(OF_PROGRAM, built.spec.name, ", ".join(f"{port} {name}" for port, name in ports_of(built.spec)))]
-        if built
-        else []
-    )
-    presets = [(name, name, _robot_title(name)) for name in ROBOTS]
-    groups = [
-        ChoiceGroup("Built from the program", own),
-        ChoiceGroup("By name" if own else "", presets),
-        files_here([".toml", ".json"], lambda path: load_robot(str(path))),
-    ]
-    current = OF_PROGRAM if built is not None and plan.robot == built else plan.words.get("robot", "")
-    return Chooser("Robots", groups, current, "Path of a robot's .toml or .json file")
-
-
-def _robot_title(name: str) -> str:
-    robot = ROBOTS[name]
-    sensors = ", ".join(f"({sensor.x_mm:g}, {sensor.y_mm:g}) ⌀ {sensor.diameter_mm}" for sensor in robot.color_sensors)
-    return f"wheels ⌀ {robot.wheel_diameter_mm:g}, {robot.wheel_spacing_mm:g} apart; sensors {sensors}"
 
 
 def obstacle_chooser(plan: NextRun) -> Chooser:
@@ -242,7 +217,7 @@ class MatPicker(ListDialog):
         super().__init__()
         self._current, self._mats, self._folder = current, known, folder
         self._shown = ""
-        self._pictures: dict[tuple[str, int, int], Pixels] = {}
+        self._pictures: dict[tuple[str, Viewport], Pixels] = {}
 
     def content(self) -> ComposeResult:
         listed = OptionList(*(Option(name, id=name) for name in self._mats), markup=False)
@@ -252,7 +227,7 @@ class MatPicker(ListDialog):
         with Horizontal(classes="mats"):
             yield listed
             with Vertical():
-                yield PixelView()
+                yield _MatPicture()
                 yield Static(id="title", markup=False)
         yield Input(placeholder="Or the path of an image of your own", compact=True, select_on_focus=False)
 
@@ -265,10 +240,10 @@ class MatPicker(ListDialog):
     def _begin(self) -> None:
         view = self.query_one(PixelView)
         view.styles.height = max(1, round(view.size.width * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / 2))
-        self.call_after_refresh(self._show_again)
+        self.call_after_refresh(self.show_again)
 
-    def _show_again(self) -> None:
-        # Show the current selection: it may have changed since the call was scheduled.
+    def show_again(self) -> None:
+        """Show the current selection, which may have changed since the call was scheduled."""
         self._show(self._shown)
 
     @on(OptionList.OptionHighlighted)
@@ -282,31 +257,43 @@ class MatPicker(ListDialog):
         if name not in self._mats or not view.size:
             return
         self.query_one("#title", Static).update(self._mats[name].title)
-        width, height = view.size.width, 2 * view.size.height
-        if (picture := self._pictures.get((name, width, height))) is not None:
-            view.set_picture(picture)
+        port = _whole_field(view)
+        if (picture := self._pictures.get((name, port))) is not None:
+            view.set_fine_picture(picture, view.graphics)
         else:
-            work = partial(self._decode, name, width, height, view.ground_rgb)
-            then, failed = partial(self._decoded, (name, width, height)), partial(self._failed, name)
+            work = partial(self._decode, name, port, view.ground_rgb)
+            then, failed = partial(self._decoded, (name, port)), partial(self._failed, name)
             background.run(self, work, then, failed, group="picture", exclusive=True)
 
-    def _decode(self, name: str, width: int, height: int, outside_rgb: tuple[int, int, int]) -> Pixels:
+    def _decode(self, name: str, port: Viewport, outside_rgb: tuple[int, int, int]) -> Pixels:
         found = find_mat(name, self._folder)
         mat = decode(read_file(found.image), found.image, found.fit or "stretch")
-        return shrink(mat, whole_field(width, height), outside_rgb)
+        return shrink(mat, port, outside_rgb)
 
-    def _decoded(self, key: tuple[str, int, int], picture: Pixels) -> None:
+    def _decoded(self, key: tuple[str, Viewport], picture: Pixels) -> None:
         self._pictures[key] = picture
         if not self.is_attached or key[0] != self._shown:
             return
         view = self.query_one(PixelView)
-        if key[1:] == (view.size.width, 2 * view.size.height):
-            view.set_picture(picture)
+        if key[1] == _whole_field(view):
+            view.set_fine_picture(picture, view.graphics)
         else:
             # The view got its height while the image was decoded.
-            self._show_again()
+            self.show_again()
 
     def _failed(self, name: str, error: TuisimError) -> None:
         if self.is_attached and name == self._shown:
             self.query_one(PixelView).clear_picture()
             self.query_one("#title", Static).update(str(error))
+
+
+class _MatPicture(PixelView):
+    def draw_picture(self) -> None:
+        if isinstance(picker := self.screen, MatPicker):
+            picker.show_again()
+
+
+def _whole_field(view: PixelView) -> Viewport:
+    """Return the view of the whole field in the finest points of a widget."""
+    cell = view.cell_for(view.graphics)
+    return whole_field(cell.cols * view.size.width, cell.rows * view.size.height, cell)

@@ -1,21 +1,17 @@
-"""The sensor arrays panel: the discs of pixels that the colour sensors see."""
+"""The sensor arrays panel: the discs of pixels that the colour sensors see, and what the program makes of them."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from rich.style import Style
 from textual.app import ComposeResult
 from textual.widget import Widget
 
-from tuisim import palette
-from tuisim.core.sensors.color import pixel_array
-from tuisim.scene.discs import CORNER_16_RGB, CORNER_RGB, FULL_PX, DiscLayout, draw_discs, lay_out
+from tuisim.app.render.arrays import Arrangement, arranged, face_lines, names_in_border
+from tuisim.scene.discs import RIM_16_RGB, RIM_RGB, DiscFace, disc_faces, draw_disc
 from tuisim.terminal.cell_view import LinesView, PixelView
 from tuisim.terminal.pacer import Throttle
-from tuisim.terminal.text_runs import cut
+from tuisim.terminal.text_runs import Line
 
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot
@@ -23,37 +19,82 @@ if TYPE_CHECKING:
 _PERIOD_S = 0.25
 """All pixels of both discs may change at once: a shorter period would saturate a slow link."""
 
-_LABEL = Style(color=palette.LABEL)
+
+class _DiscPicture(PixelView):
+    """The disc of one sensor, in the finest cells or pixels that the terminal has."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._face: DiscFace | None = None
+
+    def show(self, face: DiscFace | None) -> None:
+        """Show a disc, or none."""
+        self._face = face
+        self.draw_picture()
+
+    def draw_picture(self) -> None:
+        """Draw it for the current size."""
+        if self._face is None:
+            self.clear_picture()
+        elif self.size:
+            graphics, mode = self.graphics, self.color_mode
+            cell = self.cell_for(graphics)
+            rim_rgb = RIM_16_RGB if mode.dithers and not mode.grey else RIM_RGB
+            width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
+            picture = draw_disc(self._face.box, width_px, height_px, self.ground_rgb, rim_rgb, cell.tall)
+            self.set_fine_picture(picture, graphics)
+
+
+class _Disc(Widget):
+    """A disc with its lines."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._picture = _DiscPicture()
+        self._text = LinesView()
+        self._face: DiscFace | None = None
+        self._where: Arrangement | None = None
+
+    def compose(self) -> ComposeResult:
+        yield self._picture
+        yield self._text
+
+    def place(self, where: Arrangement) -> None:
+        """Move the lines below the disc or beside it."""
+        self._where = where
+        self.styles.layout = "vertical" if where.below else "horizontal"
+        self._picture.styles.width = "1fr" if where.below else where.disc_cols
+        self._picture.styles.height = max(where.disc_cols // 2, 1)
+        self._text.styles.width, self._text.styles.height = where.text_cols, max(where.text_rows, 1)
+        self._text.display = where.text_rows > 0
+
+    def show(self, face: DiscFace | None, *, has_limits: bool = False) -> None:
+        """Show what is known of a sensor, or nothing."""
+        self._picture.show(face)
+        lines: list[Line] = []
+        if face is not None and (where := self._where) is not None:
+            lines = face_lines(face, where.text_cols - where.below, where.text_rows, has_limits=has_limits)
+        self._text.set_lines(lines)
 
 
 class Arrays(Widget):
-    """The sensor arrays panel: a line of names above the discs if there is room for it."""
+    """The sensor arrays panel."""
 
     DEFAULT_CSS = """
-    Arrays > LinesView { width: 1fr; height: 1; }
-    Arrays > PixelView { width: 1fr; height: 1fr; }
+    Arrays > _Disc { width: 1fr; height: 1fr; align-horizontal: center; }
+    Arrays > _Disc > LinesView { margin-left: 1; }
     """
 
     def __init__(self) -> None:
         super().__init__()
-        self._names = LinesView()
-        self._discs = PixelView()
+        self._discs: list[_Disc] = []
+        self._where: Arrangement | None = None
         self._snapshot: Snapshot | None = None
         self._drawn: object = None
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
 
-    def compose(self) -> ComposeResult:
-        yield self._names
-        yield self._discs
-
-    @property
-    def _has_names(self) -> bool:
-        """Whether there is a row for the names: the discs still fit completely."""
-        return self.size.height > FULL_PX // 2
-
     def on_resize(self) -> None:
-        """Show the line of names if there is room for it."""
-        self._names.display = self._has_names
+        """Arrange the discs for the new size."""
         self._drawn = None
         self.call_after_refresh(self._draw)
 
@@ -65,42 +106,36 @@ class Arrays(Widget):
 
     def _draw(self) -> None:
         now = self._snapshot
-        # The size of the panel, not that of what is in it: that follows a moment later.
-        size = self.size
-        if now is None or not size:
+        if now is None or not self.size:
             return
         if now.field is None:
-            self._discs.clear_picture()
+            self._drawn = None
+            for disc in self._discs:
+                disc.show(None)
             return
         seen = (now.instant.pose, now.instant.noise, now.instant.noise.light and now.instant.tick, now.spec.robot)
-        if (seen, id(now.field), size) == self._drawn:
+        drawn = (seen, id(now.field), self.size, now.program)
+        if drawn == self._drawn:
             return
-        self._drawn = (seen, id(now.field), size)
-        sensors = now.spec.robot.color_sensors
-        layout = lay_out(len(sensors), size.width, 2 * (size.height - self._has_names))
-        boxes = [pixel_array(sensor, now.instant, now.field) for sensor in sensors]
-        mode = self._discs.color_mode
-        corner_rgb = CORNER_16_RGB if mode.dithers and not mode.grey else CORNER_RGB
-        self._discs.set_picture(draw_discs(layout, boxes, self._discs.ground_rgb, corner_rgb))
-        self._label_discs(layout, [sensor.name for sensor in sensors])
+        self._drawn = drawn
+        faces = disc_faces(now.spec, now.instant, now.field, now.program)
+        has_limits = any(face.thresholds for face in faces)
+        self._arrange(faces)
+        names = [face.name for face in faces]
+        self.border_subtitle = names_in_border(names, self._where, has_limits=has_limits) if self._where else ""
+        for disc, face in zip(self._discs, faces, strict=True):
+            disc.show(face, has_limits=has_limits)
 
-    def _label_discs(self, layout: DiscLayout, names: list[str]) -> None:
-        if not layout.beside or not self._has_names:
-            # Side by side or stacked, the order identifies them.
-            self.border_subtitle = (" │ " if layout.beside else " above ").join(names) if len(names) > 1 else ""
-            self._names.set_lines([])
+    def _arrange(self, faces: list[DiscFace]) -> None:
+        where = arranged(len(faces), self.size.width, self.size.height)
+        if where == self._where and len(faces) == len(self._discs):
             return
-        self.border_subtitle = ""
-        self._names.set_lines([[(name_line(layout, names), _LABEL)]])
-
-
-def name_line(layout: DiscLayout, names: Sequence[str]) -> str:
-    """Return the line above discs side by side: each name above its disc, with a space at least between two."""
-    pitch = min((after - col for (col, _), (after, _) in pairwise(layout.corners)), default=layout.side_px + 1)
-    room = min(layout.side_px, pitch - 1)
-    long = [f"Sensor{at} {name}" for at, name in enumerate(names, 1)]
-    labels = long if all(len(label) <= room for label in long) else names
-    line = ""
-    for (col, _), label in zip(layout.corners, labels, strict=False):
-        line = line.ljust(col) + cut(label, room).center(layout.side_px)
-    return line
+        self._where = where
+        while len(self._discs) > len(faces):
+            self._discs.pop().remove()
+        added = [_Disc() for _ in range(len(faces) - len(self._discs))]
+        self._discs += added
+        self.mount(*added)
+        self.styles.layout = "horizontal" if where.across else "vertical"
+        for disc in self._discs:
+            disc.place(where)

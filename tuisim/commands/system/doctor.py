@@ -152,6 +152,7 @@ def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) ->
         cells_of,
         cells_without_asking,
         first_environment,
+        name_around,
     )
 
     term = environment.get("TERM", "")
@@ -171,7 +172,9 @@ def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) ->
         diagnosis.size_finding(size.columns, size.lines),
         _colors_finding(environment, is_remote),
         diagnosis.cells_finding(
-            cells or cells_of(answers.facts.name, answers.octant_cols), limit, _locale_variable(first_environment())
+            cells or cells_of(name_around(answers.facts.name, environment), answers.octant_cols),
+            limit,
+            _locale_variable(first_environment()),
         ),
         diagnosis.graphics_finding(graphics.protocol if graphics else "", has_colors=has_colors),
         *([] if term in SILENT else [diagnosis.latency_finding(answers.latency_s)]),

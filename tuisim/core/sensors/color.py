@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from enum import StrEnum
 from functools import lru_cache
 from math import cos, radians, sin
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 from tuisim.core.columns import Column
 from tuisim.core.field import OUTSIDE_DISC_RGB, Field, disc_pixels, disc_weights, weighted_mean
@@ -88,6 +89,48 @@ def color_code(red: int, green: int, blue: int) -> int:
         if hue < limit:
             return code
     return 5
+
+
+class LightRead(StrEnum):
+    """What a program can read of a colour sensor, by the name that it uses."""
+
+    REFLECTED = "reflected_light_intensity"
+    PERCENT = "reflected_light_intensity_pc"
+    MEAN = "full_reflected_light_intensity"
+    REFLECTION = "reflection"
+    """Of Pybricks."""
+    COLOR = "color"
+    COLOR_NAME = "color_name"
+
+    @property
+    def is_color(self) -> bool:
+        """Whether it is the colour, and no number."""
+        return self in (LightRead.COLOR, LightRead.COLOR_NAME)
+
+    def measured(self, seen: ColorReading, reflected_max: int) -> float:
+        """Return what a program gets; the colour code for a colour.
+
+        Args:
+            seen: The reading.
+            reflected_max: Value of `reflected_light_intensity` on white in the profile.
+        """
+        match self:
+            case LightRead.REFLECTED:
+                return int(seen.red) * self.most(reflected_max) // WHITE
+            case LightRead.REFLECTION:
+                return int(seen.red) * 100 // WHITE
+            case LightRead.PERCENT:
+                return seen.red_percent
+            case LightRead.MEAN:
+                return seen.mean_percent
+            case LightRead.COLOR | LightRead.COLOR_NAME:
+                return seen.code
+            case _:
+                assert_never(self)
+
+    def most(self, reflected_max: int) -> int:
+        """Return the value on white."""
+        return reflected_max if self is LightRead.REFLECTED else 100
 
 
 def box_corner(pose: Pose, spec: ColorSensorSpec) -> tuple[int, int]:

@@ -1,0 +1,60 @@
+"""The robot picker: pictures and parts."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from textual.widgets import OptionList
+
+from tests.app.app_help import LOGS, ready, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.dialogs.robots import RobotParts, RobotPicture, part_lines, robot_picture, view_of
+from tuisim.config.robots import ROBOTS
+from tuisim.core.spec import RobotSpec
+from tuisim.scene.robot import COLORED
+from tuisim.terminal.pixels import SQUARE
+
+
+def words_of(robot: RobotSpec) -> list[str]:
+    return ["".join(text for text, _ in line).strip() for line in part_lines(robot)]
+
+
+def test_each_part_is_listed_with_its_port_and_place() -> None:
+    assert words_of(ROBOTS["Explorer"]) == [
+        "B C wheels ⌀ 56, 180 mm apart",
+        "A   medium motor",
+        "■ 1   bumper: 60 ahead",
+        "■ 2   left: 30 ahead, ⌀ 20",
+        "■ 3   infrared: 20 ahead",
+        "4   gyro",
+    ]
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("size", [(40, 12), (40, 40), (300, 150)], ids=str)
+def test_a_robot_is_whole_in_its_picture(robot: str, size: tuple[int, int]) -> None:
+    spec = ROBOTS[robot]
+    picture = robot_picture(spec, view_of(spec, *size, SQUARE), COLORED).astype(int)
+
+    drawn = (picture != picture[0, 0]).any(axis=2)
+    assert drawn.any()
+    assert not drawn[[0, -1]].any() and not drawn[:, [0, -1]].any()
+    for part in (COLORED.body, COLORED.wheel, COLORED.marker):
+        assert (np.abs(picture - part).sum(axis=2) < 90).any(), part
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
+async def test_the_chosen_robot_is_drawn_with_its_parts(size: tuple[int, int]) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
+        app = await ready(pilot)
+        await pilot.press("r")
+        view = app.screen.query_one(RobotPicture)
+        await until(pilot, lambda: view._cells.shape[0] == view.size.height >= 6)
+        before = view._cells.copy()
+        robots = app.screen.query_one(OptionList)
+        robots.highlighted = robots.get_option_index("Explorer")
+        await until(pilot, lambda: view._cells.shape != before.shape or bool((view._cells != before).any()))
+        parts = app.screen.query_one(RobotParts)
+        assert parts.size.height == len(words_of(ROBOTS["Explorer"]))
+        assert app.screen.query_one(".dialog").region.contains_region(parts.region)

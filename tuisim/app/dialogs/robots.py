@@ -1,0 +1,204 @@
+"""Choosing a robot: the list, and beside it the robot from above with its parts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rich.color import Color
+from rich.style import Style
+from textual import on
+from textual.app import ComposeResult
+from textual.containers import Horizontal, Vertical
+from textual.widgets import Input, OptionList
+
+from tuisim import palette
+from tuisim.app.dialogs.chooser import WIDEST_NAME, ChoiceGroup, Chooser, files_here
+from tuisim.config.robots import ROBOTS, load_robot
+from tuisim.core.geometry import Pose
+from tuisim.core.outline import outline_of
+from tuisim.core.spec import ColorSensorSpec, RobotSpec, SensorSpec, TouchSpec
+from tuisim.errors import TuisimError
+from tuisim.scene.mono_robot import draw_mono_robot
+from tuisim.scene.robot import COLORED, GREY, MONO, RobotColors, draw_robot
+from tuisim.scene.view import Viewport
+from tuisim.terminal import cells
+from tuisim.terminal.cell_view import LinesPanel, PixelView
+from tuisim.terminal.pixels import CellPoints, Pixels, Rgb
+from tuisim.terminal.text_runs import Line
+
+if TYPE_CHECKING:
+    from tuisim.app.setup.next_run import NextRun
+
+OF_PROGRAM = "*program"
+"""What the dialog returns for the robot that was built for the program; no name or path of a robot."""
+
+_PAPER_RGB: Rgb = (232, 234, 238)
+_LABEL, _VALUE = Style(color=palette.SOFT), Style(color=palette.WHITE)
+_OTHER_ROWS = 12
+"""Rows of the dialog beside those of the picture and of the parts."""
+_LEAST_ROWS, _MOST_ROWS = 6, 16
+_RIM_MM = 12.0
+"""Paper around a robot."""
+
+
+def robot_chooser(plan: NextRun) -> RobotPicker:
+    """Return the dialog for robots: the one built for the program, those known by name, and files."""
+    built = plan.program_robot
+    files = files_here([".toml", ".json"], lambda path: load_robot(str(path)))
+    groups = [
+        ChoiceGroup("Built from the program", [(OF_PROGRAM, built.spec.name, "")] if built else []),
+        ChoiceGroup("By name" if built else "", [(name, name, "") for name in ROBOTS]),
+        files,
+    ]
+    robots = {**ROBOTS, **({OF_PROGRAM: built.spec} if built else {})}
+    current = OF_PROGRAM if built is not None and plan.robot == built else plan.words.get("robot", "")
+    return RobotPicker(groups, current, robots)
+
+
+class RobotPicker(Chooser):
+    """Returns the name or the path of the chosen robot, or `OF_PROGRAM`.
+
+    Args:
+        groups: The list.
+        current: The current value, selected at first.
+        robots: The robots of the list that are in no file, by value.
+    """
+
+    def __init__(self, groups: Sequence[ChoiceGroup], current: str, robots: Mapping[str, RobotSpec]) -> None:
+        super().__init__("Robots", groups, current, "Path of a robot's .toml or .json file")
+        self._robots = dict(robots)
+
+    def content(self) -> ComposeResult:
+        listed = self.listed()
+        names = (len(name) for group in self._groups for _, name, _ in group.entries)
+        listed.styles.width = min(max(names, default=0) + 5, WIDEST_NAME)
+        with Horizontal(classes="mats"):
+            yield listed
+            with Vertical():
+                yield RobotPicture()
+                yield RobotParts()
+        yield Input(placeholder=self._path_hint, compact=True, select_on_focus=False)
+
+    @on(OptionList.OptionHighlighted)
+    def _highlighted(self, event: OptionList.OptionHighlighted) -> None:
+        robot = self._robot(event.option.id or "")
+        lines = list(part_lines(robot)) if robot else []
+        rows = self.app.size.height - _OTHER_ROWS - len(lines)
+        picture = self.query_one(RobotPicture)
+        picture.styles.height = min(max(rows, _LEAST_ROWS), _MOST_ROWS)
+        picture.show(robot)
+        self.query_one(RobotParts).show(lines)
+
+    def _robot(self, name: str) -> RobotSpec | None:
+        """Return a robot by name or path; None for a file that has changed since it was listed."""
+        if name and name not in self._robots:
+            try:
+                self._robots[name] = load_robot(name)
+            except TuisimError:
+                return None
+        return self._robots.get(name)
+
+
+class RobotPicture(PixelView):
+    """A robot from above, its front at the top."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._robot: RobotSpec | None = None
+
+    def show(self, robot: RobotSpec | None) -> None:
+        """Show a robot, or none."""
+        self._robot = robot
+        self.draw_picture()
+
+    def draw_picture(self) -> None:
+        """Draw it for the current size."""
+        if self._robot is None:
+            self.clear_picture()
+        elif self.size:
+            graphics, mode = self.graphics, self.color_mode
+            cell = self.cell_for(graphics)
+            width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
+            view = view_of(self._robot, width_px, height_px, cell)
+            mono = mode.depth == cells.MONO
+            colors = MONO if mono else GREY if mode.grey else COLORED
+            self.set_fine_picture(robot_picture(self._robot, view, colors, mono=mono), graphics)
+
+
+class RobotParts(LinesPanel):
+    """The parts of a robot, a line each."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._lines: list[Line] = []
+
+    def show(self, lines: list[Line]) -> None:
+        """Show some lines."""
+        self._lines, self.styles.height = lines, max(len(lines), 1)
+        self._redraw()
+
+    def _redraw(self) -> None:
+        self._text.set_lines(self._lines)
+
+
+def view_of(robot: RobotSpec, width_px: int, height_px: int, cell: CellPoints) -> Viewport:
+    """Return the view in which a robot, heading up, fills a picture with a rim around it."""
+    outline = outline_of(robot)
+    bumpers_mm = [y_mm + _RIM_MM for _, y_mm, _ in outline.bumpers_mm]
+    front_mm, back_mm = max([outline.front_mm, *bumpers_mm]) + _RIM_MM, outline.back_mm - _RIM_MM
+    mm_per_px = max(2 * (outline.half_width_mm + _RIM_MM) / width_px, (front_mm - back_mm) / (height_px * cell.tall))
+    top_mm = (front_mm + back_mm + height_px * mm_per_px * cell.tall) / 2
+    return Viewport(width_px, height_px, mm_per_px, -width_px * mm_per_px / 2, top_mm, cell)
+
+
+def robot_picture(robot: RobotSpec, view: Viewport, colors: RobotColors, *, mono: bool = False) -> Pixels:
+    """Return a robot at the middle of the axes, heading up, with all sensors that have a place."""
+    picture = np.empty((view.height_px, view.width_px, 3), np.uint8)
+    picture[:] = (255, 255, 255) if mono else _PAPER_RGB
+    outline = outline_of(robot)
+    if (sonar := robot.ultrasonic) is not None:
+        # The world shows its rays instead.
+        outline = replace(outline, other_sensors_mm=(*outline.other_sensors_mm, (sonar.x_mm, sonar.y_mm)))
+    (draw_mono_robot if mono else draw_robot)(picture, view, Pose(0.0, 0.0, 90.0), outline, colors)
+    return picture
+
+
+def part_lines(robot: RobotSpec) -> Iterator[Line]:
+    """Yield a line for the wheels, each further motor and each sensor, with its port and its place."""
+    if robot.has_wheels:
+        yield _line(None, f"{robot.left_port[-1]} {robot.right_port[-1]}",
+                    f"wheels ⌀ {robot.wheel_diameter_mm:g}, {robot.wheel_spacing_mm:g} mm apart")  # fmt: skip
+    for motor in robot.extra_motors:
+        yield _line(None, motor.port[-1], f"{motor.kind} motor")
+    for sensor in sorted(robot.sensors, key=lambda one: one.port):
+        yield _line(_swatch(sensor), sensor.port[-1], f"{sensor.name}{_place(sensor)}")
+
+
+def _line(rgb: Rgb | None, port: str, words: str) -> Line:
+    dot = ("■ ", Style(color=Color.from_rgb(*rgb))) if rgb else ("  ", _LABEL)
+    return [dot, (f"{port:<4}", _LABEL), (words, _VALUE)]
+
+
+def _swatch(sensor: SensorSpec) -> Rgb | None:
+    """Return the colour of a sensor in the picture; None if it has no place in it."""
+    if isinstance(sensor, ColorSensorSpec):
+        return COLORED.sensor
+    if isinstance(sensor, TouchSpec):
+        return COLORED.bumper
+    return COLORED.spot if hasattr(sensor, "x_mm") else None
+
+
+def _place(sensor: SensorSpec) -> str:
+    """Return where a sensor is in words, and its size, such as `, 10 left, 65 ahead, ⌀ 20`."""
+    x_mm, y_mm = getattr(sensor, "x_mm", math.nan), getattr(sensor, "y_mm", math.nan)
+    if math.isnan(x_mm):
+        return ""
+    found = [f"{abs(x_mm):g} {'right' if x_mm > 0 else 'left'}"] if x_mm else []
+    found.append(f"{abs(y_mm):g} {'ahead' if y_mm >= 0 else 'behind'}")
+    if isinstance(sensor, ColorSensorSpec):
+        found.append(f"⌀ {sensor.diameter_mm}")
+    return ": " + ", ".join(found)

@@ -1,0 +1,124 @@
+"""The sensor arrays panel: where the discs are, and the lines beside each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from rich.color import Color
+from rich.style import Style
+
+from tuisim import palette
+from tuisim.scene.discs import RINGS, DiscFace
+from tuisim.terminal.text_runs import Line, cut
+
+FULL_COLS, LARGE_COLS = 20, 40
+"""Columns of a disc of one or two cells a mm; sizes between them show no more."""
+_LEAST_TEXT_COLS, _MOST_TEXT_COLS = 13, 24
+_MOST_LINES = 5
+_FAIR_ROWS = 6
+"""A disc is not made lower than this for a second line of text."""
+
+_LABEL, _VALUE, _UNIT = Style(color=palette.LABEL), Style(color=palette.WHITE, bold=True), Style(color=palette.SOFT)
+_FILLED, _REST = Style(color=palette.BLUE), Style(color=palette.LINE)
+_LIMIT = Style(color=palette.YELLOW, bold=True)
+
+
+class Arrangement(NamedTuple):
+    """Where the discs and their lines are."""
+
+    across: bool
+    """Whether the sensors stand side by side, and not one above the other."""
+    below: bool
+    """Whether the lines of each are below its disc, and not at its right."""
+    disc_cols: int
+    """Columns of a disc; it has half as many rows."""
+    text_cols: int
+    text_rows: int
+
+
+def arranged(count: int, cols: int, rows: int) -> Arrangement:
+    """Return the arrangement with the largest discs, side by side if there is a choice.
+
+    Args:
+        count: How many sensors.
+        cols: Columns of the panel.
+        rows: Its rows.
+    """
+    count = max(count, 1)
+    found = []
+    for across in (True, False):
+        wide, high = (cols // count, rows) if across else (cols, rows // count)
+        lines = _lines_below(wide, high)
+        found.append(Arrangement(across, True, _disc_cols(wide, 2 * (high - lines)), wide, lines))
+        text = min(max(wide - 1 - 2 * high, _LEAST_TEXT_COLS), _MOST_TEXT_COLS)
+        beside = _disc_cols(wide - 1 - text, 2 * high)
+        found.append(Arrangement(across, False, beside, min(wide - 1 - beside, _MOST_TEXT_COLS), high))
+    return max(found, key=lambda one: (one.disc_cols, one.text_rows * one.below))
+
+
+def _disc_cols(cols: int, high_cols: int) -> int:
+    """Return the columns of a disc in a place of some columns and twice as many rows as given."""
+    side = max(min(cols, high_cols), 0)
+    return LARGE_COLS if side >= LARGE_COLS else min(side, FULL_COLS)
+
+
+def _lines_below(cols: int, rows: int) -> int:
+    if rows < _LEAST_ROWS:
+        return 0
+    spare = rows - (min(cols, FULL_COLS) + 1) // 2
+    return min(max(rows - _FAIR_ROWS, spare, 1), _MOST_LINES)
+
+
+_LEAST_ROWS = 4
+
+
+def face_lines(face: DiscFace, width: int, rows: int, *, has_limits: bool) -> list[Line]:
+    """Return the lines of a sensor, the most useful ones if there are few rows.
+
+    Args:
+        face: What is shown of it.
+        width: Columns.
+        rows: Most lines.
+        has_limits: Whether there is a line for thresholds, those of any sensor.
+    """
+    lines = [_value_line(face, width), _scale_line(face, width)]
+    lines += [[(cut(face.limit_words(width), width), _LIMIT)]] if has_limits else []
+    lines.append(_ring_line(face, width))
+    return [[(cut(face.name, width), _LABEL)], *lines] if rows > len(lines) else lines[:rows]
+
+
+def _value_line(face: DiscFace, width: int) -> Line:
+    value, name = face.value_words, face.seen.name
+    swatch = "  ", Style(bgcolor=Color.from_rgb(*face.seen.rgb))
+    if len(value) + len(name) + 4 <= width:
+        return [(value, _VALUE), (" ", _UNIT), swatch, (f" {name}", _VALUE)]
+    close = value.replace(" %", "%").replace("mean ", "")
+    short = close.partition(" of ")[0]
+    fits = (text for text in (f"{close} {name}", f"{short} {name}", close, short) if len(text) <= width)
+    return [(next(fits, cut(short, width)), _VALUE)]
+
+
+def _scale_line(face: DiscFace, width: int) -> Line:
+    """Return a scale from black to white, filled up to what the program gets, with the thresholds on it."""
+    filled = round(min(max(face.share, 0), 1) * width)
+    cells = [("━", _FILLED) if at < filled else ("─", _REST) for at in range(width)]
+    for share in face.limit_shares:
+        cells[min(int(share * width), width - 1)] = "┃", _LIMIT
+    return cells
+
+
+def _ring_line(face: DiscFace, width: int) -> Line:
+    values = face.ring_words
+    named: list[str] = [part for pair in zip(RINGS, values, strict=True) for part in pair]
+    for words in (named, ["rings", *values], values):
+        if len(" ".join(words)) <= width:
+            break
+    return [part for word in words for part in ((word, _LABEL if word.isalpha() else _VALUE), (" ", _UNIT))][:-1]
+
+
+def names_in_border(names: Sequence[str], where: Arrangement, *, has_limits: bool) -> str:
+    """Return what the frame says where the lines do not name the sensors."""
+    if len(names) < 2 or where.text_rows > _MOST_LINES - 2 + has_limits:
+        return ""
+    return (" │ " if where.across else " above ").join(names)
