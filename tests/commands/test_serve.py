@@ -14,6 +14,7 @@ import pytest
 from tests.conftest import Command
 from tuisim.web import server as web_server
 from tuisim.web.server import Server, ServerLimits
+from tuisim.web.visit import VisitLimits
 
 
 @pytest.fixture
@@ -56,9 +57,10 @@ def test_what_to_open_is_passed_on(
     assert " ".join(command[command.index("open") + 1 :]) == opened
 
 
+SOME_LIMITS = ServerLimits(2, VisitLimits(idle_s=90.0, keep_s=120.0))
 LIMITS = {
     "usual": ("", (ServerLimits(8), "127.0.0.1", 8000)),
-    "all": ("--max-visitors 2 --idle 1.5 --host 0.0.0.0 --port 81", (ServerLimits(2, 90.0), "0.0.0.0", 81)),
+    "all": ("--max-visitors 2 --idle 1.5 --keep 2 --host 0.0.0.0 --port 81", (SOME_LIMITS, "0.0.0.0", 81)),
 }
 
 

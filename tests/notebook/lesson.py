@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import base64
+import html
 import io
+import re
 from collections.abc import Mapping
 
 import nbformat
@@ -90,8 +92,11 @@ def execute(cells: Mapping[str, str], kernel: str = "python3") -> dict[str, Note
 
 
 def stream(cell: NotebookNode, name: str = "stdout") -> str:
-    """Return what a cell printed."""
-    return "".join(output.text for output in cell.outputs if output.output_type == "stream" and output.name == name)
+    """Return what a cell printed, with what of it is folded."""
+    text = "".join(output.text for output in cell.outputs if output.output_type == "stream" and output.name == name)
+    pages = [output.data.get("text/html", "") for output in cell.outputs if "data" in output]
+    folded = [html.unescape(part) for page in pages for part in re.findall('<pre style="margin: 0">([^<]*)', page)]
+    return text + "".join(f"{part}\n" for part in folded) if name == "stdout" else text
 
 
 def result(cell: NotebookNode) -> str:
@@ -101,8 +106,9 @@ def result(cell: NotebookNode) -> str:
 
 
 def texts(cell: NotebookNode) -> list[str]:
-    """Return the texts of a cell's displays."""
-    return [output.data["text/plain"] for output in cell.outputs if output.output_type == "display_data"]
+    """Return the texts of a cell's displays, without what is folded of its output."""
+    found = [output.data["text/plain"] for output in cell.outputs if output.output_type == "display_data"]
+    return [text for text in found if not text.startswith("… ")]
 
 
 def pictures(cell: NotebookNode) -> list[Image.Image]:

@@ -11,6 +11,7 @@ from IPython.core.interactiveshell import InteractiveShell
 
 from tests.notebook.conftest import Cell, Kernel
 from tuisim.notebook import cell_run
+from tuisim.notebook.cell_output import CellOutput
 from tuisim.notebook.display import Stage
 
 ENDLESS = "%%sim_magic_preloaded -RW --speed 1\nprint('Colour: 1')\nwhile True:\n    pass\n"
@@ -47,7 +48,7 @@ def check_that_all_is_well(cell: Cell) -> None:
     ("holder", "name"),
     [
         pytest.param(cell_run, "start_run", id="as it starts"),
-        pytest.param(cell_run, "show_rows", id="among its lines"),
+        pytest.param(CellOutput, "show", id="among its lines"),
         pytest.param(Stage, "show", id="in the display"),
     ],
 )

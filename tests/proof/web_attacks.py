@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from contextlib import AsyncExitStack, suppress
 
@@ -13,6 +14,7 @@ from tests.running import PATIENCE_S
 from tests.web.stand_in import stand_in
 from tuisim.web.gate import Gate
 from tuisim.web.server import Server, ServerLimits, listening
+from tuisim.web.visit import VisitLimits
 
 TOKEN = "the-token"
 _VISITORS = 3
@@ -49,7 +51,8 @@ class Target:
         give_up = asyncio.get_running_loop().time() + PATIENCE_S
         while True:
             async with self.client.ws_connect(url, headers={"Origin": self.origin}) as socket:
-                message = await socket.receive(PATIENCE_S)
+                while (message := await socket.receive(PATIENCE_S)).type is WSMsgType.TEXT:
+                    pass
                 if message.type is WSMsgType.BINARY:
                     return
             # A place may not be free yet.
@@ -89,6 +92,27 @@ async def _origins(target: Target) -> None:
             continue
         await socket.close()
         raise FaultError(f"a socket of {origin!r} is accepted")
+
+
+async def _actions(target: Target) -> None:
+    """What ends a session or brings a file is done by a page of the server only."""
+    url = f"{target.origin}/{TOKEN}/ws"
+    async with target.client.ws_connect(url, headers={"Origin": target.origin}) as socket:
+        session = json.loads((await socket.receive(PATIENCE_S)).data)[1]
+        for what in ("end", "file?name=x.py"):
+            path = f"/{TOKEN}/sessions/{session}/{what}"
+            await target.refused("GET", path)
+            await target.refused("POST", path)
+            await target.refused("POST", path, Origin="http://evil.example")
+            await target.refused("POST", path.replace(TOKEN, "other"), Origin=target.origin)
+        for name in ("", "..", "../x.py", "%2e%2e%2fx.py", "/etc/x", ".x", "a%00b", "a" * 999):
+            await target.refused("POST", f"/{TOKEN}/sessions/{session}/file?name={name}", Origin=target.origin)
+        for other in ("", "x", "%2e%2e", session[:-1], session.upper() + "0"):
+            await target.refused("POST", f"/{TOKEN}/sessions/{other}/end", Origin=target.origin)
+        await socket.send_str('["ping", "1"]')
+        while (message := await socket.receive(PATIENCE_S)).data != '["pong", "1"]':
+            if message.type is WSMsgType.CLOSE:
+                raise FaultError("somebody else has ended a session")
 
 
 async def _hosts(target: Target) -> None:
@@ -162,8 +186,9 @@ async def _visitors(target: Target) -> None:
     url, headers = f"{target.origin}/{TOKEN}/ws", {"Origin": target.origin}
     sockets = [await target.client.ws_connect(url, headers=headers) for _ in range(_VISITORS * 4)]
     first = [(await socket.receive(PATIENCE_S)).type for socket in sockets]
-    if first.count(WSMsgType.BINARY) > _VISITORS:
-        raise FaultError(f"{first.count(WSMsgType.BINARY)} visitors have an app, not {_VISITORS}")
+    # An app tells which session it is.
+    if first.count(WSMsgType.TEXT) > _VISITORS:
+        raise FaultError(f"{first.count(WSMsgType.TEXT)} visitors have an app, not {_VISITORS}")
     for socket in sockets:
         await socket.close()
 
@@ -173,6 +198,7 @@ ATTACKS: Mapping[str, Callable[[Target], Awaitable[None]]] = {
     "methods": _methods,
     "tokens": _tokens,
     "origins": _origins,
+    "actions": _actions,
     "hosts": _hosts,
     "headers": _headers,
     "connections": _connections,
@@ -186,7 +212,7 @@ ATTACKS: Mapping[str, Callable[[Target], Awaitable[None]]] = {
 async def _attack(name: str) -> None:
     reports: list[str] = []
     async with AsyncExitStack() as stack:
-        limits = ServerLimits(_VISITORS, PATIENCE_S, 0.01)
+        limits = ServerLimits(_VISITORS, VisitLimits(PATIENCE_S, 0.0))
         server = Server(stand_in(), Gate("127.0.0.1", TOKEN), limits, reports.append)
         port = await stack.enter_async_context(listening(server, "127.0.0.1", 0))
         target = Target(await stack.enter_async_context(ClientSession()), port)

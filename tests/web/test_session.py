@@ -13,6 +13,7 @@ import sys
 from asyncio.subprocess import PIPE, Process
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import AsyncExitStack, asynccontextmanager, suppress
+from functools import partial
 from itertools import product
 from pathlib import Path
 
@@ -40,6 +41,8 @@ class Tab:
         self._stream = pyte.ByteStream(self._screen)
         self._news = asyncio.Event()
         self.seen = b""
+        self.session = ""
+        """The session that the tab shows."""
         self.offered: list[str] = []
         """The keys of the files that can be downloaded."""
         self.reason: str | None = None
@@ -48,7 +51,11 @@ class Tab:
         """Show what the app sends, and answer it, until it ends."""
         while (message := await self._socket.receive()).type in (WSMsgType.BINARY, WSMsgType.TEXT):
             if message.type is WSMsgType.TEXT:
-                self.offered += [json.loads(message.data)[1]]
+                kind, said = json.loads(message.data)
+                if kind == "session":
+                    self.session = said
+                else:
+                    self.offered += [said]
                 self._news.set()
                 continue
             self.seen += message.data
@@ -99,9 +106,9 @@ class Serving:
         self.process, self.address = process, address
 
     @asynccontextmanager
-    async def tab(self, columns: int = 120, rows: int = 40) -> AsyncIterator[Tab]:
+    async def tab(self, columns: int = 120, rows: int = 40, session: str = "") -> AsyncIterator[Tab]:
         """Open the app in a tab, and close the tab."""
-        query = f"ws?width={columns}&height={rows}"
+        query = f"ws?width={columns}&height={rows}{f'&session={session}' if session else ''}"
         origin = self.address.rsplit("/", 2)[0]
         async with (
             ClientSession(headers={"Origin": origin}) as client,
@@ -248,7 +255,7 @@ async def test_two_visitors_have_an_app_each(serve: Serve) -> None:
 
 
 async def test_a_closed_tab_ends_its_app_and_its_program_only(serve: Serve) -> None:
-    server = await serve(RUNS_ON, "-R")
+    server = await serve(RUNS_ON, "-R", "--keep", "0.001")
     async with server.tab() as kept:
         await kept.until(lambda: "running" in kept.text)
         others = children(server.process.pid)
@@ -259,6 +266,41 @@ async def test_a_closed_tab_ends_its_app_and_its_program_only(serve: Serve) -> N
         assert len(ended) > 1
         await gone(ended)
         assert all(map(is_there, others))
+
+
+async def test_a_run_goes_on_while_no_tab_is_open(serve: Serve) -> None:
+    server = await serve(RUNS_ON, "-R")
+    async with server.tab() as tab:
+        await tab.until(lambda: "running" in tab.text and "Light: 5" in tab.text)
+        before, processes = clock_s(tab), descendants(server.process.pid)
+    for columns, rows in ((90, 28), (120, 40)):
+        async with server.tab(columns, rows, tab.session) as again:
+            await again.until(partial(goes_on, again, before))
+            assert "Light: 5" in again.text
+            # The mouse is reported as in the first tab.
+            assert b"\x1b[?1003h" in again.seen
+    assert all(map(is_there, processes))
+
+
+def clock_s(tab: Tab) -> float:
+    """Return the simulated time below the world; 0 if none is shown."""
+    found = re.search(r"([\d.]+) s *│", tab.text)
+    return float(found[1]) if found else 0.0
+
+
+def goes_on(tab: Tab, after_s: float) -> bool:
+    """Return whether a tab shows a run at a later time."""
+    return "running" in tab.text and clock_s(tab) > after_s
+
+
+async def test_a_server_that_is_killed_leaves_no_app_that_no_tab_shows(serve: Serve) -> None:
+    server = await serve(RUNS_ON, "-R")
+    async with server.tab() as tab:
+        await tab.until(lambda: "running" in tab.text)
+        started = descendants(server.process.pid)
+    server.process.kill()
+    await server.process.wait()
+    await gone(started)
 
 
 ENDS = {"ctrl+c": (signal.SIGINT, 0), "termination": (signal.SIGTERM, 143), "no chance": (signal.SIGKILL, -9)}

@@ -31,6 +31,7 @@ from tuisim.app.goals import GoalsController
 from tuisim.app.keymap import check_theme, with_keys
 from tuisim.app.lesson import LessonController
 from tuisim.app.loader import PERIOD_S, Loader
+from tuisim.app.notebook_cells import do_asked
 from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages, looks_at_buttons
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
@@ -59,6 +60,7 @@ if TYPE_CHECKING:
     from tuisim.app.panels.output import Output
     from tuisim.goals.files import GoalsFile
     from tuisim.lessons.spec import Lesson
+    from tuisim.terminal.app import ServerAsks
     from tuisim.terminal.pixels import Pixels
 
 AFTER_FIRST_PAINT_S = 0.05
@@ -184,6 +186,11 @@ class LabApp(PanelMessages):
             found.append(error)
         return tuple(found)
 
+    def complain(self, error: TuisimError) -> None:
+        """Show an error, also in the cell of a notebook that has caused it."""
+        self.tell_server("problem", text=str(error))
+        super().complain(error)
+
     def _tell_config(self) -> None:
         """Tell what is wrong in `config.toml`, or what it decides about the run."""
         for error in self._config_problems[:MOST_PROBLEMS]:
@@ -224,6 +231,7 @@ class LabApp(PanelMessages):
         self.set_interval(_REST_GAP_S, self._seldom)
         self.set_interval(PERIOD_S, self.check_files)
         self.set_timer(_WARM_UP_AFTER_S, warm_up)
+        self.tell_server("ready")
 
     def check_files(self) -> None:
         """Reload the files that have changed on disk, or ask about those with unsaved edits."""
@@ -290,6 +298,7 @@ class LabApp(PanelMessages):
         except TuisimError as error:
             self.complain(error)
             return False
+        self.tell_server("run", id=self.run_controller.run_id)
         self._starting_until_s = time.monotonic() + _STARTING_S
         self._set_frame_gap(_START_GAP_S)
         self.set_timer(_WARM_UP_AFTER_S, self.run_controller.prepare_next)
@@ -402,6 +411,7 @@ class LabApp(PanelMessages):
             self.panel_area.output.ask(prompt)
 
     def _ended(self, ended: Ended, stood: str) -> None:
+        self.tell_server("ended", id=self.run_controller.run_id)
         self.panel_area.release_buttons()
         good = ended.end in GOOD_ENDS
         if not good:
@@ -552,6 +562,10 @@ class LabApp(PanelMessages):
     def on_output_answered(self, message: Output.Answered) -> None:
         self.run_controller.send(Answer(message.text))
         self.action_leave_field()
+
+    def on_server_asks(self, message: ServerAsks) -> None:
+        """Do what the page of a browser asks for."""
+        do_asked(self.context, message.asked)
 
     def on_click(self, event: events.Click) -> None:
         in_a_dialog = self.screen is not self.panel_area.screen

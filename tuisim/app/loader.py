@@ -391,6 +391,25 @@ class Loader:
 
         self._apply_program(program_of_text(text, Path(path) if path else None, name))
 
+    def take_cell(self, source: ProgramSource | None, settings: Mapping[str, Any]) -> None:
+        """Take the world and the program of a cell in a notebook; what it repeats is left as the user has set it since.
+
+        Args:
+            source: The program; None leaves the one that is open.
+            settings: By path. Not during a run.
+
+        Raises:
+            TuisimError: a setting is wrong.
+        """
+        before = self._magic_settings
+        if source is not None:
+            self._file_prelude = source.program.prelude
+            self._apply_program(source)
+        else:
+            self._apply_changed(_differences(before, settings), self._run_controller.program)
+            self._magic_settings = settings
+            self._apply_app_settings(before, settings)
+
     def open_new(self, text: str, name: str) -> None:
         """Open a new program without a file and without a magic line. Not during a run."""
         from tuisim.config.program_file import program_of_text

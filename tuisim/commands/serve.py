@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import socket
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.commands.app import OPENED, read_opened
@@ -17,11 +16,8 @@ from tuisim.errors import ConfigError
 if TYPE_CHECKING:
     from tuisim.web.gate import Gate
 
-DEFAULT_PORT, DEFAULT_VISITORS = 8000, 8
+DEFAULT_PORT, DEFAULT_VISITORS, DEFAULT_KEEP_MIN = 8000, 8, 60.0
 _GROUP = "Server"
-_BOOT = "import sys; sys.path.append(sys.argv.pop(1)); from tuisim.__main__ import main; sys.exit(main())"
-"""Startup code of an app: the package comes last in the path, as in the child of a run."""
-_PACKAGE_FOLDER = str(Path(__file__).parent.parent.parent)
 _PORT, _VISITORS, _MINUTES = Whole(0, 65535), Whole(1, 1000), Number(0.001, 100_000)
 _SERVER = (
     option(
@@ -32,7 +28,12 @@ _SERVER = (
     option(
         "--max-visitors", default=DEFAULT_VISITORS, metavar="N", group=_GROUP,
         type=WordType(lambda text: parse(_VISITORS, text, "--max-visitors")),
-        help=f"Most browser tabs at the same time ({DEFAULT_VISITORS}); each has its own app.",
+        help=f"Most apps at the same time ({DEFAULT_VISITORS}), with those that no tab shows now.",
+    ),
+    option(
+        "--keep", default=DEFAULT_KEEP_MIN, metavar="MIN", group=_GROUP,
+        type=WordType(lambda text: parse(_MINUTES, text, "--keep")),
+        help=f"End an app that no tab has shown for so many minutes ({DEFAULT_KEEP_MIN:g}).",
     ),
     option(
         "--idle", default=None, metavar="MIN", group=_GROUP,
@@ -73,14 +74,15 @@ def serve(**given: Any) -> int:
     except ImportError as error:
         hint = "pip install -e '.[web]' in the clone of tuisim"
         raise ConfigError("needs textual-serve", hint, key="serve") from error
+    from tuisim.web.app_command import app_command
     from tuisim.web.gate import Gate
 
     gate = Gate(arguments.host)
+    from tuisim.web.visit import VisitLimits
+
     idle_s = float("inf") if arguments.idle is None else 60 * arguments.idle
-    command_of_app = [sys.executable, "-P", "-c", _BOOT, _PACKAGE_FOLDER, "open", *words_without(_SERVER)]
-    visitors = server.Server(
-        command_of_app, gate, server.ServerLimits(arguments.max_visitors, idle_s), echo_error_lines
-    )
+    limits = server.ServerLimits(arguments.max_visitors, VisitLimits(idle_s, 60 * arguments.keep))
+    visitors = server.Server(app_command(words_without(_SERVER)), gate, limits, echo_error_lines)
     return server.serve(visitors, arguments.host, arguments.port, lambda port: _announce(gate, port))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections.abc import Mapping
 from typing import Any
@@ -13,6 +14,7 @@ from tuisim.config.shared_options import shared_options
 from tuisim.core.values import Number, Whole
 from tuisim.errors import ConfigError
 
+MIN_HEIGHT_PX, MAX_HEIGHT_PX, DEFAULT_HEIGHT_PX = 200, 4000, 560
 MAX_INDEX = 1_000_000
 MIN_REFRESH_S, MAX_REFRESH_S = 0.02, 60.0
 DEFAULT_REFRESH_S = 0.2
@@ -44,6 +46,12 @@ def _command(magic: str) -> Command:
         option("-F", "--refresh", "refresh_s", is_flag=False, flag_value=DEFAULT_REFRESH_S, default=DEFAULT_REFRESH_S,
                metavar="S", type=_type(refresh, "-F"), group=group,
                help="Seconds between two redraws."),
+        option("--app", is_flag=True, group=group, help="Show the app in this cell, live, as %sim_app does."),
+        option("--height", "height_px", default=DEFAULT_HEIGHT_PX, metavar="PX", group=group,
+               type=_type(Whole(MIN_HEIGHT_PX, MAX_HEIGHT_PX), "--height"),
+               help=f"Height of the app in its cell ({DEFAULT_HEIGHT_PX})."),
+        option("--origin", "origins", multiple=True, metavar="URL", type=WordType(_origin), group=group,
+               help="Another address under which this notebook is read, such as http://lab:8888."),
         option("-L", "--collab", "collaborative", is_flag=True, group=group,
                help="`roboSim.pyresponder` or `.responder` answers the program."),
     ]  # fmt: skip
@@ -76,6 +84,15 @@ def _split(line: str, magic: str) -> list[str]:
 def _type(value: Number, flag: str) -> WordType:
     """Return the type of an option with a value."""
     return WordType(lambda text: parse_value(value, text, flag))
+
+
+_ORIGIN = re.compile(r"https?://(?:[\w.-]+|\[[\da-fA-F:.]+\])(?::\d+)?|vscode-webview:", re.ASCII)
+
+
+def _origin(text: str) -> str:
+    if not _ORIGIN.fullmatch(origin := text.rstrip("/")):
+        raise ConfigError(f"must be the beginning of an address, got {text!r}", "http://lab:8888", key="--origin")
+    return origin
 
 
 def _corners(text: str) -> tuple[int, ...]:

@@ -7,28 +7,33 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import closing
 from functools import partial
-from itertools import groupby, islice
+from itertools import islice
 from types import FrameType
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, counted
+from tuisim.notebook.app_run import AppRun
+from tuisim.notebook.cell_output import CellOutput
 from tuisim.notebook.display import Scene, Stage, start_record
-from tuisim.notebook.image_log import IMAGE_DATA, SENT_DATA, ArrayReader, ImageLog, asked_side
+from tuisim.notebook.image_log import SENT_DATA, ArrayReader, ImageLog, asked_side
 from tuisim.notebook.old_formats import sent_text
 from tuisim.protocol import Answer, Reply, Wheels
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.runs.records import OutputRow, Stream, line_of
+from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import Sample, samples_of
 from tuisim.runs.store import RunStore
 from tuisim.scene.pen import Piece, pen_trace
 from tuisim.source import Program
+
+if TYPE_CHECKING:
+    from tuisim.notebook.app_view import AppView
 
 POLL_S = 0.02
 """Interval at which printed lines appear in the cell."""
@@ -57,7 +62,6 @@ RESPONSE_HEADING = "PY RESPONSE"
 
 Responder = Callable[[str], object]
 Result = TypeVar("Result")
-_SHOWN = {Stream.STDOUT, Stream.STDERR, Stream.SPEECH}
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,10 +101,13 @@ class CellRun:
     """Whether speech is not shown either."""
 
 
-def run_cell(cell: CellRun, stage: Stage, begun: Callable[[StoredRun, Wheels], None]) -> StoredRun:
+def run_cell(
+    cell: CellRun, stage: Stage, begun: Callable[[StoredRun, Wheels], None], view: AppView | None = None
+) -> StoredRun:
     """Run a program and show it; block until it ends or the kernel is interrupted.
 
-    `begun` is called with the run as soon as its recording exists, and again at its end.
+    `begun` is called with the run as soon as its recording exists, and again at its end. With a `view`, the app in a
+    cell starts the run, which it has been asked for.
 
     Raises:
         ConfigError: the responder has returned what a program cannot get; the run has been stopped.
@@ -110,7 +117,10 @@ def run_cell(cell: CellRun, stage: Stage, begun: Callable[[StoredRun, Wheels], N
     options = RunOptions(
         live=paced, speed=cell.speed, asks_user=True, time_waits=not paced, replies=cell.listener.answers
     )
-    with Interruption() as interruption, closing(start_run(cell.program, cell.spec, options, store)) as handle:
+    with (
+        Interruption() as interruption,
+        closing(AppRun(view) if view else start_run(cell.program, cell.spec, options, store)) as handle,
+    ):
         run = store.load_run(handle.run_id)
         begun(run, handle.wheels)
         screen = _Screen(cell, stage, run)
@@ -185,10 +195,13 @@ class Interruption:
 
 class _Follower:
     def __init__(
-        self, cell: CellRun, handle: RunHandle, screen: _Screen, interruption: Interruption, run: StoredRun
+        self, cell: CellRun, handle: RunHandle | AppRun, screen: _Screen, interruption: Interruption, run: StoredRun
     ) -> None:
         self._cell, self._handle, self._screen, self._interruption = cell, handle, screen, interruption
         self._run, self._arrays = run, ArrayReader(run)
+        # What the notebook's functions print stands among the lines that they hear.
+        folds = screen.redraws and not cell.listener.answers
+        self._printed = CellOutput(folds=folds, quiet=cell.quiet)
         self._said: list[Any] = []
         """Answers of the responder that have not been sent to the program."""
         self._stopping = False
@@ -222,13 +235,13 @@ class _Follower:
             asked, addressed = asked_side(row), self._is_addressed(row)
             if asked or addressed:
                 # What the notebook's functions print belongs below the line that they hear.
-                show_rows(rows[shown:at], quiet=self._cell.quiet)
+                self._printed.show(rows[shown:at])
                 shown = at
             if asked:
                 self._log_arrays(row)
             if addressed:
                 self._hear(row)
-        show_rows(rows[shown:], quiet=self._cell.quiet)
+        self._printed.show(rows[shown:])
         return len(rows) == ROWS_AT_ONCE
 
     def _is_addressed(self, row: OutputRow) -> bool:
@@ -275,6 +288,7 @@ class _Follower:
         shown = 0
         while not (self._interruption.count and shown > ROWS_AFTER_INTERRUPT) and self._relay():
             shown += ROWS_AT_ONCE
+        self._printed.finish()
         if self._handle.output.new_rows(1):
             self._cell.images.incomplete(self._run)
             print("… and more lines, which are in the log", file=sys.stderr)
@@ -290,6 +304,11 @@ class _Screen:
         self._samples: list[Sample] = []
         self._position = 0
         """Position up to which the output has been searched for samples."""
+
+    @property
+    def redraws(self) -> bool:
+        """Whether drawings can be updated in place."""
+        return self._stage.redraws
 
     def draw_if_due(self) -> None:
         """Draw if the last drawing is missing or old; never if drawings cannot be updated in place."""
@@ -309,21 +328,6 @@ class _Screen:
         last = run.telemetry.last() or start_record(cell.spec)
         traces = (*cell.traces, pen_trace(cell.spec, run.telemetry.array()))
         self._stage.show(Scene(cell.spec, cell.files, cell.program, last, traces, self._samples), status)
-
-
-def shown_text(row: OutputRow) -> str:
-    """Return the line that a cell shows for a row."""
-    if row.text.startswith(IMAGE_DATA) and (side := asked_side(row)):
-        return f"{side} image data logged..."
-    return line_of(row)
-
-
-def show_rows(rows: Sequence[OutputRow], *, quiet: bool = False) -> None:
-    """Print rows in order, batched by stream."""
-    shown = _SHOWN - {Stream.SPEECH} if quiet else _SHOWN
-    printed = (row for row in rows if row.stream in shown)
-    for is_error, group in groupby(printed, key=lambda row: row.stream == Stream.STDERR):
-        print("\n".join(shown_text(row) for row in group), file=sys.stderr if is_error else sys.stdout)
 
 
 def _plain(value: Any) -> Any:

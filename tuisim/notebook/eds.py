@@ -23,8 +23,11 @@ IMAGE_COLUMNS = ("side", "vals", "clock", "run")
 
 def get_dataframe_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
     """Return the samples of runs as one long frame, see `runs.frames.samples_frame`."""
+    from tuisim.notebook.seconds_axis import use_seconds
     from tuisim.runs.frames import samples_frame
 
+    # It may be plotted next.
+    use_seconds()
     return samples_frame(log)
 
 

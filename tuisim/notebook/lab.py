@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tuisim.config.mat_cache import FieldFiles
     from tuisim.config.options import Settings
     from tuisim.core.spec import RunSpec
+    from tuisim.notebook.app_view import AppView
     from tuisim.notebook.cell_run import Listener
     from tuisim.notebook.display import Scene, Stage
     from tuisim.notebook.image_log import LoggedArray
@@ -66,6 +67,8 @@ class Lab:
         self._runs: list[StoredRun] = []
         self._last: StoredRun | None = None
         self._spec: RunSpec | None = None
+        self._view: AppView | None = None
+        """The app in a cell, once there is one."""
         self._traces: tuple[Piece, ...] = ()
         """Pen traces on the mat, until it is cleared or replaced."""
 
@@ -100,24 +103,26 @@ class Lab:
     @property
     def results_log(self) -> list[StoredRun]:
         """The runs since the log was cleared; `eds` converts them to frames."""
+        self._catch_up()
         return list(self._runs)
 
     def clear_datalog(self) -> None:
         """Discard the log; the runs stay in the store."""
+        self._catch_up()
         self._runs.clear()
         self._images.clear()
 
     def data(self) -> pd.DataFrame:
         """Return the samples of all runs since the log was cleared."""
-        return eds.get_dataframe_from_datalog(self._runs)
+        return eds.get_dataframe_from_datalog(self.results_log)
 
     def images(self) -> pd.DataFrame:
         """Return the pixel arrays that were logged since the log was cleared, as numbers; see `eds`."""
-        return eds.image_frame(self._images.of(self._runs))
+        return eds.image_frame(self._images.of(self.results_log))
 
     def logged_arrays(self) -> list[list[LoggedArray]]:
         """Return the pixel arrays that `raw_image_data` has, run by run."""
-        return [[array for array in of_run if not array.sent] for of_run in self._images.of(self._runs)]
+        return [[array for array in of_run if not array.sent] for of_run in self._images.of(self.results_log)]
 
     # The log under the old simulator's names
 
@@ -148,6 +153,7 @@ class Lab:
         from tuisim.notebook.display import start_record
         from tuisim.runs.run_folder import field_files, open_mat
 
+        self._catch_up()
         run = self._last
         record = run.telemetry.last() if run else None
         if run is None or record is None:
@@ -174,6 +180,7 @@ class Lab:
     @property
     def state(self) -> dict[str, Any]:
         """The robot's pose in mm and degrees, and the end of the last run."""
+        self._catch_up()
         record = self._last.telemetry.last() if self._last else None
         pose = record.pose if record else self.spec.world.start
         return {
@@ -220,6 +227,12 @@ class Lab:
             plan.spec.world.background, plan.spec.world.background_fit)  # fmt: skip
         self._traces = self._traces if same_mat and not plan.settings["clear_trace"] else ()
         self._persistent, self._program, self._spec = plan.persistent, plan.program, plan.spec
+        view = self._view_for(words, plan)
+        if view is not None:
+            if not listener.answers:
+                self._run_in_app(view, plan, words, runs)
+                return
+            print("tuisim: note: the app in the cell cannot answer a program: it runs here", file=sys.stderr)
         stage = Stage(plan.settings)
         if runs:
             self._run(plan, stage, words, listener)
@@ -272,7 +285,49 @@ class Lab:
 
         return Listener(responder, self._in_texts, None if handler is None else handled)
 
-    def _run(self, plan: _CellPlan, stage: Stage, words: Arguments, listener: Listener) -> None:
+    def _view_for(self, words: Arguments, plan: _CellPlan) -> AppView | None:
+        """Return the app in a cell, which this one may have asked for; None if there is none."""
+        if self._view is not None and not self._view.is_alive:
+            self._view.close()
+            self._view = None
+        if not words.app:
+            return self._view
+        try:
+            from tuisim.notebook.app_view import AppView
+        except ImportError:
+            hint = "pip install -e '.[web]' in the clone of tuisim"
+            print(f"tuisim: note: the app in a cell needs textual-serve: {hint}", file=sys.stderr)
+            return None
+        if self._view is None:
+            self._view = AppView(["-b", plan.spec.world.background], words.origins)
+        self._view.show(words.height_px, words.origins)
+        return self._view
+
+    def _run_in_app(self, view: AppView, plan: _CellPlan, words: Arguments, runs: bool) -> None:
+        from tuisim.config.options import settings_of
+        from tuisim.notebook.cell_run import Listener
+        from tuisim.notebook.display import Stage
+
+        said = settings_of(plan.persistent, words.settings).given
+        program = plan.program
+        view.take_cell({path: value for path, value in said.items() if path != "autorun"}, program, runs=runs)
+        if runs:
+            stage = Stage(plan.settings.changed({"panels_on": (), "panels_off": ("world", "controls")}))
+            self._run(plan, stage, words, Listener(), view)
+
+    def _catch_up(self) -> None:
+        """Take the runs that have begun in the app into the log."""
+        while self._view is not None and not self._view.begun.empty():
+            from tuisim.runs.store import RunStore
+
+            run = RunStore().load_run(self._view.begun.get())
+            if all(known.id != run.id for known in self._runs):
+                self._images.begin(run)
+                self._last, self._runs[len(self._runs) :] = run, [run]
+
+    def _run(
+        self, plan: _CellPlan, stage: Stage, words: Arguments, listener: Listener, view: AppView | None = None
+    ) -> None:
         from tuisim.notebook.cell_run import CellRun, run_cell
         from tuisim.scene.pen import pen_trace
 
@@ -292,7 +347,7 @@ class Lab:
             self._last, self._runs[places[0] : places[0] + 1] = run, [run]
 
         try:
-            run_cell(cell, stage, note)
+            run_cell(cell, stage, note, view)
         finally:
             # Also after a responder's error has ended the run.
             if self._last is not None:
@@ -300,7 +355,8 @@ class Lab:
 
     def _scene(self, plan: _CellPlan) -> tuple[Scene, str]:
         """Return the scene while nothing runs, and its status line."""
-        from tuisim.notebook.cell_run import end_text, shown_text
+        from tuisim.notebook.cell_output import shown_text
+        from tuisim.notebook.cell_run import end_text
         from tuisim.notebook.display import Scene, start_record
         from tuisim.runs.records import TEXT_STREAMS
         from tuisim.runs.samples import samples_of

@@ -69,6 +69,10 @@ def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
     return act
 
 
+def _sim_app(shell: InteractiveShell) -> Handler:
+    return lambda line, _: _sim_magic(shell, "sim_magic")(f"--app {line}", None)
+
+
 Log = Callable[[Lab, "Arguments"], Any]
 
 
@@ -118,6 +122,7 @@ def install(shell: InteractiveShell) -> None:
     """Register every magic, and put `roboSim` and `eds` into the notebook's namespace."""
     for name in PRELUDES:
         shell.magics_manager.register_function(_guarded(_sim_magic(shell, name)), "line_cell", name)
+    shell.magics_manager.register_function(_guarded(_sim_app(shell)), "line", "sim_app")
     for name, read in LOG_MAGICS.items():
         shell.magics_manager.register_function(_guarded(_log_magic(shell, name, read)), "line", name)
     shell.push({"roboSim": roboSim, "eds": eds})

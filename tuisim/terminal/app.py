@@ -40,6 +40,7 @@ from tuisim.terminal.queries import (
     TerminalFacts,
     cell_size_px,
 )
+from tuisim.terminal.server_asks import ServerAsks as ServerAsks
 from tuisim.terminal.textual_internals import SUPPORTED, Codes, CompositorUpdate, HookedApp, is_leaving, mend
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
@@ -244,6 +245,16 @@ class BufferedApp(HookedApp):
         with self.own_driver.lent():
             run_in_foreground(command)
         return True
+
+    def tell_server(self, what: str, **details: object) -> None:
+        """Tell something to the server that shows the app in a browser, if one does."""
+        if not in_browser():
+            return
+        # Most apps run in a terminal.
+        from tuisim.terminal.browser_driver import BrowserDriver
+
+        if isinstance(self.own_driver, BrowserDriver):
+            self.own_driver.write_meta({"type": "tell", "what": what, **details})
 
     def suspending(self) -> None:
         """Called before the app stops, or gives its terminal away."""

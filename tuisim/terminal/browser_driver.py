@@ -14,7 +14,11 @@ from textual.message import Message
 from tuisim.terminal import kitty
 from tuisim.terminal.app import ActionAsked
 from tuisim.terminal.queries import QUESTIONS, AnswerParser
+from tuisim.terminal.server_asks import ServerAsks
 from tuisim.terminal.textual_internals import app_of, parse_page_input_with, write_with
+
+_MODES = "\x1b[?1049h\x1b[?25l\x1b[?1000h\x1b[?1003h\x1b[?1015h\x1b[?1006h\x1b[?2004h"
+"""What an app sets in a terminal: the screen of an app without a cursor, reports of the mouse and of pastes."""
 
 
 class BrowserDriver(WebDriver):
@@ -64,17 +68,27 @@ class BrowserDriver(WebDriver):
             app_of(self).post_message(messages.ExitApp())
 
     def on_meta(self, packet_type: str, payload: dict[str, object]) -> None:
-        """Handle a message of the server; a change of focus waits for what the app itself has queued.
+        """Handle a message of the server.
 
-        The base class queues the loss of the focus at the start, which would override an early report of the browser.
+        Another terminal that shows the app gets everything that the first one got. Size and focus wait for what the app
+        itself has queued: at the start it queues those of the beginning, which would override an early report.
         """
-        if packet_type in ("focus", "blur"):
-            event = events.AppFocus() if packet_type == "focus" else events.AppBlur()
-            app_of(self).call_later(app_of(self).post_message, event)
-        elif packet_type == "act":
-            app_of(self).post_message(ActionAsked(str(payload["name"])))
-        else:
-            super().on_meta(packet_type, payload)
+        match packet_type:
+            case "focus" | "blur":
+                event = events.AppFocus() if packet_type == "focus" else events.AppBlur()
+                app_of(self).call_later(app_of(self).post_message, event)
+            case "resize":
+                app_of(self).call_later(super().on_meta, packet_type, payload)
+            case "show":
+                self.on_meta("resize", payload)
+                self.write(_MODES + QUESTIONS)
+                app_of(self).call_later(app_of(self).post_message, self.SignalResume())
+            case "act":
+                app_of(self).post_message(ActionAsked(str(payload["name"])))
+            case "ask":
+                app_of(self).post_message(ServerAsks(payload))
+            case _:
+                super().on_meta(packet_type, payload)
 
 
 parse_page_input_with(AnswerParser)

@@ -35,6 +35,9 @@ class Gate:
     listens_on: str
     """Host name or address that the server listens on."""
     token: str = field(default_factory=new_token)
+    frames: tuple[str, ...] = ()
+    """Origins of pages, such as `http://localhost:8888`, that may show the page in a frame; a proxy may pass the server
+    off as a part of theirs."""
 
     def admits(self, path: str, host: str, origin: str | None, *, from_a_page: bool) -> bool:
         """Return whether to answer a request.
@@ -53,7 +56,15 @@ class Gate:
             return False
         return not from_a_page if origin is None else origin in (f"http://{host}", f"https://{host}")
 
+    @property
+    def framed_by(self) -> str:
+        """Who may show the page in a frame, as a content security policy says it."""
+        # Its own origin is that of the proxy, behind one.
+        return " ".join(("'self'", *self.frames)) if self.frames else "'none'"
+
     def _is_ours(self, host: str) -> bool:
         if not _HOST.fullmatch(host):
             return False
+        if host in {urlsplit(origin).netloc for origin in self.frames}:
+            return True
         return is_any_address(self.listens_on) or urlsplit(f"//{host}").hostname in _LOCAL | {self.listens_on.lower()}

@@ -18,18 +18,24 @@ from aiohttp.typedefs import Handler, Middleware
 from textual_serve.download_manager import DownloadManager
 
 from tuisim.data_class import dataclass
-from tuisim.errors import SIGNALLED, ConfigError, counted
+from tuisim.errors import SIGNALLED, ConfigError, TuisimError, counted
 from tuisim.web.gate import Gate
-from tuisim.web.session import END_WITHIN_S, WebSession
-from tuisim.web.visit import Visit
+from tuisim.web.link import close
+from tuisim.web.session import END_WITHIN_S
+from tuisim.web.upload import MOST_FILE_BYTES, keep_file
+from tuisim.web.visit import Visit, VisitLimits
 
 HEARTBEAT_S = 15.0
 """A browser that does not answer for about this time has gone."""
 CLOSE_WITHIN_S = 2.0
 """Time for a browser to confirm that its socket is closed."""
 _PAGE = Path(__file__).parent / "page"
-_FONTS = Path(__file__).parent.parent / "charts" / "fonts"
-_STATIC = Path(textual_serve.__file__).parent / "static"
+_FOLDERS = {
+    "static": Path(textual_serve.__file__).parent / "static",
+    "page": _PAGE,
+    "fonts": Path(__file__).parent.parent / "charts" / "fonts",
+}
+"""Folders of files that every visitor gets, by name."""
 _DEFAULT_SIZE = (80, 24)
 
 
@@ -38,11 +44,9 @@ class ServerLimits:
     """What visitors may use."""
 
     visitors: int
-    """Most at the same time."""
-    idle_s: float = float("inf")
-    """A visitor that does nothing for this time is sent away."""
-    patience_s: float = 3.0
-    """How long a visitor waits for a place: a page that is loaded again has just left one."""
+    """Most apps at the same time, with those that no tab shows now."""
+    visit: VisitLimits = VisitLimits()
+    """How long each lasts."""
 
 
 class Server:
@@ -58,35 +62,39 @@ class Server:
     def __init__(
         self, command: Sequence[str], gate: Gate, limits: ServerLimits, report: Callable[[str], None] = lambda _: None
     ) -> None:
-        self._command, self._gate, self._limits, self._report = command, gate, limits, report
+        self._command, self._limits, self._report = command, limits, report
+        self.gate = gate
         self._downloads = DownloadManager()
-        self._visits: set[Visit] = set()
-        self._place_is_free = asyncio.Condition()
+        self._visits: dict[str, Visit] = {}
+        self._lives: set[asyncio.Task[None]] = set()
 
     def application(self) -> web.Application:
         """Return the web application."""
-        application = web.Application(middlewares=[self._guard()])
-        top = f"/{self._gate.token}"
+        application = web.Application(middlewares=[self._guard()], client_max_size=MOST_FILE_BYTES)
+        # The gate looks at the token, which may change.
+        top = "/{token}"
         application.add_routes(
             [
                 web.get(top, self._to_page),
                 web.get(f"{top}/", self._page),
                 web.get(f"{top}/ws", self._socket),
+                web.get(f"{top}/sessions", self._list),
+                web.post(f"{top}/sessions/{{id}}/end", self._end),
+                web.post(f"{top}/sessions/{{id}}/file", self._bring),
                 web.get(f"{top}/download/{{key}}", self._download),
-                web.static(f"{top}/static", _STATIC),
-                web.static(f"{top}/page", _PAGE),
-                web.static(f"{top}/fonts", _FONTS),
+                web.get(f"{top}/{{folder:{'|'.join(_FOLDERS)}}}/{{name:.+}}", _file),
             ]
         )
-        application.on_response_prepare.append(_protect)
+        application.on_response_prepare.append(self._protect)
         application.on_shutdown.append(self._send_all_away)
         return application
 
     def _guard(self) -> Middleware:
         @web.middleware
         async def guard(request: web.Request, handler: Handler) -> web.StreamResponse:
-            is_socket, origin = request.path.endswith("/ws"), request.headers.get("Origin")
-            if self._gate.admits(request.path, request.host, origin, from_a_page=is_socket):
+            # What does something is sent by a page of ours only.
+            acts, origin = request.path.endswith("/ws") or request.method == "POST", request.headers.get("Origin")
+            if self.gate.admits(request.path, request.host, origin, from_a_page=acts):
                 return await handler(request)
             raise web.HTTPForbidden(text="Use the whole address that `tuisim serve` has printed.\n")
 
@@ -96,35 +104,63 @@ class Server:
         raise web.HTTPFound(f"{request.path}/")
 
     async def _page(self, request: web.Request) -> web.StreamResponse:
-        if await self._has_place():
-            return web.FileResponse(_PAGE / "index.html")
-        text = (_PAGE / "full.html").read_text("utf-8").replace("REASON", self._full)
-        return web.Response(text=text, status=503, content_type="text/html", headers={"Retry-After": "10"})
+        return web.FileResponse(_PAGE / "index.html")
+
+    async def _list(self, request: web.Request) -> web.StreamResponse:
+        sessions = [visit.to_plain() for visit in self._visits.values()]
+        return web.json_response({"sessions": sessions, "free": self._limits.visitors - len(sessions)})
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
         socket = web.WebSocketResponse(heartbeat=HEARTBEAT_S, timeout=CLOSE_WITHIN_S)
         await socket.prepare(request)
-        if not await self._has_place():
-            await socket.close(code=WSCloseCode.TRY_AGAIN_LATER, message=self._full.encode())
-            return socket
-        visit = Visit(WebSession(self._command, socket, self._downloads), socket, self._limits.idle_s, self._report)
-        self._visits.add(visit)
-        try:
-            await visit.proceed(*_size(request))
-        finally:
-            self._visits.remove(visit)
-            async with self._place_is_free:
-                self._place_is_free.notify_all()
+        asked, size = request.query.get("session"), _size(request)
+        visit = await self.begin(*size) if asked is None else self._visits.get(asked)
+        if visit is not None:
+            await visit.show(socket, *size, is_new=asked is None)
+        elif asked is None:
+            await close(socket, self._full, WSCloseCode.TRY_AGAIN_LATER)
+        else:
+            await close(socket, "The session has ended.")
         return socket
 
-    async def _has_place(self) -> bool:
-        """Wait a little until there is room for one more visitor; return whether there is."""
+    async def begin(self, width: int, height: int) -> Visit | None:
+        """Start an app for a visitor; return None if all places are taken."""
+        if len(self._visits) >= self._limits.visitors:
+            return None
+        visit = Visit(self._command, self._downloads, self._limits.visit, self._report)
+        self._visits[visit.id] = visit
+        has_begun = asyncio.Event()
+
+        async def live() -> None:
+            try:
+                await visit.live(width, height, has_begun.set)
+            finally:
+                del self._visits[visit.id]
+
+        life = asyncio.create_task(live())
+        self._lives.add(life)
+        life.add_done_callback(self._lives.discard)
+        await has_begun.wait()
+        return visit
+
+    def _visit(self, request: web.Request) -> Visit:
         try:
-            async with asyncio.timeout(self._limits.patience_s), self._place_is_free:
-                await self._place_is_free.wait_for(lambda: len(self._visits) < self._limits.visitors)
-        except TimeoutError:
-            return False
-        return True
+            return self._visits[request.match_info["id"]]
+        except KeyError:
+            raise web.HTTPNotFound(text="There is no such session.\n") from None
+
+    async def _end(self, request: web.Request) -> web.StreamResponse:
+        self._visit(request).end("Another tab has ended this session.")
+        raise web.HTTPNoContent
+
+    async def _bring(self, request: web.Request) -> web.StreamResponse:
+        visit, data = self._visit(request), await request.read()
+        try:
+            path = await asyncio.to_thread(keep_file, Path.cwd(), request.query.get("name", ""), data)
+        except TuisimError as error:
+            raise web.HTTPBadRequest(text=f"{error}\n") from None
+        await visit.open_file(path)
+        return web.json_response({"name": path.name})
 
     @property
     def _full(self) -> str:
@@ -151,26 +187,39 @@ class Server:
         await response.write_eof()
         return response
 
+    async def _protect(self, request: web.Request, response: web.StreamResponse) -> None:
+        """Let the page load nothing from elsewhere, be part of other pages only as the gate says, and tell nobody its
+        address."""
+        sockets = f"ws://{request.host} wss://{request.host}" if request.host else ""
+        response.headers.update(
+            {
+                "Content-Security-Policy": "default-src 'self'; img-src 'self' data: blob:; "
+                f"style-src 'self' 'unsafe-inline'; connect-src 'self' {sockets}; "
+                f"form-action 'none'; base-uri 'none'; object-src 'none'; frame-ancestors {self.gate.framed_by}",
+                "Cross-Origin-Opener-Policy": "same-origin",
+                "Cross-Origin-Resource-Policy": "same-origin",
+                "Referrer-Policy": "no-referrer",
+                "X-Content-Type-Options": "nosniff",
+                "Cache-Control": "no-store",
+                "Server": "tuisim",
+            }
+        )
+
     async def _send_all_away(self, _: web.Application) -> None:
-        await asyncio.gather(*(visit.end("The server has been ended.") for visit in self._visits))
+        for visit in self._visits.values():
+            visit.end("The server has been ended.")
+        await asyncio.gather(*self._lives)
 
 
-async def _protect(request: web.Request, response: web.StreamResponse) -> None:
-    """Let the page load nothing from elsewhere, be part of no other page, and keep its address to itself."""
-    socket = request.url.with_scheme("wss" if request.secure else "ws").origin() if request.host else ""
-    response.headers.update(
-        {
-            "Content-Security-Policy": "default-src 'self'; img-src 'self' data: blob:; "
-            f"style-src 'self' 'unsafe-inline'; connect-src 'self' {socket}; "
-            "form-action 'none'; base-uri 'none'; object-src 'none'; frame-ancestors 'none'",
-            "Cross-Origin-Opener-Policy": "same-origin",
-            "Cross-Origin-Resource-Policy": "same-origin",
-            "Referrer-Policy": "no-referrer",
-            "X-Content-Type-Options": "nosniff",
-            "Cache-Control": "no-store",
-            "Server": "tuisim",
-        }
-    )
+async def _file(request: web.Request) -> web.StreamResponse:
+    folder = _FOLDERS[request.match_info["folder"]].resolve()
+    try:
+        path = (folder / request.match_info["name"]).resolve(strict=True)
+    except (OSError, ValueError):
+        raise web.HTTPNotFound from None
+    if not path.is_relative_to(folder) or not path.is_file():
+        raise web.HTTPNotFound
+    return web.FileResponse(path)
 
 
 def _size(request: web.Request) -> tuple[int, int]:

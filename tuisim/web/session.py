@@ -1,20 +1,20 @@
-"""The app of one visitor: a process that is connected with a browser."""
+"""The app of one visitor: a process that a browser shows."""
 
 from __future__ import annotations
 
 import asyncio
+import json
 import os
 import signal
 from asyncio.subprocess import PIPE, Process
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from typing import TypeVar
+from typing import Any
 
-from aiohttp import web
 from textual_serve.app_service import AppService
 from textual_serve.download_manager import DownloadManager
 
-_Data = TypeVar("_Data")
+from tuisim.web.link import Link
 
 END_WITHIN_S = 5.0
 """Time for an app to end by itself; after that it is killed."""
@@ -30,23 +30,25 @@ _OF_A_BROWSER = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "LC_CTYPE":
 
 
 class WebSession(AppService):
-    """Starts an app, connects it with a socket, and ends it.
+    """Starts an app, connects it with a browser, and ends it.
 
     Args:
         command: The command of the app, as words.
-        socket: The connection to the browser.
+        link: The way to its browser.
         downloads: The files that apps offer.
     """
 
-    def __init__(self, command: Sequence[str], socket: web.WebSocketResponse, downloads: DownloadManager) -> None:
+    def __init__(self, command: Sequence[str], link: Link, downloads: DownloadManager) -> None:
         super().__init__(
             " ".join(command),
-            write_bytes=_while_open(socket, socket.send_bytes),
-            write_str=_while_open(socket, socket.send_str),
+            write_bytes=link.send_bytes,
+            write_str=link.send_str,
             close=_nothing,
             download_manager=downloads,
         )
         self._words = command
+        self.told: Callable[[Mapping[str, Any]], None] = lambda _: None
+        """Called with what the app tells."""
         self.errors = ""
         """The last that the app has written to stderr, once it has ended."""
 
@@ -68,6 +70,14 @@ class WebSession(AppService):
         self._process, self._stdin = process, process.stdin
         return process
 
+    async def on_meta(self, data: bytes) -> None:
+        """Handle a message of the app."""
+        said = json.loads(data)
+        if said.get("type") == "tell":
+            self.told(said)
+        else:
+            await super().on_meta(data)
+
     async def run(self) -> None:
         """Pass on what the app writes until it ends."""
         assert self._process is not None and self._process.stdout is not None and self._process.stderr is not None
@@ -88,10 +98,20 @@ class WebSession(AppService):
             payload = await output.readexactly(int.from_bytes(await output.readexactly(4), "big"))
             await handlers[kind](payload)
 
+    async def show(self, width: int, height: int) -> None:
+        """Draw everything: a terminal of this size, in columns and rows, shows the app from now on."""
+        await self.send_meta({"type": "show", "width": width, "height": height})
+
     async def ended(self) -> None:
         """Wait until the app has ended by itself."""
-        assert self._task is not None
-        await asyncio.shield(self._task)
+        # One that could not be started has no task.
+        if self._task is not None:
+            await asyncio.shield(self._task)
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether the app has ended."""
+        return self._task is not None and self._task.done()
 
     @property
     def has_failed(self) -> bool:
@@ -126,19 +146,6 @@ class WebSession(AppService):
         assert self._process is not None
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, signal.SIGKILL)
-
-
-def _while_open(
-    socket: web.WebSocketResponse, send: Callable[[_Data], Awaitable[None]]
-) -> Callable[[_Data], Awaitable[None]]:
-    """Return a function that sends data, or drops it after the browser has gone: the app writes until it has ended."""
-
-    async def send_or_drop(data: _Data) -> None:
-        if not socket.closed:
-            with suppress(ConnectionError):
-                await send(data)
-
-    return send_or_drop
 
 
 async def _nothing() -> None:

@@ -1,4 +1,4 @@
-"""A visitor: a browser with its app, until one of them has gone or the visitor has done nothing for too long."""
+"""A visitor: an app and the browser that shows it, until the app has ended or nobody has used it for too long."""
 
 from __future__ import annotations
 
@@ -6,15 +6,20 @@ import asyncio
 import json
 import re
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from pathlib import Path
+from typing import Any
 
 from aiohttp import WSMsgType, web
+from textual_serve.download_manager import DownloadManager
 
+from tuisim.data_class import dataclass
+from tuisim.web.link import Link, close
 from tuisim.web.session import WebSession
 
-_MOST_REASON_BYTES = 123
-"""The most that fits into the last message of a socket."""
+_LONGEST_S = 86400.0
+"""The longest that a timer waits at once."""
 _LARGEST_SIZE = 1000
 _ANSWER = re.compile(r"\x1b(\[[\d;]*[cnRt]|\[[?>=][\d;:]*\$?[A-Za-z]|[P_\]^][^\x07\x1b]*(\x07|\x1b\\))")
 """What a terminal sends by itself: reports of its cursor, size, modes, colours and name."""
@@ -46,60 +51,137 @@ class Activity:
         return self._clock() - self._last_s
 
 
+@dataclass(frozen=True, slots=True)
+class VisitLimits:
+    """How long a visit lasts."""
+
+    idle_s: float = float("inf")
+    """It ends when the visitor does nothing for this time."""
+    keep_s: float = 3600.0
+    """It ends when no browser shows it for this time."""
+
+
 class Visit:
-    """Connects a browser with an app.
+    """The app of a visitor and the browser that shows it: at most one at a time, and none for a while.
 
     Args:
-        session: The app.
-        socket: The connection to the browser.
-        idle_s: The visit ends when the visitor does nothing for this time.
+        command: The command of the app, as words.
+        downloads: The files that apps offer.
+        limits: How long it lasts.
         report: Called with what an app that has failed wrote to stderr.
     """
 
     def __init__(
-        self, session: WebSession, socket: web.WebSocketResponse, idle_s: float, report: Callable[[str], None]
+        self, command: Sequence[str], downloads: DownloadManager, limits: VisitLimits, report: Callable[[str], None]
     ) -> None:
-        self._session, self._socket, self._idle_s, self._report = session, socket, idle_s, report
-        self._activity = Activity()
+        self._limits, self._report = limits, report
+        self._link, self._activity = Link(), Activity()
+        self._session = WebSession(command, self._link, downloads)
+        self._begun_s = time.monotonic()
+        self._left: asyncio.TimerHandle | None = None
+        self._end: asyncio.Future[str] = asyncio.get_running_loop().create_future()
+        """Gets the reason to end the visit."""
 
-    async def proceed(self, width: int, height: int) -> None:
-        """Run the app until the visit ends; then end it.
+    @property
+    def id(self) -> str:
+        """What the page of the visitor calls it."""
+        return self._session.app_service_id
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return what a list of visits tells about it."""
+        age_s = time.monotonic() - self._begun_s
+        times = {"age_s": round(age_s), "idle_s": round(self._activity.idle_s)}
+        return {"id": self.id, **times, "shown": self._link.socket is not None}
+
+    async def live(self, width: int, height: int, began: Callable[[], None]) -> None:
+        """Run the app until it ends, or nobody uses it for too long; then end it.
 
         Args:
             width: Columns of the visitor's terminal.
             height: Its rows.
+            began: Called once a browser can show it.
         """
         try:
             await self._session.start(*_within(width, height))
         except OSError as error:
-            await self.end(f"The app cannot be started: {error.strerror}")
-            return
-        watchers = [asyncio.create_task(watch()) for watch in (self._until_app_ends, self._until_idle)]
+            self._end.set_result(f"The app cannot be started: {error.strerror}")
+        began()
+        waits = [asyncio.create_task(wait()) for wait in (self._app_ends, self._is_idle)]
         try:
-            async for message in self._socket:
+            await asyncio.wait({self._end, *waits}, return_when=asyncio.FIRST_COMPLETED)
+            reason = next(wait.result() for wait in (self._end, *waits) if wait.done())
+            if self._link.socket is not None:
+                await close(self._link.socket, reason)
+        finally:
+            for wait in waits:
+                wait.cancel()
+            self._is_watched()
+            await self._session.stop()
+
+    async def show(self, socket: web.WebSocketResponse, width: int, height: int, *, is_new: bool) -> None:
+        """Show the app in a browser until that has gone; one that has shown it before is told.
+
+        Args:
+            socket: The connection to the browser.
+            width: Columns of its terminal.
+            height: Its rows.
+            is_new: Whether the app has just begun, so that the browser gets what it draws at its start.
+        """
+        self._is_watched()
+        if self._end.done():
+            await close(socket, self._end.result())
+            return
+        await self._link.take(socket, json.dumps(["session", self.id]), "Another tab has taken this session over.")
+        if not is_new:
+            await self._session.show(*_within(width, height))
+        try:
+            async for message in socket:
                 if message.type is WSMsgType.TEXT:
                     await self._take(message.data)
         finally:
-            for watcher in watchers:
-                watcher.cancel()
-            await self._session.stop()
+            if self._link.leave(socket):
+                self._left = asyncio.get_running_loop().call_later(
+                    min(self._limits.keep_s, _LONGEST_S), self.end, "No tab has shown this session for too long."
+                )
 
-    async def end(self, reason: str) -> None:
-        """End the visit and tell the visitor why; the page has words of its own for no reason."""
-        text = reason.encode()[:_MOST_REASON_BYTES].decode("utf-8", "ignore")
-        await self._socket.close(message=text.encode())
+    async def open_file(self, path: Path) -> None:
+        """Let the app open a file that the visitor has brought."""
+        self._activity.note()
+        await self.ask({"what": "open", "path": str(path)})
 
-    async def _until_app_ends(self) -> None:
+    async def ask(self, asked: Mapping[str, Any]) -> None:
+        """Ask the app for something; see `ServerAsks`."""
+        await self._session.send_meta({"type": "ask", **asked})
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether the app has ended, or is about to."""
+        return self._end.done() or self._session.has_ended
+
+    def listen(self, told: Callable[[Mapping[str, Any]], None]) -> None:
+        """Call a function with what the app tells from now on: a start or an end of a run, a problem."""
+        self._session.told = told
+
+    def end(self, reason: str) -> None:
+        """End the visit and tell the visitor why."""
+        if not self._end.done():
+            self._end.set_result(reason)
+
+    def _is_watched(self) -> None:
+        if self._left is not None:
+            self._left.cancel()
+
+    async def _app_ends(self) -> str:
         await self._session.ended()
         if self._session.has_failed and self._session.errors:
             self._report(self._session.errors)
-        await self.end(self._session.reason)
+        return self._session.reason
 
-    async def _until_idle(self) -> None:
-        while (left_s := self._idle_s - self._activity.idle_s) > 0:
-            await asyncio.sleep(left_s)
-        minutes = f"{self._idle_s / 60:g}"
-        await self.end(f"The session has ended after {minutes} minute{'s' * (minutes != '1')} without input.")
+    async def _is_idle(self) -> str:
+        while (left_s := self._limits.idle_s - self._activity.idle_s) > 0:
+            await asyncio.sleep(min(left_s, _LONGEST_S))
+        minutes = f"{self._limits.idle_s / 60:g}"
+        return f"The session has ended after {minutes} minute{'s' * (minutes != '1')} without input."
 
     async def _take(self, data: str) -> None:
         """Handle one message of the page; what no page sends is ignored."""
@@ -113,7 +195,7 @@ class Visit:
                     self._activity.note()
                     await self._session.set_terminal_size(*_within(width, height))
                 case ["ping", str(sent)]:
-                    await self._socket.send_json(["pong", sent])
+                    await self._link.send_str(json.dumps(["pong", sent]))
                 case ["act", str(name)]:
                     self._activity.note()
                     await self._session.send_meta({"type": "act", "name": name})

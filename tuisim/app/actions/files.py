@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tuisim.app import background
 from tuisim.app.actions import lesson
@@ -51,6 +51,20 @@ def open_path(context: ActionContext, path: str) -> None:
         context.document.open_at_mistake()
 
     context.document.when_safe(opened)
+
+
+_OPENED = frozenset({".py", ".toml"})
+"""Suffixes of files that are no logs."""
+
+
+def open_brought(context: ActionContext, path: Path) -> None:
+    """Open a file that the user has brought to the page: a program, a world, goals, or a log to be analysed."""
+    if path.suffix in _OPENED and context.runs.in_run:
+        context.app.say(f"{path.name} is here, and can be opened once the run has ended: {{open}} opens it")
+    elif path.suffix in _OPENED:
+        open_path(context, str(path))
+    else:
+        _analyse(context, file=str(path))
 
 
 _WELCOMED = "welcomed"
@@ -211,12 +225,16 @@ def _show(context: ActionContext, recording: Recording, compared: tuple[Recordin
 
 def analyse(context: ActionContext) -> None:
     """Open the log of the current run in the analyser."""
+    _analyse(context, runs=(context.runs.run_id,))
+
+
+def _analyse(context: ActionContext, **source: Any) -> None:
     # The analyser is slow to import, and many sessions never use it.
     from tuisim.analysis.source import LogRequest
     from tuisim.app.analyser.app import Analyser
 
     controller = context.lesson
-    request = LogRequest(runs=(context.runs.run_id,))
+    request = LogRequest(**source)
     context.app.push_screen(Analyser(request, controller.beside_log()), lambda _: controller.log_closed())
 
 

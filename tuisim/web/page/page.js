@@ -1,4 +1,4 @@
-// Adapts textual.js of textual-serve: addresses below the secret one, the font, the focus, and why a session has ended.
+// Adapts textual.js of textual-serve: addresses below the secret one, the font, the focus, the session.
 "use strict";
 
 const here = location.origin + location.pathname;
@@ -32,18 +32,13 @@ const say = (...words) => socket?.send(JSON.stringify(words));
 
 const Socket = window.WebSocket;
 window.WebSocket = class extends Socket {
-  constructor(...how) {
-    super(...how);
+  constructor(url) {
+    super(session.address(url));
     socket = this;
-    this.addEventListener("message", () => document.querySelector(".xterm-helper-textarea").focus(), { once: true });
-    this.addEventListener("close", (event) => {
-      const usual = event.wasClean ? "The session has ended." : "The connection to the server is lost.";
-      document.getElementById("reason").textContent = event.reason || usual;
-      // textual.js shows the dialog when it hears of the end, after this.
-      setTimeout(() => document.getElementById("again").focus());
-    });
-    // The place must be free before this page is asked for again.
-    window.addEventListener("beforeunload", () => this.close());
+    const focus = () => session.framed || document.querySelector(".xterm-helper-textarea").focus();
+    this.addEventListener("message", focus, { once: true });
+    this.addEventListener("message", (event) => session.heard(event.data));
+    this.addEventListener("close", session.closed);
   }
 };
 
@@ -54,5 +49,6 @@ window.onload = async (event) => {
   // The terminal measures its cells once.
   const fonts = ["", "bold ", "italic "].map((style) => document.fonts.load(`${style}16px "Roboto Mono"`));
   await Promise.allSettled([...fonts, document.fonts.load('16px "Monaco"', "⏎")]);
+  await session.ready();
   start(event);
 };

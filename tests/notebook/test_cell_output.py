@@ -1,0 +1,70 @@
+"""A long output folds to its first and last lines."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import pytest
+from IPython.core.interactiveshell import InteractiveShell
+
+from tests.notebook.conftest import Cell, Shown
+from tuisim.notebook.cell_output import FIRST_LINES, LAST_LINES, MOST_FOLDED_LINES, folded
+
+
+@pytest.fixture
+def kernel_cell(cell: Cell, shell: InteractiveShell, monkeypatch: pytest.MonkeyPatch) -> Iterator[Cell]:
+    """`cell` in a shell whose displays can be updated."""
+    monkeypatch.setattr(shell, "kernel", None, raising=False)
+    yield cell
+
+
+def printing(count: int, words: str = "-RWH") -> str:
+    return f"%%sim_magic {words}\nfor at in range({count}):\n    print('<', at)\n"
+
+
+def lines(first: int, last: int) -> str:
+    return "".join(f"< {at}\n" for at in range(first, last))
+
+
+def test_a_long_output_shows_its_ends_and_the_rest_on_a_click(kernel_cell: Cell) -> None:
+    shown = kernel_cell(printing(530))
+    assert shown.out == lines(0, FIRST_LINES)
+    (bundle,) = shown.bundles
+    hidden = 530 - FIRST_LINES - LAST_LINES
+    assert bundle["text/plain"] == f"… {hidden} more lines\n{lines(530 - LAST_LINES, 530)}".rstrip("\n")
+    page = str(bundle["text/html"])
+    assert page.count("<details>") == page.count(f"<summary>… {hidden} more lines</summary>") == 1
+    assert "".join(re.findall(r"&lt; (\d+)", page)) == "".join(map(str, range(FIRST_LINES, 530)))
+
+
+@pytest.mark.parametrize("count", [1, FIRST_LINES])
+def test_a_short_output_is_as_it_is(count: int, kernel_cell: Cell) -> None:
+    shown = kernel_cell(printing(count))
+    assert (shown.out, shown.bundles) == (lines(0, count), ())
+
+
+def test_a_few_more_lines_are_not_folded(kernel_cell: Cell) -> None:
+    (bundle,) = kernel_cell(printing(FIRST_LINES + LAST_LINES)).bundles
+    assert "<details>" not in str(bundle["text/html"])
+    assert bundle["text/plain"] == lines(FIRST_LINES, FIRST_LINES + LAST_LINES).rstrip("\n")
+
+
+def test_a_terminal_prints_everything(cell: Cell) -> None:
+    shown = cell(printing(530))
+    assert (shown.out, shown.bundles) == (lines(0, 530), ())
+
+
+def test_the_picture_is_above_a_long_output(kernel_cell: Cell) -> None:
+    shown: Shown = kernel_cell(printing(530, "-Rc"))
+    assert ["image/png" in bundle for bundle in shown.bundles] == [True, True, False, False]
+
+
+def test_an_error_is_never_folded(kernel_cell: Cell) -> None:
+    shown = kernel_cell(printing(530) + "1 / 0\n")
+    assert "ZeroDivisionError" in shown.err
+
+
+def test_an_endless_output_keeps_its_newest_lines() -> None:
+    page = folded([f"line {at}" for at in range(MOST_FOLDED_LINES)], MOST_FOLDED_LINES + 7)["text/html"]
+    assert "The first 7 lines of these are in the log only." in page

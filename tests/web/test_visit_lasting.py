@@ -1,0 +1,140 @@
+"""An app outlives its tab: it is shown again, in the same tab or another one, and ended from any."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from tests.running import PATIENCE_S
+from tests.web.test_server import Visited, Visitor, drawn, gone, heard, is_there, visited
+from tuisim.web.link import TAKEN_OVER
+from tuisim.web.upload import keep_file
+
+__all__ = ["visited"]
+
+SHOWN = '{"type": "show", "width": 90, "height": 30}'
+"""What the app is told when another terminal shows it."""
+
+
+async def the_session(visitor: Visitor) -> str:
+    """Return the id of the only session."""
+    (session,) = (await visitor.sessions())["sessions"]
+    return str(session["id"])
+
+
+async def unshown(visitor: Visitor) -> None:
+    """Wait until no tab shows a session."""
+    async with asyncio.timeout(PATIENCE_S):
+        while any(one["shown"] for one in (await visitor.sessions())["sessions"]):
+            await asyncio.sleep(0.005)
+
+
+async def test_a_page_is_told_its_session_and_finds_the_same_app_again(visited: Visited) -> None:
+    visitor = await visited()
+    socket, pid = await visitor.started()
+    session = await the_session(visitor)
+    for _ in range(20):
+        await socket.close()
+        await unshown(visitor)
+        socket = await visitor.socket(f"?width=90&height=30&session={session}")
+        assert [await heard(socket), await heard(socket)] == [json.dumps(["session", session]), SHOWN]
+    assert is_there(pid)
+
+
+async def test_a_second_tab_takes_a_session_over(visited: Visited) -> None:
+    visitor = await visited()
+    first, pid = await visitor.started()
+    second = await visitor.socket(f"?width=90&height=30&session={await the_session(visitor)}")
+    assert (await heard(first), first.close_code) == ("Another tab has taken this session over.", TAKEN_OVER)
+    assert await drawn(second) == SHOWN
+    await second.send_json(["stdin", "typed in the second"])
+    assert await drawn(second) == "typed in the second"
+    assert is_there(pid)
+
+
+async def test_what_is_offered_while_no_tab_is_open_waits_for_the_next(visited: Visited) -> None:
+    visitor = await visited()
+    socket, _ = await visitor.started()
+    session = await the_session(visitor)
+    await socket.send_json(["stdin", "offer"])
+    await socket.close()
+    await unshown(visitor)
+    again = await visitor.socket(f"?width=90&height=30&session={session}")
+    said = [await heard(again) for _ in range(3)]
+    assert '["deliver_file_start", "key"]' in said
+
+
+async def test_a_session_is_ended_from_another_tab(visited: Visited) -> None:
+    visitor = await visited()
+    socket, pid = await visitor.started()
+    session = await the_session(visitor)
+    assert await visitor.post(f"sessions/{session}/end") == 204
+    assert await heard(socket) == "Another tab has ended this session."
+    await gone(pid)
+    late = await visitor.socket(f"?session={session}")
+    # It may be listed for a moment.
+    assert await heard(late) in ("The session has ended.", "Another tab has ended this session.")
+
+
+STRANGERS: Mapping[str, Mapping[str, str]] = {
+    "another site": {"Origin": "http://evil.example"},
+    "no page": {"Origin": ""},
+    "another name": {"Host": "evil.example"},
+}
+
+
+@pytest.mark.parametrize("headers", STRANGERS.values(), ids=STRANGERS)
+@pytest.mark.parametrize("what", ["end", "file?name=a.py"])
+async def test_only_pages_of_the_server_end_a_session_or_bring_a_file(
+    what: str, headers: Mapping[str, str], visited: Visited, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    visitor = await visited()
+    _, pid = await visitor.started()
+    path = f"sessions/{await the_session(visitor)}/{what}"
+    assert await visitor.post(path, b"x", **headers) == 403
+    assert is_there(pid)
+    assert list(tmp_path.iterdir()) == []
+
+
+async def test_a_file_that_is_dropped_is_kept_and_opened(
+    visited: Visited, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    visitor = await visited()
+    socket, _ = await visitor.started()
+    assert await visitor.post(f"sessions/{await the_session(visitor)}/file?name=lab.py", b"print(1)\n") == 200
+    assert json.loads(await drawn(socket)) == {"type": "ask", "what": "open", "path": str(tmp_path / "lab.py")}
+    assert (tmp_path / "lab.py").read_bytes() == b"print(1)\n"
+
+
+BAD_NAMES = ["", "..", ".bashrc", "a/b.py", "../a.py", "/etc/passwd", "a\\b.py", "a\x00.py", "a\nb.py", "a" * 300]
+
+
+@pytest.mark.parametrize("name", BAD_NAMES)
+async def test_a_file_is_kept_in_the_folder_only(
+    name: str, visited: Visited, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    visitor = await visited()
+    await visitor.started()
+    url = f"{visitor.top}sessions/{await the_session(visitor)}/file"
+    headers = {"Origin": visitor.origin}
+    async with visitor.client.post(url, params={"name": name}, data=b"x", headers=headers) as answer:
+        assert (answer.status, "no name for a file" in await answer.text()) == (400, True)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_no_file_is_replaced(tmp_path: Path) -> None:
+    for data in (b"one", b"two", b"one"):
+        keep_file(tmp_path, "lab.py", data)
+    (tmp_path / "link.py").symlink_to(tmp_path / "lab.py")
+    kept = keep_file(tmp_path, "link.py", b"three")
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {
+        "lab.py": b"one", "lab-2.py": b"two", "link.py": b"one", "link-2.py": b"three",
+    }  # fmt: skip
+    assert kept.name == "link-2.py"

@@ -1,0 +1,53 @@
+"""What the cells of a notebook ask of the app that is shown in one of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tuisim.app.actions.files import open_brought
+from tuisim.config.program_file import ProgramSource
+from tuisim.errors import TuisimError
+from tuisim.source import Program
+
+if TYPE_CHECKING:
+    from tuisim.app.actions import ActionContext
+
+BUSY = "the app runs a program: S in it, or its button Stop, stops that"
+
+
+def do_asked(context: ActionContext, asked: Mapping[str, Any]) -> None:
+    """Do what the server of the page asks for.
+
+    Args:
+        context: What it is done with.
+        asked: `what`, and its details: `open` a file by its `path`; take the `settings` and the `program` of a `cell`,
+            and run it if it `runs`; `stop` the program; show the stored `run` with an `id`.
+    """
+    match asked:
+        case {"what": "open", "path": str(path)}:
+            open_brought(context, Path(path))
+        case {"what": "cell", "settings": dict(settings), "program": program, "runs": bool(runs)}:
+            _take_cell(context, settings, program, runs)
+        case {"what": "stop"}:
+            context.runs.stop()
+        case {"what": "run", "id": str(run_id)}:
+            context.loader.open_run(run_id)
+
+
+def _take_cell(
+    context: ActionContext, settings: Mapping[str, Any], program: Mapping[str, Any] | None, runs: bool
+) -> None:
+    if context.runs.in_run:
+        context.app.tell_server("problem", text=BUSY)
+        return
+    try:
+        # JSON has no tuples.
+        said = {path: tuple(value) if isinstance(value, list) else value for path, value in settings.items()}
+        context.loader.take_cell(ProgramSource(Program(**program), said, has_magic=True) if program else None, said)
+    except TuisimError as error:
+        context.app.complain(error)
+        return
+    if runs:
+        context.app.start_run()

@@ -1,0 +1,88 @@
+"""A run that the app in a cell has started, with what a cell asks of a run."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from queue import Empty
+from typing import TYPE_CHECKING, Any
+
+from tuisim.errors import HostError
+from tuisim.protocol import Ended, Message, Wheels
+from tuisim.runs.store import RunStore
+
+if TYPE_CHECKING:
+    from tuisim.notebook.app_view import AppView
+    from tuisim.runs.run_folder import StoredRun
+
+
+class AppRun:
+    """Follows a run in the app; its output is read from the store.
+
+    Args:
+        view: The app, which has been asked to start a run.
+
+    Raises:
+        HostError: the app has told why it cannot, or has ended.
+    """
+
+    waiting_for_reply = False
+    waiting_for_input: str | None = None
+    """The app asks its user."""
+
+    def __init__(self, view: AppView) -> None:
+        self._view = view
+        self.ended: Ended | None = None
+        self.wheels = Wheels()
+        self.run_id = str(self._next("run", "problem")["id"])
+        self.output = RunStore().load_run(self.run_id).output
+
+    def _next(self, *kinds: str) -> Mapping[str, Any]:
+        """Wait until the app tells one of these."""
+        while self._view.is_alive:
+            told = self._told(0.2)
+            if told.get("what") == "problem" and "problem" in kinds:
+                raise HostError(str(told["text"]))
+            if told.get("what") in kinds:
+                return told
+        raise HostError("the app in the cell has ended", "%sim_app starts it again")
+
+    def _told(self, timeout_s: float) -> Mapping[str, Any]:
+        try:
+            return self._view.told.get(timeout=timeout_s) if timeout_s else self._view.told.get_nowait()
+        except Empty:
+            return {}
+
+    def wait_for_event(self, timeout_s: float) -> None:
+        """Wait until the run has ended, or the time is over."""
+        if self.ended is None:
+            told = self._told(timeout_s)
+            if (told.get("what") == "ended" and told.get("id") == self.run_id) or not self._view.is_alive:
+                self.ended = self.stored().end
+
+    def pump(self) -> list[Message]:
+        """Return nothing: the app handles the events."""
+        return []
+
+    def send(self, command: Message) -> None:
+        """Ignore a command: the app sends its own."""
+
+    def stop(self) -> None:
+        """Ask the app to stop the program."""
+        if self.ended is None and self._view.is_alive:
+            self._view.ask("stop")
+
+    def wait(self, timeout_s: float) -> None:
+        """Wait until the run has ended, or the time is over."""
+        until = time.monotonic() + timeout_s
+        while self.ended is None and (left_s := until - time.monotonic()) > 0:
+            self.wait_for_event(left_s)
+
+    kill = stop
+
+    def close(self) -> None:
+        """Leave the run to the app."""
+
+    def stored(self) -> StoredRun:
+        """Return the run as it is stored."""
+        return RunStore().load_run(self.run_id)

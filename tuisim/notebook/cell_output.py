@@ -1,0 +1,103 @@
+"""What a program prints, in its cell: its first lines at once; of the rest the last ones, and all others on a click."""
+
+from __future__ import annotations
+
+import html
+import sys
+import time
+from collections.abc import Sequence
+from itertools import groupby
+
+from IPython.display import DisplayHandle, display
+
+from tuisim.errors import counted
+from tuisim.notebook.image_log import IMAGE_DATA, asked_side
+from tuisim.runs.records import OutputRow, Stream, line_of
+
+FIRST_LINES, LAST_LINES = 20, 5
+"""What of a long output is always shown."""
+MOST_FOLDED_LINES = 20_000
+"""A page with more lines is slow."""
+_REDRAW_S = 0.5
+_SHOWN = {Stream.STDOUT, Stream.STDERR, Stream.SPEECH}
+
+
+def shown_text(row: OutputRow) -> str:
+    """Return the line that a cell shows for a row."""
+    if row.text.startswith(IMAGE_DATA) and (side := asked_side(row)):
+        return f"{side} image data logged..."
+    return line_of(row)
+
+
+class CellOutput:
+    """The output of one cell.
+
+    Args:
+        folds: Whether a long output is folded, which needs displays that can be updated.
+        quiet: Whether speech is not shown.
+    """
+
+    def __init__(self, *, folds: bool, quiet: bool) -> None:
+        self._folds, self._quiet = folds, quiet
+        self._printed = 0
+        self._folded: list[str] = []
+        self._count = 0
+        """How many lines are folded; the first of very many are not kept."""
+        self._handle: DisplayHandle | None = None
+        self._due_s = 0.0
+
+    def show(self, rows: Sequence[OutputRow]) -> None:
+        """Show rows in order, batched by stream; errors are never folded."""
+        shown = _SHOWN - {Stream.SPEECH} if self._quiet else _SHOWN
+        printed = (row for row in rows if row.stream in shown)
+        for is_error, group in groupby(printed, key=lambda row: row.stream == Stream.STDERR):
+            lines = [line for row in group for line in shown_text(row).split("\n")]
+            if is_error or not self._folds:
+                print("\n".join(lines), file=sys.stderr if is_error else sys.stdout)
+            else:
+                self._show_some(lines)
+
+    def _show_some(self, lines: list[str]) -> None:
+        at_once = lines[: max(0, FIRST_LINES - self._printed)]
+        if at_once:
+            print("\n".join(at_once))
+            self._printed += len(at_once)
+        if rest := lines[len(at_once) :]:
+            self._count += len(rest)
+            self._folded = (self._folded + rest)[-MOST_FOLDED_LINES:]
+            if time.monotonic() >= self._due_s:
+                self.finish()
+                self._due_s = time.monotonic() + _REDRAW_S
+
+    def finish(self) -> None:
+        """Show what is folded now."""
+        if not self._folded:
+            return
+        bundle = folded(self._folded, self._count)
+        if self._handle is None:
+            # A kernel sends printed text with a delay, but displays immediately.
+            sys.stdout.flush()
+            self._handle = display(bundle, raw=True, display_id=True)
+        else:
+            self._handle.update(bundle, raw=True)
+
+
+def folded(lines: Sequence[str], count: int) -> dict[str, str]:
+    """Return lines as a display: the last ones, and all others on a click.
+
+    Args:
+        lines: The lines, at most `MOST_FOLDED_LINES`.
+        count: How many there are, with those that are not among them any more.
+    """
+    hidden, last = lines[:-LAST_LINES], lines[-LAST_LINES:]
+    if not hidden:
+        return {"text/plain": "\n".join(last), "text/html": _pre(last)}
+    title = f"… {counted(count - len(last), 'more line')}"
+    lost = count - len(lines)
+    note = f"<p>The first {counted(lost, 'line')} of these are in the log only.</p>" if lost else ""
+    fold = f"<details><summary>{title}</summary>{note}{_pre(hidden)}</details>"
+    return {"text/plain": "\n".join([title, *last]), "text/html": f"{fold}{_pre(last)}"}
+
+
+def _pre(lines: Sequence[str]) -> str:
+    return f'<pre style="margin: 0">{html.escape(chr(10).join(lines))}</pre>'

@@ -1,0 +1,16 @@
+"""What the server of a page asks of the app."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from textual.message import Message
+
+
+class ServerAsks(Message):
+    """The server that shows the app in a browser asks for something."""
+
+    def __init__(self, asked: Mapping[str, object]) -> None:
+        super().__init__()
+        self.asked = asked
+        """What it is, under `what`, with its details; from JSON."""

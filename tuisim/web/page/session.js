@@ -1,0 +1,137 @@
+// Keeps the session of a tab: finds its app again after a reload or a lost line, and asks where there is a choice.
+"use strict";
+
+const session = (() => {
+  const top = location.origin + location.pathname;
+  const framed = window.parent !== window;
+  const kept = sessionStorage;
+  const [LOST, TAKEN_OVER] = [1006, 4001];
+  let chosen = "";
+
+  const list = async () => {
+    const answer = await fetch(`${top}sessions`);
+    return answer.json();
+  };
+
+  const ago = (seconds) => (seconds < 90 ? `${seconds} s` : `${Math.round(seconds / 60)} min`);
+
+  const button = (words, act) => {
+    const made = document.createElement("button");
+    made.type = "button";
+    made.textContent = words;
+    made.addEventListener("click", act);
+    return made;
+  };
+
+  // Asks which app to show; returns its id, empty for another one.
+  const ask = () =>
+    new Promise((answer) => {
+      const dialog = document.querySelector(".dialog.choice");
+      const done = (id) => {
+        dialog.classList.remove("-open");
+        answer(id);
+      };
+      const show = (found) => {
+        if (!found.sessions.length) return done("");
+        const rows = found.sessions.map((one) => {
+          const row = document.createElement("p");
+          const where = one.shown ? "is open in another tab" : "is open in no tab";
+          row.append(`The app of ${ago(one.age_s)} ago ${where}; last used ${ago(one.idle_s)} ago. `);
+          row.append(button(one.shown ? "Take over" : "Go on", () => done(one.id)), " ");
+          row.append(
+            button("End it", async () => {
+              await fetch(`${top}sessions/${one.id}/end`, { method: "POST" });
+              // It is listed until it has ended.
+              const left = async () => {
+                const now = await list();
+                now.sessions.some((other) => other.id === one.id) ? setTimeout(left, 100) : show(now);
+              };
+              left();
+            }),
+          );
+          return row;
+        });
+        const more = found.free > 0 ? button("Start another one", () => done("")) : "No place is free for another one.";
+        const last = document.createElement("p");
+        last.append(more);
+        dialog.replaceChildren(...rows, last);
+        dialog.classList.add("-open");
+        dialog.querySelector("button").focus();
+      };
+      list().then(show);
+    });
+
+  // A copy of a tab has its storage, too: only what this tab has just left is its own without a question.
+  const find = async () => {
+    const [id, leaving] = [kept.getItem("session"), kept.getItem("leaving")];
+    kept.removeItem("leaving");
+    const found = (await list()).sessions;
+    const mine = found.find((one) => one.id === id && (leaving || !one.shown));
+    if (mine) return mine.id;
+    if (framed && found.length) return found[0].id;
+    return found.length ? ask() : "";
+  };
+
+  window.addEventListener("pagehide", () => kept.setItem("leaving", "1"));
+
+  const say = (words) => (document.getElementById("reason").textContent = words);
+
+  const again = async () => {
+    document.body.classList.add("-closed");
+    document.getElementById("again").hidden = true;
+    say("The connection to the server is lost. Trying again …");
+    try {
+      const answer = await fetch(`${top}sessions`);
+      answer.ok ? location.reload() : say(await answer.text());
+    } catch {
+      setTimeout(again, 1000);
+    }
+  };
+
+  return {
+    // Resolves once it is known which app to show.
+    ready: async () => {
+      try {
+        chosen = await find();
+      } catch {
+        again();
+        await new Promise(() => {});
+      }
+    },
+    // Adds the app to the address of a socket.
+    address: (url) => (chosen ? `${url}&session=${chosen}` : url),
+    heard: (data) => {
+      if (typeof data !== "string" || !data.startsWith('["session"')) return;
+      [, chosen] = JSON.parse(data);
+      kept.setItem("session", chosen);
+    },
+    closed: (event) => {
+      if (event.code === LOST) return again();
+      say(event.reason || "The session has ended.");
+      const button = document.getElementById("again");
+      button.textContent = event.code === TAKEN_OVER ? "Take it back" : "Start again";
+      // textual.js shows the dialog when it hears of the end, after this.
+      setTimeout(() => button.focus());
+    },
+    drop: async (file) => {
+      const name = encodeURIComponent(file.name);
+      const answer = await fetch(`${top}sessions/${chosen}/file?name=${name}`, { method: "POST", body: file });
+      if (!answer.ok) alert(`${file.name}: ${await answer.text()}`);
+    },
+    framed,
+  };
+})();
+
+if (session.framed) {
+  // As large as the text around the frame.
+  document.addEventListener("DOMContentLoaded", () => (document.getElementById("terminal").dataset.fontSize = "13"));
+}
+
+// The cell of a notebook waits for this, in case the address does not lead here.
+if (session.framed) window.parent.postMessage("tuisim", "*");
+
+window.addEventListener("dragover", (event) => event.preventDefault());
+window.addEventListener("drop", (event) => {
+  event.preventDefault();
+  for (const file of event.dataTransfer.files) session.drop(file);
+});
