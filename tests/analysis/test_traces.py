@@ -28,9 +28,9 @@ def test_of_many_variables_the_first_are_shown() -> None:
     assert [trace.name for trace in traces.ticked()] == ["a", "b", "c", "d"]
 
 
-def test_angles_and_places_are_on_the_other_scale() -> None:
+def test_angles_and_places_have_their_own_scales() -> None:
     traces = LogTraces(log_of(light=[1.0, 2.0], heading_deg=[1.0, 2.0], way_mm=[1.0, 2.0]))
-    assert [trace.other_scale for trace in traces] == [False, True, True]
+    assert [trace.scale for trace in traces] == ["", "°", "mm"]
 
 
 @pytest.mark.parametrize(("values", "alike"), [([0.0, 90.0], True), ([0.0, 1.0], False), ([0.0, 9000.0], False)])

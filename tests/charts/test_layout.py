@@ -98,8 +98,8 @@ def test_a_screen_and_a_file_have_the_same_scales_when_zoomed(name: str) -> None
     (frame,) = laid_out(chart, 960, 420).plots
     assert picture.plot is not None
     assert (picture.plot.x_limits, picture.plot.y_limits) == (frame.x, frame.y)
-    shown = [(trace.name, trace.other_scale) for trace in model.traces.drawn()]
-    assert shown == [(line.name, line.other_scale) for line in chart.lines]
+    shown = [(trace.name, trace.scale) for trace in model.traces.drawn()]
+    assert shown == [(line.name, line.scale) for line in chart.lines]
 
 
 def test_a_chart_is_cut_off_at_its_limits() -> None:

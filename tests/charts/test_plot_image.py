@@ -15,7 +15,7 @@ from tuisim.core.css_colors import Rgb
 CELL = WIDTH, HEIGHT = 8, 16
 COLUMNS, ROWS = 30, 10
 GROUND, AXIS, CURSOR, CURVE = (10, 20, 30), (200, 200, 200), (255, 255, 255), (240, 0, 0)
-EMPTY = Plot((), COLUMNS, ROWS, (0.0, 10.0), (0.0, 100.0), (), (), None, True, ())
+EMPTY = Plot((), COLUMNS, ROWS, (0.0, 10.0), (0.0, 100.0), (), (), True, ())
 
 
 def cells_with(plot: Plot, rgb: Rgb) -> set[tuple[int, int]]:
@@ -43,11 +43,6 @@ DRAWN = {
     "a cursor that is not in view": (replace(EMPTY, cursors=(11.0,)), CURSOR, set()),
     "axes": (EMPTY, AXIS, {(row, -1) for row in range(ROWS + 1)} | {(ROWS, col) for col in range(COLUMNS)}),
     "no time line": (replace(EMPTY, has_time_line=False), AXIS, {(row, -1) for row in range(ROWS)}),
-    "a second scale": (
-        replace(EMPTY, has_time_line=False, right_ticks=(0.0,)),
-        AXIS,
-        {(row, col) for row in range(ROWS) for col in (-1, COLUMNS)},
-    ),
 }
 
 

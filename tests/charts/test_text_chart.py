@@ -11,7 +11,7 @@ import pytest
 
 from tuisim.charts import axes
 from tuisim.charts.canvas import Curve, TextRun, canvas
-from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState
+from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.charts.traces import Traces
 
 TELEMETRY = ("left_red_pc", "gyro_deg")
@@ -152,24 +152,17 @@ def test_the_selected_box_is_in_sight() -> None:
 
 
 def test_values_at_the_cursor() -> None:
-    rows = text(ChartPainter().paint(traces("Colour", "Gyro"), ChartState(cursor_s=1.25), 80, 16))
-
-    assert rows[-1] == "1.25 s  Colour 100  Gyro 101"
+    assert values_at(list(traces("Colour", "way_mm")), 1.25, "s", 80) == "1.25 s  Colour 100  way_mm 101mm"
 
 
 def test_values_that_do_not_fit_are_counted() -> None:
-    rows = text(ChartPainter().paint(traces("Colour", "Light_left", "Light_right"), ChartState(cursor_s=1.0), 24, 9))
+    drawn = list(traces("Colour", "Light_left", "Light_right"))
 
-    assert rows[-1] == "1.00 s  Colour 100 +2"
+    assert values_at(drawn, 1.0, "s", 24) == "1.00 s  Colour 100 +2"
 
 
-def test_two_scales() -> None:
-    made = traces("Colour")
-    made.append("Ultrasonic", [0.0, 3.0], [2000.0, 0.0])
-
-    rows = text(ChartPainter().paint(made, ChartState(), 80, 16))
-
-    assert any(row.startswith("100┤") and row.rstrip().endswith("├2000") for row in rows)
+def test_a_chart_of_twelve_rows_has_ten_for_its_lines() -> None:
+    assert ChartPainter().paint(traces("Colour"), ChartState(cursor_s=1.0, grid=True), 78, 12).rows == 10
 
 
 def test_the_canvas_is_kept_while_only_the_cursor_moves(monkeypatch: pytest.MonkeyPatch) -> None:

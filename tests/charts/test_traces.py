@@ -78,7 +78,15 @@ def test_a_trace_without_end_keeps_its_extremes_in_bounded_memory() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "is_other"), [("front_mm", True), ("turn_deg", True), ("speed_mm_s", True), ("eye_red_pc", False)]
+    ("name", "scale"),
+    [
+        ("front_mm", "mm"),
+        ("turn_deg #2", "°"),
+        ("speed_mm_s", "mm/s"),
+        ("eye_red_pc", ""),
+        ("Gyro", "gyro"),
+        ("Left", ""),
+    ],
 )
-def test_a_trace_of_telemetry_that_is_no_light_has_a_scale_of_its_own(name: str, is_other: bool) -> None:
-    assert Trace(name, 0, logged=False).other_scale is is_other
+def test_traces_with_one_unit_share_a_scale(name: str, scale: str) -> None:
+    assert Trace(name, 0).scale == scale

@@ -7,8 +7,9 @@ import pyarrow as pa
 import pytest
 
 from tuisim.core.noise import clamping
-from tuisim.logs.bands import band_report, greys, in_words, light_noise, light_scale, nearest_greys, without_clamping
+from tuisim.logs.bands import band_report, in_words, light_noise
 from tuisim.logs.columns import guess_columns
+from tuisim.logs.levels import greys, light_scale, nearest_greys, without_clamping
 from tuisim.logs.log import Log
 
 

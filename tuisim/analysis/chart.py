@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tuisim.analysis.traces import DISTANCE, LogTrace, sample_and_hold
 from tuisim.charts.axes import Limits, column_of, value_limits
+from tuisim.charts.bands import band_span
 from tuisim.charts.canvas import DOTS_X, DOTS_Y, seen_points
-from tuisim.charts.layout import ChartData, Line, with_unit
+from tuisim.charts.layout import ChartData, Line, Span, with_unit
 from tuisim.charts.traces import LARGEST, min_max
 from tuisim.data_class import dataclass
 from tuisim.errors import LogError, printable
@@ -17,6 +19,7 @@ from tuisim.runs.arrays import FloatArray
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model
+    from tuisim.logs.bands import Band
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +68,7 @@ def chart_of(model: Model, view: View, columns: int, rows: int) -> ChartData:
 def _line(trace: LogTrace, number: int, hold: bool, x_limits: Limits, columns: int) -> Line:
     xs, ys = min_max(trace.times_s, trace.values, x_limits, columns)
     xs, ys = _clipped(*(sample_and_hold(xs, ys) if hold else (xs, ys)), x_limits)
-    return Line(trace.name, xs, ys, number, trace.other_scale)
+    return Line(trace.name, xs, ys, number, trace.scale)
 
 
 def _clipped(xs: FloatArray, ys: FloatArray, limits: Limits) -> tuple[FloatArray, FloatArray]:
@@ -92,6 +95,11 @@ def _path(model: Model, names: tuple[str, str], marks: bool, columns: int, rows:
     xs, ys = seen_points(xs[good], ys[good], limits, *cells)
     title, x_label = printable(model.log.title), with_unit(names[0])
     return ChartData(title, (Line(names[1], xs, ys, 0),), limits[0], x_label, marks=marks, path=True)
+
+
+def spans_of_bands(bands: Iterable[Band]) -> tuple[Span, ...]:
+    """Return bands as spans of a chart over time."""
+    return tuple(band_span(band.variable, band.start_s, band.stop_s, band.true_level, band.grey) for band in bands)
 
 
 def event_marks(model: Model, limits: Limits, columns: int) -> str:

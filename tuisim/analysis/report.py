@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim import palette
-from tuisim.analysis.chart import View, chart_of
+from tuisim.analysis.chart import View, chart_of, spans_of_bands
 from tuisim.analysis.model import Model
 from tuisim.analysis.pins import Pin, svg_of_pins
 from tuisim.analysis.source import LogRequest, OpenedLog, opening
 from tuisim.charts.files import FACET_PX, clean, svg_of, write_whole
-from tuisim.charts.layout import Span, laid_out
+from tuisim.charts.layout import laid_out
 from tuisim.config.files import name_of
 from tuisim.core.geometry import pose_in_words
 from tuisim.core.profile import NS_PER_S
@@ -209,11 +209,7 @@ def _chart(model: Model) -> list[str]:
     lines = len(model.traces.ticked())
     height = 2 * FACET_PX if lines < 2 else 80 + FACET_PX * lines
     chart = chart_of(model, View(facets=True), _WIDTH_PX, height)
-    spans = tuple(
-        Span(band.start_s, band.stop_s, f"{band.true_level:.4g}", band.variable)
-        for report in model.reports()
-        for band in report.bands[:MOST_BANDS]
-    )
+    spans = tuple(span for report in model.reports() for span in spans_of_bands(report.bands[:MOST_BANDS]))
     chart = replace(chart, spans=spans)
     hidden = [trace.name for trace in model.traces if not trace.on]
     return [

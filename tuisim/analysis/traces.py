@@ -23,10 +23,8 @@ MOST_ON = 4
 """Number of variables that are visible at first."""
 _LIGHT = "_red"
 """Suffix of the red light columns of colour sensors."""
-_ANGLES = ("_deg", "_mm", "_dps")
-"""Suffixes of variables that do not share the scale of light readings."""
 _SEEN = 5.0
-"""A variable that spans less than 1 / this of a scale is drawn on the other one."""
+"""A variable that spans less than 1 / this of a scale is drawn on its own one."""
 
 
 _LEAST_OF_TIMES, _LEAST_S = 1e-14, 1e-100
@@ -40,7 +38,6 @@ class LogTrace(Trace):
         super().__init__(name, number)
         self.number = number
         self.on = number < MOST_ON
-        self.other_scale = self.other_scale or name.partition(" #")[0].endswith(_ANGLES)
         self._places: FloatArray | None = None
         self._log = log
         self._pyramid: Pyramid | None = None
@@ -68,9 +65,9 @@ class LogTrace(Trace):
         return self.name in log.derived and log.derived[self.name] is not self.series
 
     def is_like(self, others: Sequence[LogTrace]) -> bool:
-        """Return whether its values are legible on the left scale, which others use."""
+        """Return whether its values are legible on the common scale, which others use."""
         own = self._least_and_greatest()
-        left = [other._least_and_greatest() for other in others if not other.other_scale]
+        left = [other._least_and_greatest() for other in others if not other.scale]
         low, high = min((at[0] for at in left), default=0.0), max((at[1] for at in left), default=0.0)
         least, greatest = min(low, own[0]), max(high, own[1])
         return min(high - low, own[1] - own[0]) * _SEEN >= greatest - least
@@ -133,7 +130,8 @@ class LogTraces(Traces):
         shown = [trace for trace in kept if trace.on]
         for trace in new:
             trace.on = True
-            trace.other_scale = bool(shown) and not trace.is_like(shown)
+            if not trace.scale and shown and not trace.is_like(shown):
+                trace.scale = trace.name
         self._by_log_name = {trace.name: trace for trace in (*kept, *new)}
 
     def _show_light_columns(self) -> None:

@@ -226,6 +226,7 @@ class DebugController:
     def run_changed(self) -> None:
         """Reset the state for another run, or none."""
         self._paused = self.position = self.view = self._run_controller.paused_line = None
+        self._run_controller.printed_line = None
         self._frame, self._thread, self._wanted = 0, "", None
         self._panels_opened, self._breakpoints_unsent = False, bool(self.breaks)
         self._first, self._more_back = None, 0
@@ -393,7 +394,7 @@ class DebugController:
     def _set_paused(self, view: PauseView) -> None:
         self.view = view
         line = view.paused.line if not view.paused.file else 0
-        self._run_controller.paused_line = (view.paused.tick, line)
+        self._run_controller.paused_line, self._run_controller.printed_line = (view.paused.tick, line), None
         self.show()
         self._app.draw(force=True)
 

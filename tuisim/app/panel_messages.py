@@ -115,7 +115,7 @@ class PanelMessages(LabHost):
             self.context.runs.place(message.pose)
 
     def on_chart_cursor_moved(self, message: Chart.CursorMoved) -> None:
-        time_travel.to_time(self.context, message.time_s)
+        time_travel.to_time(self.context, message.time_s, message.sample)
 
     def on_time_bar_scrubbed(self, message: TimeBar.Scrubbed) -> None:
         time_travel.to_tick(self.context, message.tick)

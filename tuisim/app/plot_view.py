@@ -12,6 +12,7 @@ from rich.segment import Segment
 from textual.geometry import Region
 from textual.strip import Strip
 
+from tuisim.charts.bands import SHADES
 from tuisim.charts.canvas import AXIS
 from tuisim.charts.plot_image import Plot, PlotInks, plot_image
 from tuisim.charts.text_chart import ChartPicture
@@ -115,7 +116,9 @@ class PlotView(LinesView):
     def _image(self, plots: Sequence[tuple[int, int, Plot]], cell: tuple[int, int]) -> Pixels:
         (width, height), size = cell, self.size
         image: Pixels = np.zeros((size.height * height, size.width * width, 3), np.uint8)
-        inks = PlotInks(self.ground_rgb, self._ink(rgb_of(AXIS.color)), self._ink(_CURSOR))
+        theme = picture_mode_of(self.app).theme
+        shades = tuple(theme.rgb(rgb) if theme else rgb for shade in SHADES if (rgb := rgb_of(shade.bgcolor)))
+        inks = PlotInks(self.ground_rgb, self._ink(rgb_of(AXIS.color)), self._ink(_CURSOR), shades)
         for top, left, plot in plots:
             rows, cols = plot.size
             curves = tuple(replace(curve, rgb=self._ink(curve.rgb)) for curve in plot.curves)

@@ -126,6 +126,8 @@ class RunController:
         """Called instead of a user action while a past instant is in view: the action is only possible in a branch."""
         self.paused_line: tuple[int, int] | None = None
         """Tick and line at which the program is paused: more exact than the record of that tick."""
+        self.printed_line: tuple[int, int] | None = None
+        """Tick and line of the sample that was clicked in the chart."""
 
     @property
     def spec(self) -> RunSpec:
@@ -237,8 +239,8 @@ class RunController:
         noise = recording.noise_at(record) if self._is_of_run else self.next_run.spec.world.noise
         # Before a run, the pen is where the next run will have it.
         down = bool(record.flags & FLAG_PEN_DOWN) if self._is_of_run else self.next_run.spec.robot.pen.down
-        tick, line = self.paused_line or (-1, 0)
-        instant, line = instant_of(record, self.spec, noise), line if tick == record.tick else record.line
+        exact = dict(known for known in (self.paused_line, self.printed_line) if known)
+        instant, line = instant_of(record, self.spec, noise), exact.get(record.tick, record.line)
         if self.in_run and not self.in_past:
             instant, down = self._pending.done_to(record, instant, down)
         return instant, line, down

@@ -29,6 +29,7 @@ LETTER_PX = 7.2
 PAD, LINE_PX = 10, 20
 """Margin of a picture, and height of a line of text."""
 _FACET_GAP_PX = 12
+_SCALE_GAP_PX = 6
 _LONG = 9
 """Labels with more characters than that are written with a power of ten."""
 
@@ -44,8 +45,8 @@ class Line:
     """Shape (n,), finite."""
     number: int
     """Index that selects colour and marker."""
-    other_scale: bool = False
-    """Whether it uses the right scale."""
+    scale: str = ""
+    """Which scale it is drawn on, as `Trace.scale`."""
 
     @property
     def label(self) -> str:
@@ -59,7 +60,8 @@ class Span:
 
     start: float
     stop: float
-    text: str
+    texts: tuple[str, ...]
+    """What it may be called, the longest first: the first one with room is written."""
     name: str
     """Variable that it is about."""
 
@@ -201,12 +203,12 @@ def laid_out(chart: ChartData, width: int, height: int, *, titled: bool = True) 
     groups = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
     scales = [_scales_of(group, chart.zoomed or chart.path) for group in groups]
     if not chart.facets:
-        legend, lines = _legend(chart.lines, scales[0].right is not None, width, top)
+        legend, lines = _legend(chart.lines, scales[0], width, top)
         shapes += legend
         top += lines * LINE_PX + 4
     plots: list[Frame] = []
-    left = PAD + max(_widest(scale.left) for scale in scales)
-    right_px = max([3 * LETTER_PX, *(_widest(scale.right) for scale in scales if scale.right)])
+    left = PAD + max(_widest(one.left.limits) for one in scales)
+    right_px = max([3 * LETTER_PX, *(_width_on_right(one) for one in scales)])
     right = max(width - PAD - right_px, left + 1)
     bottom = height - PAD - 2 * LINE_PX
     each = (bottom - top) / len(groups)
@@ -217,10 +219,10 @@ def laid_out(chart: ChartData, width: int, height: int, *, titled: bool = True) 
             upper += LINE_PX + 4
         last = at == len(groups) - 1
         lower = max(lower if last else lower - _FACET_GAP_PX, upper + 1)
-        frame = _squared(chart, Frame(left, upper, right, lower, chart.x_limits, scale.left))
+        frame = _squared(chart, Frame(left, upper, right, lower, chart.x_limits, scale.left.limits))
         plots.append(frame)
         shapes += _spans(chart, group, frame)
-        shapes += _axes(frame, scale, with_x=last)
+        shapes += _axes(frame, scale, group, with_x=last)
         shapes += _strokes(chart, group, scale, frame)
     shapes.append(Words((left + right) / 2, bottom + 1.7 * LINE_PX, chart.x_label, "middle"))
     return Drawing(chart.title, width, height, tuple(shapes), tuple(plots))
@@ -280,14 +282,17 @@ def shortened(text: str, width_px: float) -> str:
     return text if len(text) <= most else text[: most - 1] + "…"
 
 
-def _legend(lines: Sequence[Line], two_scales: bool, width: int, top: float) -> tuple[list[Shape], int]:
-    """Return the legend and its number of text lines: a stroke and a name per line, and which use the right scale."""
+def _width_on_right(scales: Scales) -> float:
+    return sum(_widest(scale.limits) + _SCALE_GAP_PX for scale in scales.right)
+
+
+def _legend(lines: Sequence[Line], scales: Scales, width: int, top: float) -> tuple[list[Shape], int]:
+    """Return the legend and its number of text lines: a stroke and a name per line, and which use a right scale."""
     shapes: list[Shape] = []
     x, row = float(PAD), 0
     for line in lines:
-        text = shortened(
-            line.label + (", right scale" if two_scales and line.other_scale else ""), width - 2 * PAD - 30
-        )
+        is_right = scales.of_variable(line.name) is not scales.left
+        text = shortened(line.label + (", right scale" if is_right else ""), width - 2 * PAD - 30)
         width_px = 30 + len(text) * LETTER_PX
         if x > PAD and x + width_px > width - PAD:
             x, row = float(PAD), row + 1
@@ -298,35 +303,71 @@ def _legend(lines: Sequence[Line], two_scales: bool, width: int, top: float) -> 
     return shapes, row + 1 if lines else 0
 
 
-Variable: TypeAlias = tuple[str, FloatArray, bool]
-"""Name and finite values of a variable, and whether it uses the right scale."""
+Variable: TypeAlias = tuple[str, FloatArray, str]
+"""Name and finite values of a variable, and its scale."""
+
+_SEEN = 8.0
+"""A variable whose values reach less than 1 / this of those of another one is drawn on a scale of its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """One vertical scale."""
+
+    limits: Limits
+    unit: str
+    """Of its variables; empty if they have none, or several."""
+    names: tuple[str, ...]
+    """Its variables."""
 
 
 @dataclass(frozen=True, slots=True)
 class Scales:
-    """The vertical scale on the left, and perhaps another on the right."""
+    """The vertical scales of a chart, so that no variable flattens another one."""
 
-    left: Limits
-    right: Limits | None
+    left: Scale
+    right: tuple[Scale, ...]
 
     @classmethod
-    def of(cls, variables: Sequence[Variable], zoomed: bool, *, has_room: bool = True) -> Scales:
-        """Return the scales of a chart; all variables use the left one without room for another."""
-        others = [one for one in variables if one[2]]
-        if not (has_room and 0 < len(others) < len(variables)):
-            return cls(_limits(variables, zoomed), None)
-        return cls(_limits([one for one in variables if not one[2]], zoomed), _limits(others, zoomed))
+    def of(cls, variables: Sequence[Variable], zoomed: bool) -> Scales:
+        """Return the scales of variables: that of light and of unknown units is on the left, if there is one."""
+        groups: dict[str, list[Variable]] = {}
+        common = next((values for _, values, scale in variables if not scale and len(values)), None)
+        for variable in variables:
+            name, values, scale = variable
+            own = not scale and common is not None and _is_flat(values, common)
+            groups.setdefault(name if own else scale, []).append(variable)
+        made = {scale: _scale(group, zoomed) for scale, group in groups.items()} or {"": _scale([], zoomed)}
+        left = made.pop("" if "" in made else next(iter(made)))
+        return cls(left, tuple(made.values()))
 
-    def on_left(self, values: FloatArray) -> FloatArray:
-        """Return where values of the right scale are on the left one."""
-        if self.right is None:
+    def of_variable(self, name: str) -> Scale:
+        """Return the scale of a variable."""
+        return next((scale for scale in self.right if name in scale.names), self.left)
+
+    def on_left(self, values: FloatArray, scale: Scale) -> FloatArray:
+        """Return where values of a scale are on the left one."""
+        if scale is self.left:
             return values
-        share = (values - self.right[0]) / (self.right[1] - self.right[0])
-        return self.left[0] + share * (self.left[1] - self.left[0])
+        share = (values - scale.limits[0]) / (scale.limits[1] - scale.limits[0])
+        low, high = self.left.limits
+        return low + share * (high - low)
+
+
+def _is_flat(values: FloatArray, others: FloatArray) -> bool:
+    """Return whether values would be a flat line on the scale of others, or the others on theirs."""
+    least, greatest = sorted(float(np.abs(one).max(initial=0.0)) for one in (values, others))
+    return 0.0 < least * _SEEN < greatest
+
+
+def _scale(variables: Sequence[Variable], zoomed: bool) -> Scale:
+    found = {unit_of(name) for name, _, _ in variables}
+    names = tuple(name for name, _, _ in variables)
+    return Scale(_limits(variables, zoomed), found.pop() if len(found) == 1 else "", names)
 
 
 def _scales_of(lines: Sequence[Line], zoomed: bool) -> Scales:
-    return Scales.of([(line.name, line.ys, line.other_scale) for line in lines], zoomed)
+    return Scales.of([(line.name, line.ys, line.scale) for line in lines], zoomed)
 
 
 def _limits(variables: Sequence[Variable], zoomed: bool) -> Limits:
@@ -392,21 +433,24 @@ def borders_of(frame: Frame) -> list[Shape]:
     ]
 
 
-def _axes(frame: Frame, scale: Scales, *, with_x: bool) -> list[Shape]:
+def _axes(frame: Frame, scales: Scales, lines: Sequence[Line], *, with_x: bool) -> list[Shape]:
     shapes = grid_of(frame, with_x=with_x)
-    if scale.right:
-        other = frame.with_y(scale.right)
-        for value, text in labelled(scale.right, _labels_above(frame)):
+    x = frame.right
+    for scale in scales.right:
+        other = frame.with_y(scale.limits)
+        rgb = next(color_of(line) for line in lines if line.name == scale.names[0]) if len(scale.names) == 1 else None
+        for value, text in labelled(scale.limits, _labels_above(frame)):
             y = float(other.ys(value))
-            shapes += [Rule(frame.right, y, frame.right + 4, y), Words(frame.right + 7, y, text)]
-        shapes.append(Rule(frame.right, frame.top, frame.right, frame.bottom))
+            shapes += [Rule(x, y, x + 4, y), Words(x + 7, y, text, rgb=rgb)]
+        shapes.append(Rule(x, frame.top, x, frame.bottom))
+        x += _widest(scale.limits) + _SCALE_GAP_PX
     return shapes + borders_of(frame)
 
 
-def _strokes(chart: ChartData, lines: Sequence[Line], scale: Scales, frame: Frame) -> list[Shape]:
+def _strokes(chart: ChartData, lines: Sequence[Line], scales: Scales, frame: Frame) -> list[Shape]:
     shapes: list[Shape] = []
     for line in lines:
-        own = frame.with_y(scale.right) if scale.right and line.other_scale else frame
+        own = frame.with_y(scales.of_variable(line.name).limits)
         if len(line.xs):
             points = np.column_stack((own.xs(line.xs), own.ys(line.ys)))
             shapes.append(Stroke(points, color_of(line), dots=chart.marks or len(points) == 1))
@@ -425,6 +469,6 @@ def _spans(chart: ChartData, lines: Sequence[Line], frame: Frame) -> list[Shape]
             continue
         x1, x2 = (float(frame.xs(min(max(x, frame.x[0]), frame.x[1]))) for x in (span.start, span.stop))
         shapes.append(Shade(x1, frame.top, x2 - x1, frame.bottom - frame.top))
-        if len(span.text) * LETTER_PX < x2 - x1:
-            shapes.append(Words((x1 + x2) / 2, frame.bottom - LINE_PX / 2, span.text, "middle"))
+        if text := next((text for text in span.texts if len(text) * LETTER_PX < x2 - x1), ""):
+            shapes.append(Words((x1 + x2) / 2, frame.bottom - LINE_PX / 2, text, "middle"))
     return shapes

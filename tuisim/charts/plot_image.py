@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import cache
+from importlib.resources import files
+from io import BytesIO
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,8 +15,10 @@ from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+    from PIL.ImageFont import FreeTypeFont
 
     from tuisim.charts.axes import Limits
+    from tuisim.charts.layout import Span
     from tuisim.core.css_colors import Rgb
     from tuisim.runs.arrays import FloatArray
     from tuisim.terminal.pixels import Pixels
@@ -34,17 +39,17 @@ class Plot:
     y_limits: Limits
     x_ticks: tuple[float, ...]
     y_ticks: tuple[float, ...]
-    right_ticks: tuple[float, ...] | None
-    """Ticks of the axis on the right, on the scale of the left one; None without that axis."""
     has_time_line: bool
     """Whether a row of cells below the canvas is for the axis of time."""
     cursors: tuple[float, ...]
     """Their times."""
+    spans: tuple[Span, ...] = ()
+    """What is shaded and named."""
 
     @property
     def size(self) -> tuple[int, int]:
         """Its rows and columns in cells, with the axes."""
-        return self.rows + self.has_time_line, 1 + self.columns + (self.right_ticks is not None)
+        return self.rows + self.has_time_line, 1 + self.columns
 
     def across(self, times_s: FloatArray, width: int) -> _Points:
         """Return how far from the left edge of the canvas times are, for cells of that width."""
@@ -66,12 +71,16 @@ class PlotInks:
     ground: Rgb
     axis: Rgb
     cursor: Rgb
+    shades: tuple[Rgb, ...] = ()
+    """For spans in turns."""
 
 
 _GRID_SHARE = 0.2
 """How much of the colour of the axes the grid has."""
 _FINE = 3
 """Curves are drawn so many times finer, and then reduced, for smooth edges."""
+_LETTER = 0.602
+"""Width of a letter of the font, of its size."""
 _LEVELS = 4
 """Shades of a smooth edge: each shade more is another colour to be sent."""
 _LINE_SHARE, _MARK_SHARE = 1 / 9, 1 / 5
@@ -90,12 +99,53 @@ def plot_image(plot: Plot, cell: tuple[int, int], inks: PlotInks) -> Pixels:
     rows, cols = plot.size
     image: Pixels = np.full((rows * height, cols * width, 3), inks.ground, np.uint8)
     inside = image[: plot.rows * height, width : (1 + plot.columns) * width]
+    for number, span in enumerate(plot.spans):
+        start, stop = _cells_of(span, plot, width)
+        inside[:, start:stop] = inks.shades[number % len(inks.shades)]
     _draw_axes(image, inside, plot, cell, inks)
-    for curve in plot.curves:
-        _lay(inside, _coverage(plot, curve, cell), curve.rgb)
+    covered = [_coverage(plot, curve, cell) for curve in plot.curves]
+    _draw_names(inside, covered, plot, cell, inks)
+    for curve, coverage in zip(plot.curves, covered, strict=True):
+        _lay(inside, coverage, curve.rgb)
     for at in _places(plot.across(np.array(plot.cursors), width), inside.shape[1]):
         inside[:, at] = inks.cursor
     return image
+
+
+def _cells_of(span: Span, plot: Plot, width: int) -> tuple[int, int]:
+    """Return the first column of points of a span, and the one behind it."""
+    start, stop = np.clip(plot.across(np.array([span.start, span.stop]), width), 0, plot.columns * width).astype(int)
+    return int(start), int(stop) + 1
+
+
+def _draw_names(
+    inside: Pixels, covered: list[npt.NDArray[np.uint8]], plot: Plot, cell: tuple[int, int], inks: PlotInks
+) -> None:
+    """Write the names of spans, each in the lowest row of cells where there is no curve."""
+    # Imported on demand: few terminals need it.
+    from PIL import Image, ImageDraw
+
+    width, height = cell
+    for span in plot.spans:
+        start, stop = _cells_of(span, plot, width)
+        text = next((text for text in span.texts if (len(text) + 1) * width <= stop - start), "")
+        left = (start + stop - len(text) * width) // 2
+        place = slice(left, left + len(text) * width)
+        rows = range((plot.rows - 1) * height, -1, -height)
+        row = next((row for row in rows if not any(one[row : row + height, place].any() for one in covered)), None)
+        if text and row is not None:
+            mask = Image.new("L", (len(text) * width, height))
+            ImageDraw.Draw(mask).text((0, height // 2), text, 255, _font(width), anchor="lm")
+            _lay(inside[row : row + height, place], np.asarray(mask) // (256 // (_LEVELS + 1)), inks.axis)
+
+
+@cache
+def _font(width: int) -> FreeTypeFont:
+    """Return the font whose letters have a width in points."""
+    from PIL import ImageFont
+
+    content = files("tuisim.charts").joinpath("fonts", "DejaVuSansMono.ttf").read_bytes()
+    return ImageFont.truetype(BytesIO(content), width / _LETTER)
 
 
 def _draw_axes(image: Pixels, inside: Pixels, plot: Plot, cell: tuple[int, int], inks: PlotInks) -> None:
@@ -105,15 +155,11 @@ def _draw_axes(image: Pixels, inside: Pixels, plot: Plot, cell: tuple[int, int],
     down = _places(plot.down(np.array(plot.y_ticks), height), len(inside))
     inside[:, across] = grid
     inside[down] = grid
-    bottom, right = len(inside), width + inside.shape[1]
+    bottom = len(inside)
     image[:bottom, width - 1] = inks.axis
     image[down, width - 1 - width // 3 : width] = inks.axis
-    if plot.right_ticks is not None:
-        image[:bottom, right] = inks.axis
-        ticks = _places(plot.down(np.array(plot.right_ticks), height), len(inside))
-        image[ticks, right : right + 1 + width // 3] = inks.axis
     if plot.has_time_line:
-        image[bottom, width - 1 : right + (plot.right_ticks is not None)] = inks.axis
+        image[bottom, width - 1 :] = inks.axis
         image[bottom : bottom + 1 + height // 4, width + across] = inks.axis
 
 

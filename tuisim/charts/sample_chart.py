@@ -8,7 +8,7 @@ import numpy as np
 
 from tuisim.charts.axes import Limits
 from tuisim.charts.layout import ChartData, Line
-from tuisim.charts.traces import Pyramid, Trace, min_max
+from tuisim.charts.traces import Pyramid, min_max, scale_of
 from tuisim.runs.samples import Sample
 
 
@@ -27,7 +27,7 @@ def sample_chart(samples: Iterable[Sample], columns: int, limits: Limits | None 
     low, high = (min(end[0] for end in ends), max(end[1] for end in ends)) if ends else (0.0, 1.0)
     limits = limits or ((float(low), float(high)) if high > low else (float(low) - 0.5, float(low) + 0.5))
     lines = tuple(
-        Line(name, *min_max(found.times_s, found.values, limits, columns), number, Trace(name, number).other_scale)
+        Line(name, *min_max(found.times_s, found.values, limits, columns), number, scale_of(name))
         for number, (name, found) in enumerate(series.items())
     )
     return ChartData("", lines, limits, "time (s)")

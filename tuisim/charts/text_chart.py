@@ -1,19 +1,20 @@
-"""Charts as lines of text: tick boxes, canvas with axes, and the values at a cursor; and whole charts for files."""
+"""Charts as lines of text: tick boxes, and the canvas with its axes; and whole charts for files."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import field
+from dataclasses import field, replace
 
-import numpy as np
 from rich.style import Style
 from rich.text import Text
 
 from tuisim import palette
 from tuisim.charts import axes
 from tuisim.charts.axes import Limits
+from tuisim.charts.bands import FREE, shaded
 from tuisim.charts.canvas import AXIS, BRAILLE, PLAIN, Curve, TextRun, canvas, styled, xy_lines
-from tuisim.charts.layout import COLORS, ChartData, Line, Scales, color_of
+from tuisim.charts.cell_scales import CellScales
+from tuisim.charts.layout import COLORS, ChartData, Line, Span, color_of, unit_of
 from tuisim.charts.plot_image import Plot
 from tuisim.charts.traces import Trace, Traces
 from tuisim.data_class import dataclass
@@ -25,10 +26,10 @@ _STRONG = Style(color=palette.WHITE, bold=True)
 _FAINT = Style(color=palette.LINE)
 _GRID = "┈"
 
+_LINE_ROWS = 13
+"""Lower charts have no line above the labels of time, so that the curves have its row."""
 _ROWS_A_LEGEND_LINE = 8
 """Rows of a chart per line of tick boxes, so that most rows are left for the curves."""
-_MIN_TWO_SCALES = 36
-"""Narrower charts have no room for a second scale on the right."""
 
 EMPTY_TEXT = (
     "Nothing logged yet. To log a value, print it with a name:",
@@ -60,6 +61,10 @@ class ChartState:
     """Whether more data may follow, so that the horizontal axis extends a little beyond them."""
     grid: bool = False
     """Draw a faint line at each label of the left scale."""
+    spans: tuple[Span, ...] = ()
+    """What is shaded and named, in order of time."""
+    margins: tuple[int, int] = (0, 0)
+    """Columns on the left and the right of the canvas at least."""
     zoomed: bool = False
     """Whether the time range is zoomed: the vertical axis then fits the visible data."""
 
@@ -112,100 +117,52 @@ class ChartPainter:
         lines, boxes = _tick_boxes(traces, state.selected, by_mark, width, height)
         if not drawn:
             return ChartPicture((lines + _empty(len(traces) > 0, width, height - len(lines)))[:height], boxes)
-        values = [values_at(drawn, state.cursor_s, state.unit, width)] if state.cursor_s is not None else []
-        with_line = height >= 9
-        rows = max(height - len(lines) - len(values) - 1 - with_line, 1)
+        with_line = height >= _LINE_ROWS
+        rows = max(height - len(lines) - 1 - with_line, 1)
         x_limits = state.x_limits or _time_limits(traces.end_s(), state.grows)
-        scales = _CellScales.of(drawn, width, rows, state.zoomed)
+        scales = CellScales.of(drawn, width, rows, x_limits, state.zoomed, state.margins)
         columns = max(width - scales.left_width - scales.right_width, 2)
         left, top = scales.left_width, len(lines)
         cursors = [time_s for time_s in (state.cursor_s, state.other_s) if time_s is not None]
         curves = tuple(scales.curve(trace, by_mark or state.marks) for trace in drawn)
         has_room = len(lines) + rows + with_line <= height and left + columns + scales.right_width <= width
-        plot = scales.plot(curves, columns, rows, x_limits, cursors, has_time_line=with_line) if has_room else None
+        plot = None
+        if has_room:
+            ticks = tuple(axes.time_ticks(x_limits, columns)), tuple(axes.row_ticks(scales.y_limits, rows))
+            plot = Plot(
+                curves, columns, rows, x_limits, scales.y_limits, *ticks, with_line, tuple(cursors), state.spans
+            )
         line, below = axes.time_axis(x_limits, columns, state.unit)
         if is_blank and plot:
-            lines += [scales.labelled(row, columns) for row in range(rows)] + [[]] * with_line
+            lines += [scales.framed(row, [(" " * columns, AXIS)]) for row in range(rows)] + [[]] * with_line
         else:
             self._draw(drawn, scales, columns, rows, x_limits, curves)
             at = sorted({axes.column_of(time_s, x_limits, columns) for time_s in cursors})
-            on_grid = scales.left_labels if state.grid and not state.is_ascii else {}
-            lines += [
-                scales.framed(row, _with_cursors(self._canvas[row], at, is_on_grid=row in on_grid))
-                for row in range(rows)
-            ]
+            on_grid = scales.labels[0] if state.grid and not state.is_ascii else {}
+            inside = [_styled(self._canvas[row], is_on_grid=row in on_grid) for row in range(rows)]
+            if state.spans:
+                inside = shaded(inside, state.spans, x_limits, columns)
+            lines += [scales.framed(row, _with_cursors(inside[row], at)) for row in range(rows)]
             if with_line:
-                lines.append([(" " * (left - 1) + "└" + line + ("┘" if scales.right_width else ""), AXIS)])
+                lines.append([(" " * (left - 1) + "└" + line, AXIS)])
         lines.append([(" " * left + below, AXIS)])
-        return ChartPicture([*lines, *values][:height], boxes, left, top, columns, rows, x_limits, plot)
+        return ChartPicture(lines[:height], boxes, left, top, columns, rows, x_limits, plot)
 
     def _draw(
         self,
         drawn: list[Trace],
-        scales: _CellScales,
+        scales: CellScales,
         columns: int,
         rows: int,
         x_limits: Limits,
         curves: Sequence[Curve],
     ) -> None:
         points = [(trace.name, len(trace.times_s)) for trace in drawn]
-        key = (points, scales.both, columns, rows, x_limits, [curve.marker for curve in curves])
+        key = (points, scales.scales, columns, rows, x_limits, [curve.marker for curve in curves])
         if key == self._key:
             return
         self._key = key
-        self._canvas = canvas(curves, columns, rows, x_limits, scales.both.left)
-
-
-@dataclass(frozen=True, slots=True)
-class _CellScales:
-    """The vertical scales with their labels by row."""
-
-    both: Scales
-    left_labels: dict[int, str]
-    right_labels: dict[int, str]
-
-    @classmethod
-    def of(cls, drawn: list[Trace], width: int, rows: int, zoomed: bool) -> _CellScales:
-        variables = [(trace.name, trace.values, trace.other_scale) for trace in drawn]
-        both = Scales.of(variables, zoomed, has_room=width >= _MIN_TWO_SCALES)
-        return cls(both, axes.row_labels(both.left, rows), axes.row_labels(both.right, rows) if both.right else {})
-
-    @property
-    def left_width(self) -> int:
-        return max(map(len, self.left_labels.values()), default=0) + 1
-
-    @property
-    def right_width(self) -> int:
-        return max(map(len, self.right_labels.values()), default=0) + 1 if self.both.right else 0
-
-    def curve(self, trace: Trace, marks: bool) -> Curve:
-        values = self.both.on_left(trace.values) if trace.other_scale else trace.values
-        return Curve(trace.times_s, values, trace.rgb, trace.mark if marks else BRAILLE)
-
-    def plot(
-        self, curves: tuple[Curve, ...], columns: int, rows: int, x_limits: Limits, cursors: Sequence[float],
-        *, has_time_line: bool,
-    ) -> Plot:  # fmt: skip
-        right_ticks = None
-        if self.both.right:
-            right_ticks = tuple(self.both.on_left(np.array(axes.row_ticks(self.both.right, rows))).tolist())
-        return Plot(
-            curves, columns, rows, x_limits, self.both.left, tuple(axes.time_ticks(x_limits, columns)),
-            tuple(axes.row_ticks(self.both.left, rows)), right_ticks, has_time_line, tuple(cursors),
-        )  # fmt: skip
-
-    def labelled(self, row: int, columns: int) -> list[Run]:
-        """Return the labels of a row of a canvas of which an image is drawn."""
-        text = self.left_labels.get(row, "").rjust(self.left_width - 1) + " " * (1 + columns)
-        return [(text + " " + self.right_labels.get(row, "") if self.both.right else text, AXIS)]
-
-    def framed(self, row: int, inside: list[Run]) -> list[Run]:
-        text = self.left_labels.get(row, "")
-        line = [(text.rjust(self.left_width - 1) + ("┤" if text else "│"), AXIS), *inside]
-        if self.both.right:
-            text = self.right_labels.get(row, "")
-            line.append((("├" if text else "│") + text.ljust(self.right_width - 1), AXIS))
-        return line
+        self._canvas = canvas(curves, columns, rows, x_limits, scales.y_limits)
 
 
 def _time_limits(end_s: float, grows: bool) -> Limits:
@@ -214,21 +171,24 @@ def _time_limits(end_s: float, grows: bool) -> Limits:
     return 0.0, end_s if end_s > 0 else 1.0
 
 
-def _with_cursors(runs: list[TextRun], columns: Sequence[int], *, is_on_grid: bool) -> list[Run]:
+def _styled(runs: list[TextRun], is_on_grid: bool) -> list[Run]:
+    """Return a row of the canvas, with the line of the grid where nothing is drawn."""
+    if not is_on_grid:
+        return [(text, styled(rgb)) for text, rgb in runs]
+    return [(text.replace(" ", _GRID), _FAINT) if rgb is None else (text, styled(rgb)) for text, rgb in runs]
+
+
+def _with_cursors(runs: list[Run], columns: Sequence[int]) -> list[Run]:
     """Return a row of the canvas with lines at rising columns; a column outside it draws none."""
-    if is_on_grid:
-        runs = [(text.replace(" ", _GRID) if rgb is None else text, rgb) for text, rgb in runs]
     line: list[Run] = []
     at = 0
-    for text, rgb in runs:
-        style = _FAINT if is_on_grid and rgb is None else styled(rgb)
+    for text, style in runs:
         done = 0
         for inside in (column - at for column in columns):
             if 0 <= inside < len(text):
                 mark = text[inside]
                 line.append((text[done:inside], style))
-                is_free = mark in (" ", _GRID)
-                line.append(("│" if is_free else mark, _CURSOR if is_free else styled(rgb) + _CURSOR))
+                line.append(("│", _CURSOR) if mark in FREE else (mark, style + _CURSOR))
                 done = inside + 1
         line.append((text[done:], style))
         at += len(text)
@@ -279,20 +239,25 @@ def _box_runs(text: str, trace: Trace, selected: bool, by_mark: bool) -> list[Ru
     return [(text, color + Style(reverse=True) if selected else color)]
 
 
-def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) -> list[Run]:
-    """Return a line with the value of each trace at a time, as many as fit."""
-    line: list[Run] = [(f"{cursor_s:.2f} {unit}", _STRONG)]
-    used = len(line[0][0])
+def margins_of(parts: Sequence[Traces], state: ChartState, width: int, rows: int) -> tuple[int, int]:
+    """Return the columns beside the canvases of charts below each other, of so many rows, that are in line."""
+    drawn = [part.drawn() for part in parts if part.drawn()]
+    limits = state.x_limits or (0.0, 1.0)
+    rows = max(rows - 2 - (rows >= _LINE_ROWS), 1)
+    scales = [CellScales.of(traces, width, rows, limits, state.zoomed) for traces in drawn]
+    return max((one.left_width for one in scales), default=0), max((one.right_width for one in scales), default=0)
+
+
+def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) -> str:
+    """Return the value of each trace at a time, as many as fit."""
+    line = f"{cursor_s:.2f} {unit}"
     for at, trace in enumerate(drawn):
         value = trace.at(cursor_s)
-        text = f"{value:.5g}" if value is not None else "–"
+        read = f"  {trace.name} {value:.5g}{unit_of(trace.name)}" if value is not None else f"  {trace.name} –"
         more = len(drawn) - at - 1
-        need = 2 + len(trace.name) + 1 + len(text)
-        if used + need + (4 if more else 0) > width:
-            line.append((f" +{more + 1}"[: max(width - used, 0)], AXIS))
-            break
-        line += [("  ", PLAIN), (f"{trace.name} ", styled(trace.rgb)), (text, _STRONG)]
-        used += need
+        if len(line) + len(read) + (4 if more else 0) > width:
+            return f"{line} +{more + 1}"[:width]
+        line += read
     return line
 
 
@@ -326,14 +291,16 @@ def text_of(chart: ChartData, width: int, height: int, *, colors: bool = False) 
         names = chart.x_label.partition(" (")[0], printable(line.name)
         shown = xy_lines(line.xs, line.ys, None, names, trace.rgb, marker, width, height)
     else:
-        parts = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
-        rows = max(height // len(parts), LEAST_ROWS)
+        groups = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
+        rows = max(height // len(groups), LEAST_ROWS)
+        parts = [Traces({line.name: _trace(line) for line in group}) for group in groups]
+        grey = not colors and not chart.facets and len(chart.lines) > 1
+        state = ChartState(
+            x_limits=chart.x_limits, grey=grey, marks=chart.marks, unit=_unit(chart), zoomed=chart.zoomed
+        )
+        state = replace(state, margins=margins_of(parts, state, width, rows))
         for part in parts:
-            grey = not colors and len(part) > 1
-            state = ChartState(
-                x_limits=chart.x_limits, grey=grey, marks=chart.marks, unit=_unit(chart), zoomed=chart.zoomed
-            )
-            shown += ChartPainter().paint(Traces({line.name: _trace(line) for line in part}), state, width, rows).lines
+            shown += ChartPainter().paint(part, state, width, rows).lines
     lines = [Text(chart.title, "bold"), *(Text.assemble(*map(_on_any_ground, line)) for line in shown)]
     for at in lines:
         at.rstrip()
@@ -343,7 +310,7 @@ def text_of(chart: ChartData, width: int, height: int, *, colors: bool = False) 
 
 def _trace(line: Line) -> Trace:
     trace = Trace(printable(line.name), line.number)
-    trace.rgb, trace.other_scale = color_of(line), line.other_scale
+    trace.rgb, trace.scale = color_of(line), line.scale
     trace.add(line.xs.tolist(), line.ys.tolist())
     return trace
 

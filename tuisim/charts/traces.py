@@ -21,13 +21,22 @@ colours. Source: https://jfly.uni-koeln.de/color/."""
 MARKS = "o+x*#%=~&@"
 """For terminals without colours; more than there are colours, so that many traces differ in one or the other."""
 
-_OTHER_SCALE = ("ultrasonic", "gyro", "wheel")
-"""Millimetres and degrees: they do not fit the scale of light in percent."""
+_OTHER_READINGS = ("ultrasonic", "gyro", "wheel")
+"""Names that begin so are distances and angles, whose unit a program may choose."""
 
 MOST_POINTS = 1 << 16
 """A trace with more points keeps the least and the greatest of each few, so that a run without end needs a bounded
 memory: what was recorded long ago is drawn as before, unless one zooms in."""
 _THINNED = 4
+
+
+def scale_of(name: str) -> str:
+    """Return the scale of a variable: its unit or reading; empty for light, in percent or not, and what is unknown."""
+    name = name.partition(" #")[0]
+    sign = unit_of(name).sign
+    if sign:
+        return "" if sign == "%" else sign
+    return next((reading for reading in _OTHER_READINGS if name.lower().startswith(reading)), "")
 
 
 class Trace:
@@ -44,8 +53,8 @@ class Trace:
         self.on = self.logged = logged
         self.rgb = TRACE_COLORS[number % len(TRACE_COLORS)]
         self.mark = MARKS[number % len(MARKS)]
-        is_light = unit_of(name).sign in ("", "%")
-        self.other_scale = name.lower().startswith(_OTHER_SCALE) if logged else not is_light
+        self.scale = scale_of(name)
+        """Which scale it is drawn on; traces of one scale have the same text."""
         self._times_s = np.empty(256)
         self._values = np.empty(256)
         self._count = 0
@@ -93,6 +102,10 @@ class Trace:
         """Return the last value at or before a time, None before the first."""
         index = int(np.searchsorted(self.times_s, time_s, "right")) - 1
         return float(self._values[index]) if index >= 0 else None
+
+    def nearest_s(self, time_s: float) -> float:
+        """Return the time of the point nearest to a time; there must be one."""
+        return float(self.times_s[np.abs(self.times_s - time_s).argmin()])
 
     def clear(self) -> None:
         """Remove the points; keep visibility and colour."""

@@ -3,85 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cache, cached_property
-from types import MappingProxyType
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tuisim.core.css_colors import css_names
 from tuisim.data_class import dataclass
 from tuisim.errors import counted
 from tuisim.logs.columns import numeric_columns
-from tuisim.logs.plateaus import FIELDS, Search, plateaus
+from tuisim.logs.levels import levels_of
+from tuisim.logs.plateaus import Search, plateaus
 from tuisim.runs.arrays import FloatArray, IntArray
 
 if TYPE_CHECKING:
     from tuisim.logs.log import Log, Series
-
-NEAR_PERCENT = 2.0
-"""Largest distance from a named grey."""
-
-FULL = 255.0
-
-_PLAIN_NAMES = MappingProxyType({0: "black", 128: "grey", 255: "white", 211: "light grey", 220: "pale grey",
-                                 169: "dark grey", 105: "dim grey", 192: "silver"})  # fmt: skip
-"""Common names by channel value; the others are those of CSS."""
-
-
-@dataclass(frozen=True, slots=True)
-class Grey:
-    """A grey with a name."""
-
-    name: str
-    percent: float
-    """100 is white."""
-
-
-@cache
-def greys() -> Mapping[int, Grey]:
-    """Return the named greys by channel value, 0 to 255."""
-    found = {red: name for name, (red, green, blue) in css_names().items() if red == green == blue}
-    found |= _PLAIN_NAMES
-    return {value: Grey(name, 100.0 * value / FULL) for value, name in sorted(found.items())}
-
-
-def nearest_greys(percents: FloatArray) -> list[Grey | None]:
-    """Return the grey nearest to each level of 0 to 100 %, None if none is within NEAR_PERCENT."""
-    named = list(greys().values())
-    nearest = np.zeros(len(percents), np.int64)
-    least = np.full(len(percents), np.inf)
-    for at, grey in enumerate(named):
-        apart = np.abs(grey.percent - percents)
-        nearest[apart < least] = at
-        least = np.minimum(least, apart)
-    nearest[least > NEAR_PERCENT] = -1
-    return [None if at < 0 else named[at] for at in nearest.tolist()]
-
-
-def without_clamping(percents: FloatArray, noise: int) -> FloatArray:
-    """Return the true levels from the means of noisy pixels.
-
-    Noise is uniform within ±`noise`, and values outside 0 to 255 are clamped, so that
-    near both ends the mean is too far inside. The mean of a pixel of value 255 - u, u
-    below the noise, is 255 - (noise + u)² / (4 noise).
-
-    Args:
-        percents: Mean levels, 0 to 100.
-        noise: Light noise of the run, 0 to 128.
-    """
-    if not noise:
-        return percents
-    values = percents * FULL / 100.0
-    return 100.0 * _unclamped(FULL - _unclamped(FULL - values, noise), noise) / FULL
-
-
-def _unclamped(below: FloatArray, noise: int) -> FloatArray:
-    """Undo the clamping at one end; `below` are the distances from it."""
-    undone = np.maximum(0.0, 2.0 * np.sqrt(noise * np.maximum(below, 0.0)) - noise)
-    return np.where(below >= noise, below, undone)
-
 
 NAN = float("nan")
 ONE_SAMPLE = "one sample"
@@ -159,29 +95,22 @@ def band_report(log: Log, name: str, search: Search = plateaus) -> BandReport:
         LogError: there is no such variable.
     """
     series = log.series(name)
-    found = np.array(search(series.values), FIELDS)
-    scale, noise = light_scale(series.values), light_noise(log.metadata, series.run)
+    found = levels_of(series.values, light_noise(log.metadata, series.run), search)
     finite = np.append(0, np.cumsum(np.isfinite(series.values)))
-    first, last, level = found["start"], found["stop"] - 1, found["level"]
+    first, last = found.start, found.stop - 1
     samples = finite[last + 1] - finite[first]
-    true_level = level
-    greys_near: list[Grey | None] = [None] * len(found)
-    if scale:
-        percents = without_clamping(level * scale, noise)
-        true_level = percents / scale if noise else level
-        greys_near = nearest_greys(percents)
     columns = {
-        "variable": [series.name] * len(found),
-        "number": np.arange(1, len(found) + 1),
+        "variable": [series.name] * len(first),
+        "number": np.arange(1, len(first) + 1),
         "start_s": series.time_s[first],
         "stop_s": series.time_s[last],
         "samples": samples,
-        "level": level,
-        "spread": found["spread"],
-        "strays": found["strays"],
-        "grey": [grey.name if grey else "" for grey in greys_near],
-        "grey_percent": np.array([grey.percent if grey else NAN for grey in greys_near]),
-        "true_level": true_level,
+        "level": found.level,
+        "spread": found.spread,
+        "strays": found.strays,
+        "grey": [grey.name if grey else "" for grey in found.greys],
+        "grey_percent": np.array([grey.percent if grey else NAN for grey in found.greys]),
+        "true_level": found.true_level,
         **_places(driven_mm(log, series), first, last),
         "first_row": series.rows[first],
         "last_row": series.rows[last],
@@ -198,14 +127,6 @@ def _places(driven: FloatArray | None, first: IntArray, last: IntArray) -> dict[
     start_mm, stop_mm = driven[first], driven[last]
     width_mm = (stop_mm + driven[after] - start_mm - driven[before]) / 2.0
     return {"start_mm": start_mm, "stop_mm": stop_mm, "width_mm": width_mm}
-
-
-def light_scale(values: FloatArray) -> float:
-    """Return the factor from light readings to percent: 1 for 0 to 100, 100/255 for 0 to 255; 0 for other values."""
-    finite = values[np.isfinite(values)]
-    if not len(finite) or finite.min() < 0.0 or finite.max() > 255.0:
-        return 0.0
-    return 1.0 if finite.max() <= 100.0 else 100.0 / 255.0
 
 
 def light_noise(metadata: Mapping[str, Any], run: int) -> int:

@@ -249,6 +249,14 @@ class RowIndex:
             rows = self._output.rows_from(self._starts[first])
             yield from (row for row, _ in islice(rows, len(self) - first))
 
+    def line_of(self, name: str, tick: int) -> int:
+        """Return the line that printed the last sample of a name in a tick, 0 if there is none."""
+        for row in map(self.row, reversed(range(self.until(tick - 1), self.until(tick)))):
+            sample = parse_sample(row.text) if row.stream in SAMPLE_STREAMS else None
+            if sample is not None and sample[0] == name:
+                return row.line
+        return 0
+
     def ticks_of_line(self, line: int) -> list[int]:
         """Return the ticks at which a line of the program printed."""
         return [tick for tick, number in zip(self._ticks, self._lines, strict=True) if number == line]

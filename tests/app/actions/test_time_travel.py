@@ -16,6 +16,7 @@ from tuisim.app.actions.time_travel import to_now, to_tick
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.question import BranchQuestion
 from tuisim.app.form import Slider
+from tuisim.app.panels.chart import Chart
 from tuisim.app.setup.next_run import with_obstacles
 from tuisim.app.snapshot import RunPhase
 from tuisim.core.geometry import Pose
@@ -211,6 +212,24 @@ async def test_what_is_changed_for_the_next_run_is_seen_also_from_the_past() -> 
         assert app.run_controller.in_past
         assert app.loader.attempt(lambda plan: with_obstacles(plan, (Obstacle(100, 100, 50, 50),)))
         assert app.run_controller.snapshot().spec.world.obstacles == (Obstacle(100, 100, 50, 50),)
+
+
+async def test_a_sample_clicked_in_the_chart_is_found_in_the_code() -> None:
+    program = "import time\ntank_drive.on(50, 50)\nfor n in range(20):\n    time.sleep(0.1)\n    print('Colour: 100')\n"
+    async with LabApp(settings(program, speed=0.0)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await pilot.press("c")
+        await until(pilot, lambda: "100 white" in screen_text(app))
+        await pilot.mouse_down(app.query_one(Chart), offset=(20, 4))
+        await until(pilot, lambda: app.run_controller.in_past)
+        clicked = app.run_controller.snapshot()
+        await pilot.press("comma")
+        await until(pilot, lambda: app.run_controller.snapshot().instant.tick < clicked.instant.tick)
+
+        assert clicked.line == 5
+        assert app.run_controller.snapshot().line == 4
 
 
 async def test_a_line_of_a_module_beside_the_program_is_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -31,6 +31,21 @@ def test_of_many_bands_those_around_the_chosen_one_are_shown() -> None:
     assert "4 levels" in " ".join(shown)
 
 
+def test_few_bands_are_all_in_sight_with_their_statistics_in_a_small_terminal() -> None:
+    table = pa.table({**dict(zip(("time", "Colour"), stepped(80, 10).columns, strict=True)), "x_mm": np.arange(80.0),
+                      "y_mm": np.zeros(80)})  # fmt: skip
+    model = model_of(Log("test", table, guess_columns(table)))
+    for trace in model.traces:
+        trace.on = trace.name == "Colour"
+    model.find_bands(model.unsearched())
+
+    head, *shown = text_of(model, "bands", 48, 9).splitlines()
+
+    assert head.split() == ["#", "level", "name", "from", "s", "to", "s", "n", "mm", "std"]
+    assert [line.split()[0] for line in shown] == [str(number) for number in range(1, 9)]
+    assert shown[1].split() == ["2", "86.27", "pale", "grey", "0.10", "0.19", "10", "10", "0.00"]
+
+
 def text_of(model: Model, pane: str = "table", width: int = 100, height: int = 30) -> str:
     lines = pane_lines(pane, model, 0, width, height)
     return "\n".join("".join(text for text, _ in line) for line in lines)

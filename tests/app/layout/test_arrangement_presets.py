@@ -45,6 +45,20 @@ def test_no_third_of_a_panel_is_empty(preset: Preset, size: tuple[int, int]) -> 
             assert box.height - 2 < 1.5 * (PANELS[panel].good_rows - 2), panel
 
 
+def test_code_and_chart_have_room_beside_each_other_in_a_medium_terminal() -> None:
+    wanted, fill = wanted_panels(Preset.STANDARD, {"chart": True}, 120, 39)
+    boxes = arrange(wanted, 120, 39, fill).boxes
+    assert boxes["code"].height - 2 >= 8
+    # Two rows for the tick boxes, two for the axis of time.
+    assert boxes["chart"].height - 2 - 4 >= 10
+
+
+@in_each_size
+def test_the_output_leaves_its_rows_to_the_code_when_debugging(size: tuple[int, int]) -> None:
+    boxes = layout_of(Preset.DEBUG, *size).boxes
+    assert "output" not in boxes or boxes["output"].height <= PANELS["output"].good_rows < boxes["code"].height
+
+
 @pytest.mark.quick_cases("analyse")
 @pytest.mark.parametrize(("preset", "key"), KEYS.items(), ids=KEYS)
 async def test_a_key_shows_a_preset_and_again_the_standard_layout(preset: Preset, key: str) -> None:

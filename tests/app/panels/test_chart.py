@@ -10,6 +10,7 @@ from textual.pilot import Pilot
 from tests.app.app_help import until
 from tests.app.panel_help import PanelApp, moment, screen_text
 from tuisim.app.panels.chart import Chart
+from tuisim.app.snapshot import RunPhase
 from tuisim.charts.text_chart import ChartPainter, ChartPicture
 
 
@@ -89,7 +90,8 @@ async def test_the_cursor_walks_and_goes() -> None:
         fill(app.panel)
         await opened(app, pilot)
         await pilot.press("left", "left", "shift+left")
-        last = rows(app)[-1]
+        rows(app)
+        last = str(app.panel.border_subtitle)
         await pilot.press("escape")
         await pilot.pause()
 
@@ -187,3 +189,35 @@ async def test_it_is_not_drawn_more_often_than_can_be_seen(monkeypatch: pytest.M
             app.panel.show(moment())
 
         assert not drawn
+
+
+async def test_bands_are_shown_while_the_run_stands_still() -> None:
+    app = PanelApp(Chart())
+    async with app.run_test(size=(80, 16)) as pilot:
+        fill(app.panel)
+        shown = []
+        for state in (RunPhase.RUNNING, RunPhase.PAUSED, RunPhase.RUNNING, RunPhase.ENDED):
+            app.panel.show(moment(state=state))
+            await pilot.pause()
+            shown.append(any("100 white" in row for row in rows(app)))
+
+    assert shown == [False, True, False, True]
+
+
+@pytest.mark.parametrize(
+    ("column", "sample"), [pytest.param(30, "Colour", id="in a band"), pytest.param(70, "", id="beside all samples")]
+)
+async def test_a_click_goes_to_the_sample_there(column: int, sample: str) -> None:
+    app = PanelApp(Chart())
+    async with app.run_test(size=(80, 16)) as pilot:
+        for at in range(0, 50, 5):
+            app.panel.append("Colour", [at / 10], [100.0])
+        app.panel.append("gyro_deg", [6.0], [1.0], logged=False)
+        app.panel.show(moment(state=RunPhase.ENDED))
+        rows(app)
+        await pilot.mouse_down(app.panel, offset=(column, 5))
+        await pilot.pause()
+
+    (message,) = app.heard(Chart.CursorMoved)
+    assert message.sample == sample
+    assert (message.time_s in [at / 10 for at in range(0, 50, 5)]) is bool(sample)

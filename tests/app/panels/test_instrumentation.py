@@ -50,6 +50,22 @@ def test_a_heading_is_shown_within_half_a_turn(heading_deg: float, shown: str) -
     assert now.instant.pose.heading_deg == heading_deg
 
 
+@pytest.mark.parametrize(
+    ("width", "names", "pose"),
+    [
+        pytest.param(60, True, True, id="both"),
+        pytest.param(38, False, True, id="the pose first"),
+        pytest.param(24, False, False, id="neither"),
+    ],
+)
+def test_the_pose_goes_before_the_names_of_colours(width: int, names: bool, pose: bool) -> None:
+    white = ColorReading(255, 255, 255)
+
+    first = text(moment(colors={"left": white, "right": white}), width, 3)[0]
+
+    assert ("White" in first, "x 1000" in first) == (names, pose)
+
+
 def test_a_narrow_panel_names_the_pen() -> None:
     assert "pen down" in text(moment(), 34, 11)[-1]
 

@@ -52,9 +52,15 @@ def refresh(context: ActionContext) -> None:
     context.app.draw(force=True)
 
 
-def to_time(context: ActionContext, time_s: float | None) -> None:
-    """Go to a time of the run, None for now."""
-    to_tick(context, None if time_s is None else round(time_s * context.runs.timeline.tick_hz))
+def to_time(context: ActionContext, time_s: float | None, sample: str = "") -> None:
+    """Go to a time of the run, None for now; and to the line that printed the sample of that name then."""
+    tick = None if time_s is None else round(time_s * context.runs.timeline.tick_hz)
+    recording = context.runs.timeline.recording
+    if sample and tick is not None and recording is not None and (line := recording.rows.line_of(sample, tick)):
+        context.runs.printed_line = tick, line
+        if not context.panels.shown("code"):
+            context.app.say(f"Line {line} has printed this: {{panel-code}} shows it")
+    to_tick(context, tick)
 
 
 def by_ticks(context: ActionContext, ticks: int) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -10,11 +11,11 @@ from textual import events
 from textual.message import Message
 
 from tuisim import palette
-from tuisim.analysis.chart import event_marks
-from tuisim.analysis.traces import DISTANCE
+from tuisim.analysis.chart import event_marks, spans_of_bands
+from tuisim.analysis.traces import DISTANCE, TIME
 from tuisim.app.plot_view import PlotView
 from tuisim.charts.canvas import BRAILLE, xy_lines
-from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
+from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, margins_of, values_at
 from tuisim.charts.traces import Traces
 from tuisim.data_class import dataclass
 from tuisim.terminal.cell_view import LinesPanel
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from tuisim.analysis.traces import LogTrace
 
 _EVENTS = Style(color=palette.EVENT, bold=True)
+_MOST_BANDS = 100
+"""More are too narrow to be told apart."""
 _LEAST_FACET_ROWS = 6
 """Minimum height of the chart of one variable."""
 FACETS_ROWS = 2 * _LEAST_FACET_ROWS
@@ -77,6 +80,8 @@ class LogChart(LinesPanel):
         self._painters: dict[str, ChartPainter] = {}
         self._pictures: list[tuple[int, ChartPicture]] = []
         self._model: Model | None = None
+        self._pointed_s: float | None = None
+        """The time below the pointer."""
 
     def set_model(self, model: Model) -> None:
         """Switch to another log, or redraw the same one with other options."""
@@ -94,6 +99,7 @@ class LogChart(LinesPanel):
             self._text.set_lines(self._against(model, self.options.against, width, height))
             return
         self._text.draw(partial(self._paint, model))
+        self._read(self._pointed_s)
 
     def _paint(self, model: Model, is_blank: bool) -> tuple[list[list[Run]], list[tuple[int, ChartPicture]]]:
         width, height = self._text.size
@@ -111,13 +117,21 @@ class LogChart(LinesPanel):
             shows_ascii(self.app), model.mark_s, unit, self.options.marks, grid=True,
             zoomed=model.limits is not None,
         )  # fmt: skip
+        spans = {
+            report.variable: spans_of_bands(report.bands)
+            for report in model.reports()
+            if model.alignment == TIME and report.count <= _MOST_BANDS
+        }
         self._pictures = []
         lines: list[list[Run]] = []
         parts: list[Traces] = [Traces({trace.name: trace}) for trace in facets] or [model.traces]
+        if facets:
+            state = replace(state, margins=margins_of(parts, state, width, height // len(parts)))
         for at, part in enumerate(parts):
             rows = height // len(parts) + (at < height % len(parts))
             painter = self._painters.setdefault(facets[at].name if facets else "", ChartPainter())
-            picture = painter.paint(part, state, width, rows, is_blank=is_blank)
+            shown = replace(state, spans=spans.get(facets[at].name if facets else model.selected, ()))
+            picture = painter.paint(part, shown, width, rows, is_blank=is_blank)
             self._pictures.append((len(lines), picture))
             lines += [*picture.lines, *[[] for _ in range(rows - len(picture.lines))]]
         return [*lines, *(self._event_marks(model) if marked else []), *measured], self._pictures
@@ -168,11 +182,17 @@ class LogChart(LinesPanel):
         self._read(None)
 
     def _read(self, time_s: float | None) -> None:
-        read: list[Run] = []
-        if time_s is not None and self._model is not None:
-            unit = "mm" if self._model.alignment == DISTANCE else "s"
-            read = values_at(self._model.traces.drawn(), time_s, unit, self.size.width - 4)
-        self.border_subtitle = as_markup("".join(text for text, _ in read))
+        """Show the values below the pointer, or without it those at the cursor."""
+        self._pointed_s, model = time_s, self._model
+        drawn = model.traces.drawn() if model is not None and model.log.rows and not self.options.against else []
+        said = ""
+        if model is not None and drawn:
+            unit = "mm" if model.alignment == DISTANCE else "s"
+            time_s = model.cursor_s if time_s is None else time_s
+            said = as_markup(values_at(drawn, time_s, unit, self.size.width - 4))
+        # Each assignment draws the panel again.
+        if said != self.border_subtitle:
+            self.border_subtitle = said
 
 
 def _around_selected(facets: list[LogTrace], selected: str, most: int) -> list[LogTrace]:

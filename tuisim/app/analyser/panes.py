@@ -39,6 +39,8 @@ HEAD = Style(color=palette.BLUE, bold=True)
 HERE = Style(color=palette.WHITE, bgcolor=palette.CHOSEN)
 CHOSEN = Style(color=palette.YELLOW, bold=True)
 _WIDEST = 28
+_GAP = 2
+"""Columns between those of a table."""
 _SAMPLED = 40
 """Number of rows that determine the width of a table's column, besides the visible ones."""
 _MEASURED = 1000
@@ -157,7 +159,7 @@ PANES: Mapping[str, Pane] = {
     "table": Pane("Table", lambda _: (), ()),
     "bands": Pane(
         "Bands", lambda model: _LazyRows(model.bands(), _band),
-        ("variable", "#", "level", "name", "from s", "to s", "samples", "mm", "spread"),
+        ("variable", "#", "level", "name", "from s", "to s", "n", "mm", "std"),
         Model.bands_in_words, "No bands: no variable shown stays at a level",
     ),
     "statistics": Pane(
@@ -221,13 +223,14 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     first = first_shown(chosen, len(rows), room)
     measured = rows if len(rows) <= _MEASURED else rows[first : first + room]
     widths = [max(map(len, column)) for column in zip(pane.heads, *measured, strict=True)]
-    used = _fitting_whole([at for at in range(len(widths)) if any(row[at] for row in measured)], widths, width)
-    lines: list[Line] = [_row([pane.heads[at] for at in used], [widths[at] for at in used], HEAD)]
+    used, gap = _columns_of(measured, widths, width)
+    lines: list[Line] = [_row([pane.heads[at] for at in used], [widths[at] for at in used], gap, HEAD)]
     shown: list[Line] = []
     chosen_at = range(0)
     for number, row in enumerate(rows[first : first + room], first):
         style = HERE if number == chosen else PLAIN
-        made = _rows_of([row[at] for at in used], [widths[at] for at in used], style, width if pane.wraps else 0)
+        texts, wide = [row[at] for at in used], [widths[at] for at in used]
+        made = _rows_of(texts, wide, gap, style, width) if pane.wraps else [_row(texts, wide, gap, style)]
         if number == chosen:
             chosen_at = range(len(shown), len(shown) + len(made))
             made = [[*line, (" " * width, HERE)] for line in made]
@@ -238,8 +241,12 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
 
 
 def _below(pane: Pane, model: Model, width: int, height: int) -> tuple[list[str], int]:
-    """Return the lines below the rows of a pane, and the number of rows for which there is room."""
-    below = _wrapped(pane.below(model), width, max(0, height // 3))
+    """Return the lines below the rows of a pane, and the number of rows for which there is room.
+
+    All rows come first, if they fit; among many, a third of the lines is for what is below them.
+    """
+    spare = height - 1 - len(pane.rows(model))
+    below = _wrapped(pane.below(model), width, spare if spare >= 0 else height // 3)
     return below, max(height - 1 - len(below), 1)
 
 
@@ -250,13 +257,26 @@ def place_in(name: str, model: Model, chosen: int, width: int, height: int) -> s
     return "" if fits else f"↑↓ row {chosen + 1:,} of {count:,}"
 
 
-def _rows_of(texts: Sequence[str], widths: Sequence[int], style: Style, width: int) -> list[Line]:
-    """Return a row as lines: one, or as many as the last text needs in that width; 0 is unlimited."""
-    margin = sum(widths[:-1]) + 2 * (len(widths) - 1)
-    if not width or margin + len(texts[-1]) <= width:
-        return [_row(texts, widths, style)]
+def _columns_of(rows: Sequence[Cells], widths: Sequence[int], width: int) -> tuple[list[int], int]:
+    """Return the columns that are shown, and the gap between them.
+
+    Where they do not all fit, the gap is smaller, and a first column that is the same in all rows is left out.
+    """
+    filled = [at for at in range(len(widths)) if any(row[at] for row in rows)]
+    rest = filled[1:] if len({row[0] for row in rows}) == 1 else filled
+    for columns, gap in ((filled, _GAP), (rest, _GAP), (rest, 1)):
+        if sum(widths[at] + gap for at in columns) - gap <= width:
+            return columns, gap
+    return _fitting_whole(filled, widths, width), _GAP
+
+
+def _rows_of(texts: Sequence[str], widths: Sequence[int], gap: int, style: Style, width: int) -> list[Line]:
+    """Return a row as lines: one, or as many as the last text needs in that width."""
+    margin = sum(widths[:-1]) + gap * (len(widths) - 1)
+    if margin + len(texts[-1]) <= width:
+        return [_row(texts, widths, gap, style)]
     first, *rest = wrap(texts[-1], max(width - margin, 10)) or [""]
-    return [_row([*texts[:-1], first], widths, style), *([(" " * margin + text, style)] for text in rest)]
+    return [_row([*texts[:-1], first], widths, gap, style), *([(" " * margin + text, style)] for text in rest)]
 
 
 def _fitting_whole(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
@@ -265,17 +285,17 @@ def _fitting_whole(columns: Sequence[int], widths: Sequence[int], width: int) ->
     for at in columns:
         if widths[at] > left and (widths[at] <= _WIDEST or left < _WIDEST // 2):
             break
-        left -= widths[at] + 2
+        left -= widths[at] + _GAP
         seen.append(at)
     return seen
 
 
-def _row(texts: Sequence[str], widths: Sequence[int], style: Style) -> Line:
+def _row(texts: Sequence[str], widths: Sequence[int], gap: int, style: Style) -> Line:
     parts = (
         text.rjust(width) if text[:1].isdigit() or text[:1] == "-" else text.ljust(width)
         for text, width in zip(texts, widths, strict=True)
     )
-    return [("  ".join(parts), style)]
+    return [((" " * gap).join(parts), style)]
 
 
 def _wrapped(texts: Sequence[str], width: int, most: int) -> list[str]:

@@ -219,8 +219,9 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self._show_title(self._progress())
         now = self.situation()
         self.key_footer.show([action for action in self.ACTIONS.values() if not action.why_not(now)])
-        self.chart.show(self._model)
+        # The pane finds the bands, which the chart shades.
         self.pane.show(self._model)
+        self.chart.show(self._model)
         self.world.show(self._model)
 
     def redraw_chart(self) -> None:

@@ -125,12 +125,13 @@ def _stacks(columns: Sequence[Sequence[str]], fixed: Mapping[int, int], width: i
 
 
 def _strip(panels: Sequence[str], width: int) -> list[Node]:
-    """Return the rows of the bottom strip: panels side by side, as many as fit."""
+    """Return the bottom strip: panels side by side, as many as fit, the others below the first ones."""
     if not panels:
         return []
     columns = max(1, min(len(panels), width // MIN_STRIP_COLS))
     count = ceil(len(panels) / columns)
-    return [joined(Axis.COLUMNS, panels[row::count]) for row in range(count)]
+    stacks = [joined(Axis.ROWS, panels[first : first + count]) for first in range(0, len(panels), count)]
+    return [joined(Axis.COLUMNS, stacks)]
 
 
 def _wide(panels: Sequence[str], width: int, height: int) -> Node:
@@ -193,12 +194,21 @@ def _low(panels: Sequence[str], width: int, height: int) -> Node:
         top: list[Node] = [*main] or ([joined(Axis.ROWS, beside)] if beside else [])
     else:
         share = min(max(ideal_columns(above), MIN_COLS), width - MIN_STRIP_COLS) / width
-        top = [joined(Axis.COLUMNS, [*main, joined(Axis.ROWS, beside)], shares=(share, 1 - share))]
+        top = [joined(Axis.COLUMNS, [*main, _with_pose(beside, above)], shares=(share, 1 - share))]
     below = joined(Axis.ROWS, roomy)
     if not top:
         return below
     is_fair = height >= _FAIR_ROWS or least_rows(top[0]) <= above
     return Split(Axis.ROWS, (*top, below), least=(0, fair) if is_fair else ())
+
+
+def _with_pose(panels: Sequence[str], height: int) -> Node:
+    """Return stacked panels; the readings get a row more than they need, if there is one, for the pose."""
+    column = joined(Axis.ROWS, panels)
+    if isinstance(column, str) or least_rows(column) >= height:
+        return column
+    least = tuple(PANELS[panel].min_rows + (panel == "instrumentation") for panel in panels)
+    return Split(Axis.ROWS, column.parts, least=least)
 
 
 def _line_of(panels: Sequence[str], width: int) -> Node:
@@ -278,8 +288,8 @@ _PLANS: Mapping[Preset, _Plan] = {
     Preset.DEBUG: _Plan(
         ("code", "debug", "world", "output"),
         ("instrumentation", "arrays"),
-        (_halves(("code", "output"), ("world", "debug"), 0.55),),
-        ("code", "debug", "world", "output"),
+        (_halves(("code", "output"), ("world", "instrumentation", "debug"), 0.55),),
+        ("code", "debug", "world", "instrumentation"),
     ),
     Preset.ANALYSE: _Plan(
         ("chart", "arrays", "world"),

@@ -151,7 +151,7 @@ def _columns(split: Split, width: int) -> list[int]:
 
 
 def _rows(split: Split, width: int, height: int, rank: Callable[[Node], int]) -> list[int]:
-    """Divide rows: what each part needs, then the world's shape, what is fair, what is good; the rest to what grows."""
+    """Divide rows: what each part needs, the world's shape, what is fair, what is good; the rest to what grows most."""
     rows = _least_of_each(split)
     spare = height - sum(rows)
     order = sorted(range(len(rows)), key=lambda at: rank(split.parts[at]))
@@ -161,9 +161,10 @@ def _rows(split: Split, width: int, height: int, rank: Callable[[Node], int]) ->
             rows[at] += more
             spare -= more
     growing = [at for at in order if _grows(split.parts[at])] or order
-    weights = [_weight(split.parts[at]) for at in growing]
+    most = max(_weight(split.parts[at]) for at in growing)
+    growing = [at for at in growing if _weight(split.parts[at]) == most]
     for count, at in enumerate(growing):
-        more = spare * weights[count] // sum(weights[count:])
+        more = spare // (len(growing) - count)
         rows[at] += more
         spare -= more
     return rows

@@ -110,7 +110,7 @@ PANELS: Mapping[str, PanelInfo] = {
         PanelInfo("controls", "Simulator controls", "H", "controls:Controls", _SIDE, _MEDIUM_UP, 11, 11, 12),
         PanelInfo("positioning", "Positioning", "X", "position:Positioning", _SIDE, _LARGE, 8, 8, 8),
         PanelInfo("noise", "Noise", "z", "noise:Noise", _SIDE, _LARGE, 6, 6, 6),
-        PanelInfo("debug", "Debug", "G", "debug:Debug", _SIDE, (), 7, 18, 18, grows=True),
+        PanelInfo("debug", "Debug", "G", "debug:Debug", _SIDE, (), 7, 10, 18, grows=True),
         PanelInfo("brick", "Brick", "K", "brick:Brick", _BOTTOM, (), 9, 12, 20, weight=4, grows=True),
         PanelInfo("obstacles", "Obstacles", "B", "obstacles:Obstacles", _SIDE, (), 11, 12, 16, grows=True),
         PanelInfo("goals", "Goals", "J", "goals:Goals", _SIDE, (), 9, 20, 20, grows=True),

@@ -12,8 +12,10 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 
 from tuisim.app.plot_view import PlotView
-from tuisim.app.snapshot import RunPhase, Snapshot
+from tuisim.app.snapshot import AT_REST, RunPhase, Snapshot
 from tuisim.charts import axes
+from tuisim.charts.bands import spans_of
+from tuisim.charts.layout import Span
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.charts.traces import Trace, Traces
 from tuisim.data_class import dataclass
@@ -50,6 +52,8 @@ class Chart(LinesPanel, can_focus=True):
         """Posted when the cursor was moved to another simulated time, or removed; all panels go to that time."""
 
         time_s: float | None
+        sample: str = ""
+        """The name of the sample there that was clicked, empty for none."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -60,6 +64,11 @@ class Chart(LinesPanel, can_focus=True):
         self._picture: ChartPicture | None = None
         self._dirty = True
         self._dragging = False
+        self._pointed_s: float | None = None
+        """The time below the pointer."""
+        self._noise, self._is_at_rest = 0, False
+        self._spanned: object = None
+        """What the bands were found in."""
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
 
     def append(self, name: str, times_s: Sequence[float], values: Sequence[float], logged: bool = True) -> None:
@@ -90,7 +99,10 @@ class Chart(LinesPanel, can_focus=True):
             state = replace(state, cursor_s=snapshot.time_s if snapshot.past else None)
         if state != self._state:
             self._state, self._dirty = state, True
-        if self._dirty:
+        self._noise, was_at_rest = snapshot.spec.world.noise.light, self._is_at_rest
+        self._is_at_rest = snapshot.state in AT_REST
+        if self._dirty or self._is_at_rest != was_at_rest:
+            self._dirty = True
             self._throttle.ask()
 
     def _changed(self) -> None:
@@ -104,10 +116,33 @@ class Chart(LinesPanel, can_focus=True):
         self._dirty = False
         if self._state.selected is None and (first := next(iter(self._traces), None)):
             self._state = replace(self._state, selected=first.name)
+        self._find_bands()
         state = replace(self._state, grid=True, grey=bool(self.app.no_color), is_ascii=shows_ascii(self.app))
         if not self.has_focus:
             state = replace(state, selected=None)
         self._text.draw(partial(self._paint, state))
+        self._read(self._pointed_s)
+
+    def _chosen(self) -> Trace | None:
+        """Return the selected trace, or the first one that is shown; None if none is."""
+        drawn = self._traces.drawn()
+        return next((trace for trace in drawn if trace.name == self._state.selected), drawn[0] if drawn else None)
+
+    def _find_bands(self) -> None:
+        """Find the bands of the chosen trace, or of the first one that has several, while nothing is added."""
+        chosen = self._chosen()
+        if chosen is None or not self._is_at_rest:
+            self._spanned = None
+            spans: tuple[Span, ...] = ()
+        else:
+            traces = [chosen, *(trace for trace in self._traces.drawn() if trace is not chosen)]
+            key = [(trace.name, len(trace.times_s)) for trace in traces], self._noise
+            if key == self._spanned:
+                return
+            self._spanned = key
+            found = (spans_of(trace, self._noise) for trace in traces)
+            spans = next((spans for spans in found if len(spans) > 1), spans_of(chosen, self._noise))
+        self._state = replace(self._state, spans=spans)
 
     def _paint(self, state: ChartState, is_blank: bool) -> tuple[list[list[Run]], list[tuple[int, ChartPicture]]]:
         self._picture = self._painter.paint(self._traces, state, *self._text.size, is_blank=is_blank)
@@ -170,11 +205,11 @@ class Chart(LinesPanel, can_focus=True):
             self.post_message(self.CursorMoved(None))
             self._redraw()
 
-    def _put_cursor(self, time_s: float) -> None:
+    def _put_cursor(self, time_s: float, sample: str = "") -> None:
         time_s = min(max(time_s, 0.0), self._traces.end_s())
         if time_s != self._state.cursor_s:
             self._state = replace(self._state, cursor_s=time_s)
-            self.post_message(self.CursorMoved(time_s))
+            self.post_message(self.CursorMoved(time_s, sample))
             self._redraw()
 
     # Mouse
@@ -191,7 +226,7 @@ class Chart(LinesPanel, can_focus=True):
         if picture.time_at(column, row) is not None:
             self._dragging = True
             self.capture_mouse()
-            self._cursor_to(column, picture)
+            self._put_cursor(*self._clicked(self._time_of(column, picture), picture))
 
     def on_mouse_move(self, event: events.MouseMove) -> None:
         picture = self._picture
@@ -199,7 +234,7 @@ class Chart(LinesPanel, can_focus=True):
             return
         column, row = self.cell_at(event)
         if self._dragging:
-            self._cursor_to(column, picture)
+            self._put_cursor(self._time_of(column, picture))
         else:
             self._read(picture.time_at(column, row))
 
@@ -207,11 +242,17 @@ class Chart(LinesPanel, can_focus=True):
         self._read(None)
 
     def _read(self, time_s: float | None) -> None:
-        if time_s is None:
-            self.border_subtitle = self.FROZEN if self._state.x_limits else ""
-            return
-        read = values_at(self._traces.drawn(), time_s, self._state.unit, self.size.width - 4)
-        self.border_subtitle = as_markup("".join(text for text, _ in read))
+        """Show the values below the pointer, or without it those at the cursor."""
+        self._pointed_s = time_s
+        time_s = self._state.cursor_s if time_s is None else time_s
+        drawn = self._traces.drawn()
+        if time_s is None or not drawn:
+            said = self.FROZEN if self._state.x_limits else ""
+        else:
+            said = as_markup(values_at(drawn, time_s, self._state.unit, self.size.width - 4))
+        # Each assignment draws the panel again.
+        if said != self.border_subtitle:
+            self.border_subtitle = said
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
         if self._dragging:
@@ -222,5 +263,18 @@ class Chart(LinesPanel, can_focus=True):
         """Stop dragging: a dialog has captured the mouse."""
         self._dragging = False
 
-    def _cursor_to(self, column: int, picture: ChartPicture) -> None:
-        self._put_cursor(axes.at_column(column - picture.left, picture.x_limits, picture.columns))
+    def _clicked(self, time_s: float, picture: ChartPicture) -> tuple[float, str]:
+        """Return the time and the name of the sample at a time, or nearest to it in its band; else the time only."""
+        span = next((span for span in self._state.spans if span.start <= time_s <= span.stop), None)
+        of_span = (trace for trace in self._traces.drawn() if span is not None and trace.name == span.name)
+        trace = next(of_span, self._chosen())
+        if trace is None or not trace.logged:
+            return time_s, ""
+        low, high = picture.x_limits
+        found_s = trace.nearest_s(time_s)
+        is_here = abs(found_s - time_s) * picture.columns <= high - low
+        return (found_s, trace.name) if is_here or span is not None else (time_s, "")
+
+    @staticmethod
+    def _time_of(column: int, picture: ChartPicture) -> float:
+        return axes.at_column(column - picture.left, picture.x_limits, picture.columns)

@@ -103,11 +103,15 @@ def _further(column: str, value: float, width: int) -> Line:
 
 
 def _side_by_side(now: Snapshot, width: int, height: int) -> list[Line]:
-    """Return the readings in columns: with speeds and colour names if all sensors fit, then as many as there are."""
-    for detail in (2, 1, 0):
+    """Return the readings in columns: with speeds and colour names if all fit, then as many as there are.
+
+    The pose goes before names of colours, speeds go before the pose.
+    """
+    for detail, with_pose in ((2, True), (1, True), (2, False), (1, False), (0, False)):
         columns, sensing = _columns(now, height, detail)
         widths = [max(_length(cell) for cell in column) for column in columns]
-        if sum(widths[:sensing]) + _GAP * (sensing - 1) <= width:
+        needed = widths if with_pose else widths[:sensing]
+        if sum(needed) + _GAP * (len(needed) - 1) <= width:
             break
     lines: list[Line] = [[] for _ in range(height)]
     used = 0

@@ -1,0 +1,64 @@
+"""Bands as spans of a chart."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tuisim.charts.bands import MOST_SAMPLES, SHADES, spans_of
+from tuisim.charts.plot_image import PlotInks, plot_image
+from tuisim.charts.text_chart import ChartPainter, ChartState
+from tuisim.charts.traces import Traces
+
+LEVELS = [100.0] * 20 + [60.0] * 20 + [0.0] * 20
+GROUND, AXIS, WHITE, SHADED = (10, 20, 30), (200, 200, 200), (255, 255, 255), ((40, 50, 60), (30, 40, 50))
+
+
+def chart(values: list[float]) -> tuple[Traces, ChartState]:
+    traces = Traces()
+    traces.append("Colour", (np.arange(len(values)) / 10).tolist(), values)
+    return traces, ChartState(spans=spans_of(next(iter(traces)), 0))
+
+
+def test_each_band_is_named_by_its_level_and_grey() -> None:
+    _, state = chart(LEVELS)
+
+    assert [span.texts for span in state.spans] == [("100 white", "100"), ("60",), ("0 black", "0")]
+    assert [(span.start, span.stop) for span in state.spans] == [(0.0, 1.9), (2.0, 3.9), (4.0, 5.9)]
+
+
+def test_a_name_is_rounded_where_there_is_little_room() -> None:
+    (span,) = chart([86.2745] * 20)[1].spans
+    assert span.texts == ("86.27 pale grey", "86.27", "86.3", "86")
+
+
+def test_too_many_samples_are_left_to_the_analyser() -> None:
+    assert not chart([1.0] * (MOST_SAMPLES + 1))[1].spans
+
+
+@pytest.mark.parametrize(("width", "name"), [(80, "100 white"), (30, "100"), (12, "")])
+def test_a_band_in_cells_is_shaded_and_named_where_nothing_is_drawn(width: int, name: str) -> None:
+    traces, state = chart(LEVELS)
+    picture = ChartPainter().paint(traces, state, width, 12)
+    rows = picture.lines[picture.top : picture.top + picture.rows]
+
+    texts = ["".join(text for text, _ in row)[picture.left :] for row in rows]
+    assert {sum(map(len, (text for text, _ in row))) for row in rows} == {width}
+    assert name in texts[-1]
+    # The last band is along the lowest row.
+    assert "black" not in texts[-1]
+    shades = {style.bgcolor for row in rows for _, style in row if style.bgcolor}
+    assert shades == {shade.bgcolor for shade in SHADES}
+
+
+def test_a_band_in_pixels_is_shaded_and_named_where_nothing_is_drawn() -> None:
+    traces, state = chart(LEVELS)
+    plot = ChartPainter().paint(traces, state, 80, 12, is_blank=True).plot
+    assert plot is not None
+    image = plot_image(plot, (8, 16), PlotInks(GROUND, AXIS, WHITE, SHADED))
+
+    first, second, third = np.array_split(image[:, 8 : 8 + plot.columns * 8], 3, axis=1)
+    assert [bool((part == rgb).all(axis=2).any()) for part in (first, second) for rgb in SHADED] == [1, 0, 0, 1]
+    lowest = slice((plot.rows - 1) * 16, plot.rows * 16 - 2)
+    named = [bool((part[lowest, 20:-20] == AXIS).all(axis=2).any()) for part in (first, third)]
+    assert named == [True, False]

@@ -1,0 +1,90 @@
+"""The bands of a variable as spans of a chart: computed from its samples, and drawn in cells."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.style import Style
+
+from tuisim import palette
+from tuisim.charts import axes
+from tuisim.charts.axes import Limits
+from tuisim.charts.layout import Span
+from tuisim.charts.traces import Trace
+from tuisim.logs.levels import levels_of
+from tuisim.terminal.text_runs import Run
+
+MOST_SAMPLES = 4000
+"""Bands of more samples take too long to find for a chart that is on the screen: the analyser finds them."""
+SHADES = Style(bgcolor=palette.HERE), Style(bgcolor=palette.FIELD)
+"""In turns, so that bands without an edge between them stay apart."""
+_NAME = Style(color=palette.SOFT)
+FREE = " ┈"
+"""What a name may be written over."""
+
+
+def band_span(name: str, start: float, stop: float, level: float, grey: str) -> Span:
+    """Return the span of a band, named by its level and its grey."""
+    levels = (f"{level:.4g}", f"{level:.3g}", f"{level:.0f}")
+    return Span(start, stop, tuple(dict.fromkeys((f"{levels[0]} {grey}".rstrip(), *levels))), name)
+
+
+def spans_of(trace: Trace, noise: int) -> tuple[Span, ...]:
+    """Return the bands of a trace, none if it has more than `MOST_SAMPLES`.
+
+    Args:
+        trace: A variable over time.
+        noise: Light noise of the run, 0 to 128.
+    """
+    if len(trace.times_s) > MOST_SAMPLES:
+        return ()
+    found = levels_of(trace.values, noise)
+    ends = trace.times_s[found.start].tolist(), trace.times_s[found.stop - 1].tolist()
+    names = [grey.name if grey and not trace.scale else "" for grey in found.greys]
+    rows = zip(*ends, found.true_level.tolist(), names, strict=True)
+    return tuple(band_span(trace.name, start_s, stop_s, level, name) for start_s, stop_s, level, name in rows)
+
+
+def columns_of(span: Span, x_limits: Limits, columns: int) -> range:
+    """Return the columns of a canvas that a span covers."""
+    first, last = (axes.column_of(x, x_limits, columns) for x in (span.start, span.stop))
+    return range(max(first, 0), min(last + 1, columns))
+
+
+def shaded(rows: Sequence[list[Run]], spans: Sequence[Span], x_limits: Limits, columns: int) -> list[list[Run]]:
+    """Return the rows of a canvas with shaded spans, each with its name in the lowest place where nothing is drawn."""
+    texts = ["".join(text for text, _ in row) for row in rows]
+    places = [columns_of(span, x_limits, columns) for span in spans]
+    made = list(rows)
+    for span, place in zip(spans, places, strict=True):
+        name = next((text for text in span.texts if len(text) < len(place)), "")
+        first = place.start + (len(place) - len(name) + 1) // 2
+        stop = first + len(name)
+        free = (at for at in reversed(range(len(rows))) if not texts[at][first:stop].strip(FREE))
+        if name and (at := next(free, None)) is not None:
+            made[at] = [*_cut(made[at], 0, first), (name, _NAME), *_cut(made[at], stop, columns)]
+    return [_shaded(row, places, columns) for row in made]
+
+
+def _cut(row: list[Run], start: int, stop: int) -> list[Run]:
+    """Return the pieces of a row between two columns."""
+    made, at = [], 0
+    for text, style in row:
+        part = text[max(start - at, 0) : max(stop - at, 0)]
+        if part:
+            made.append((part, style))
+        at += len(text)
+    return made
+
+
+def _shaded(row: list[Run], places: Sequence[range], columns: int) -> list[Run]:
+    made: list[Run] = []
+    done = 0
+    for number, place in enumerate(places):
+        start = max(place.start, done)
+        made += _cut(row, done, start)
+        made += [
+            (text, style + SHADES[number % len(SHADES)]) for text, style in _cut(row, start, max(place.stop, start))
+        ]
+        done = max(place.stop, start)
+    return made + _cut(row, done, columns)

@@ -1,0 +1,121 @@
+"""The levels of samples: plateaus, the true value of each without the clamping of noise, and the name of its grey."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from types import MappingProxyType
+
+import numpy as np
+
+from tuisim.core.css_colors import css_names
+from tuisim.data_class import dataclass
+from tuisim.logs.plateaus import FIELDS, Search, plateaus
+from tuisim.runs.arrays import FloatArray, IntArray
+
+NEAR_PERCENT = 2.0
+"""Largest distance from a named grey."""
+
+FULL = 255.0
+
+_PLAIN_NAMES = MappingProxyType({0: "black", 128: "grey", 255: "white", 211: "light grey", 220: "pale grey",
+                                 169: "dark grey", 105: "dim grey", 192: "silver"})  # fmt: skip
+"""Common names by channel value; the others are those of CSS."""
+
+
+@dataclass(frozen=True, slots=True)
+class Grey:
+    """A grey with a name."""
+
+    name: str
+    percent: float
+    """100 is white."""
+
+
+@cache
+def greys() -> Mapping[int, Grey]:
+    """Return the named greys by channel value, 0 to 255."""
+    found = {red: name for name, (red, green, blue) in css_names().items() if red == green == blue}
+    found |= _PLAIN_NAMES
+    return {value: Grey(name, 100.0 * value / FULL) for value, name in sorted(found.items())}
+
+
+def nearest_greys(percents: FloatArray) -> list[Grey | None]:
+    """Return the grey nearest to each level of 0 to 100 %, None if none is within NEAR_PERCENT."""
+    named = list(greys().values())
+    nearest = np.zeros(len(percents), np.int64)
+    least = np.full(len(percents), np.inf)
+    for at, grey in enumerate(named):
+        apart = np.abs(grey.percent - percents)
+        nearest[apart < least] = at
+        least = np.minimum(least, apart)
+    nearest[least > NEAR_PERCENT] = -1
+    return [None if at < 0 else named[at] for at in nearest.tolist()]
+
+
+def without_clamping(percents: FloatArray, noise: int) -> FloatArray:
+    """Return the true levels from the means of noisy pixels.
+
+    Noise is uniform within ±`noise`, and values outside 0 to 255 are clamped, so that
+    near both ends the mean is too far inside. The mean of a pixel of value 255 - u, u
+    below the noise, is 255 - (noise + u)² / (4 noise).
+
+    Args:
+        percents: Mean levels, 0 to 100.
+        noise: Light noise of the run, 0 to 128.
+    """
+    if not noise:
+        return percents
+    values = percents * FULL / 100.0
+    return 100.0 * _unclamped(FULL - _unclamped(FULL - values, noise), noise) / FULL
+
+
+def _unclamped(below: FloatArray, noise: int) -> FloatArray:
+    """Undo the clamping at one end; `below` are the distances from it."""
+    undone = np.maximum(0.0, 2.0 * np.sqrt(noise * np.maximum(below, 0.0)) - noise)
+    return np.where(below >= noise, below, undone)
+
+
+def light_scale(values: FloatArray) -> float:
+    """Return the factor from light readings to percent: 1 for 0 to 100, 100/255 for 0 to 255; 0 for other values."""
+    finite = values[np.isfinite(values)]
+    if not len(finite) or finite.min() < 0.0 or finite.max() > 255.0:
+        return 0.0
+    return 1.0 if finite.max() <= 100.0 else 100.0 / 255.0
+
+
+@dataclass(frozen=True, eq=False)
+class Levels:
+    """The plateaus of the samples of one variable."""
+
+    start: IntArray
+    """Shape (n,): first sample of each."""
+    stop: IntArray
+    """Shape (n,): the sample after its last one."""
+    level: FloatArray
+    """Shape (n,): mean without strays."""
+    true_level: FloatArray
+    """Shape (n,): the level, corrected for clamped noise near the ends of the scale."""
+    spread: FloatArray
+    strays: IntArray
+    greys: tuple[Grey | None, ...]
+    """The nearest grey of each; None if there is none, or if the samples are not light levels."""
+
+
+def levels_of(values: FloatArray, noise: int, search: Search = plateaus) -> Levels:
+    """Return the plateaus of samples, which `search` finds.
+
+    Args:
+        values: Shape (n,).
+        noise: Light noise of the run, 0 to 128.
+        search: Finds them.
+    """
+    found = np.array(search(values), FIELDS)
+    level, scale = found["level"], light_scale(values)
+    true_level = level
+    greys_near: list[Grey | None] = [None] * len(found)
+    if scale:
+        percents = without_clamping(level * scale, noise)
+        true_level = percents / scale if noise else level
+        greys_near = nearest_greys(percents)
+    return Levels(found["start"], found["stop"], level, true_level, found["spread"], found["strays"], tuple(greys_near))
