@@ -170,6 +170,8 @@ async def _frames(target: Target) -> None:
         '["stdin", ' + '"x' * 10,
         '["resize", {"width": 1e999}]',
         '["' + "a" * 99_999 + '"]',
+        '["act", ["run"]]',
+        '["act", "' + "a" * 99_999 + '"]',
     ):
         # The server may end the connection before it has all.
         with suppress(ClientError, ConnectionError):

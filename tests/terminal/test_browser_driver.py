@@ -5,14 +5,21 @@ from __future__ import annotations
 import os
 from concurrent.futures import ThreadPoolExecutor
 from threading import Lock
+from types import SimpleNamespace
 
 import pytest
+from textual import events
 from textual.driver import Driver
+from textual.drivers.web_driver import WebDriver
+from textual.message import Message
 
 from tuisim.app.terminal_app import TerminalApp
+from tuisim.terminal import kitty
+from tuisim.terminal.app import ActionAsked
 from tuisim.terminal.browser_driver import BrowserDriver
 from tuisim.terminal.driver import TerminalDriver
 from tuisim.terminal.probe import WEB_DRIVER
+from tuisim.terminal.queries import AnswerParser
 
 CHOSEN = {
     "a server": (WEB_DRIVER, BrowserDriver),
@@ -65,3 +72,43 @@ def test_packets_of_two_threads_are_not_mixed(driver: BrowserDriver) -> None:
         seen = reader.read(2 * size)
     os.close(driver.fileno)
     assert seen in (b"a" * size + b"b" * size, b"b" * size + b"a" * size)
+
+
+CODES = {
+    "text": ("a [8m\x1b[1mé", "a [8m\x1b[1mé"),
+    "a command of kitty": (f"a{kitty.delete(7)}b", "a\x1b]7766;Ga=d,d=I,q=2,i=7\x1b\\b"),
+    "placeholders": (
+        f"\x1b[38;5;7m{kitty.placeholder(0, 1)}{kitty.placeholder(1, 1)}a",
+        f"\x1b[38;5;7m\x1b[8m{kitty.placeholder(0, 1)}{kitty.placeholder(1, 1)}\x1b[28ma",
+    ),
+}
+
+
+@pytest.mark.parametrize(("codes", "expected"), CODES.values(), ids=CODES)
+def test_the_page_gets_what_its_terminal_passes_on(
+    codes: str, expected: str, driver: BrowserDriver, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[bytes] = []
+    monkeypatch.setattr(driver, "_write", written.append, raising=False)
+    driver.write(codes)
+    assert [packet[5:].decode() for packet in written] == [expected]
+
+
+def test_a_button_of_the_page_asks_the_app(driver: BrowserDriver) -> None:
+    asked: list[object] = []
+    driver._app = SimpleNamespace(post_message=asked.append)  # type: ignore[assignment]
+    driver.on_meta("act", {"type": "act", "name": "run"})
+    assert [message.name for message in asked if isinstance(message, ActionAsked)] == ["run"]
+
+
+def test_the_page_tells_where_the_mouse_is_between_two_cells(
+    driver: BrowserDriver, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: list[Message] = []
+    monkeypatch.setattr(WebDriver, "process_message", lambda _, message: seen.append(message))
+    for message in AnswerParser().feed("\x1b[48;40;100;800;1000t\x1b[<0;26;51M"):
+        driver.process_message(message)
+    assert [(type(one), one.pointer_x, one.pointer_y) for one in seen if isinstance(one, events.MouseEvent)] == [
+        (events.MouseDown, 2.5, 2.5)
+    ]
+    assert not [one for one in seen if isinstance(one, events.Resize)]

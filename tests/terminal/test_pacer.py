@@ -7,7 +7,7 @@ from math import inf
 
 import pytest
 
-from tuisim.terminal.pacer import MAX_ON_THE_WAY, PATIENCE_S, PROOF_S, Pacer
+from tuisim.terminal.pacer import MAX_ON_THE_WAY, PAGE_QUEUED_S, PATIENCE_S, PROOF_S, Pacer
 
 TICK_S = 0.005
 FRAME_BYTES = 1_000
@@ -29,9 +29,9 @@ class Line:
         round_trip_s: There and back.
     """
 
-    def __init__(self, bytes_s: float = inf, round_trip_s: float = 0.002) -> None:
+    def __init__(self, bytes_s: float = inf, round_trip_s: float = 0.002, most_queued_s: float | None = None) -> None:
         self.clock = Clock()
-        self.pacer = Pacer(20, clock=self.clock)
+        self.pacer = Pacer(20, clock=self.clock, most_queued_s=most_queued_s)
         self.bytes_s, self.round_trip_s = bytes_s, round_trip_s
         self.answers = True
         self._free_s = 0.0
@@ -138,6 +138,19 @@ def test_a_lost_question_holds_it_up_but_once() -> None:
     assert 19 <= line.drive(1.0) <= 21
 
 
+def test_questions_to_a_page_that_is_gone_are_no_slow_link() -> None:
+    line = Line(most_queued_s=PAGE_QUEUED_S)
+    line.drive(1.0)
+    line.answers = False
+    line.drive(0.2)
+    line.pacer.shown_elsewhere()
+    line.clock.now_s += 5.0
+    line.answers = True
+
+    assert line.drive(1.0) > 15
+    assert not line.pacer.is_slow
+
+
 def test_what_is_no_frame_is_asked_about_only_if_it_is_large() -> None:
     pacer = Pacer(20, clock=Clock())
 
@@ -165,6 +178,8 @@ def test_an_answer_to_nothing_is_ignored() -> None:
         pytest.param(Line(1e6, 0.150), False, id="quick but far"),
         pytest.param(Line(10_000), True, id="a frame takes 0.1 s"),
         pytest.param(Line(6_000, 0.150), True, id="slow and far"),
+        pytest.param(Line(10_000, most_queued_s=PAGE_QUEUED_S), False, id="a page that is busy"),
+        pytest.param(Line(1_500, most_queued_s=PAGE_QUEUED_S), True, id="a page on a slow link"),
     ],
 )
 def test_fine_frames_are_for_quick_links(line: Line, slow: bool) -> None:

@@ -28,6 +28,7 @@ GHOSTTY_NO = "\x1bP>|ghostty 1.0.0\x1b\\\x1b[6;40;20t\x1b[?62;22c\x1b_Gi=31;ENOT
 ITERM = "\x1bP>|iTerm2 3.5.4\x1b\\\x1b[6;17;8t\x1b[?64;1;2;4;6;17;18;21;22c"
 WEZTERM = "\x1bP>|WezTerm 20240203-110809-5046fc22\x1b\\\x1b[6;16;8t\x1b[?65;4;6;18;22c"
 TMUX = "\x1bP>|tmux 3.5a\x1b\\\x1b[?1;2;4c"
+PAGE = "\x1bP>|tuisim 1\x1b\\\x1b[6;42;19t\x1b[?1;2c"
 PLAIN = "\x1b[?1;2c"
 
 
@@ -69,6 +70,7 @@ CHOICES = {
     "kitty that cannot show a picture": (KITTY + KITTY_YES + KITTY_ERROR, None),
     "kitty that could show the next picture": (KITTY + KITTY_YES + KITTY_ERROR + KITTY_YES, None),
     "kitty after it was resized": (KITTY + KITTY_YES + KITTY, Graphics(Protocol.KITTY, (10, 20))),
+    "a page": (PAGE + KITTY_YES, Graphics(Protocol.KITTY, (19, 42), most_points=32)),
     "no graphics": (GHOSTTY_NO, None),
     "iTerm2": (ITERM, Graphics(Protocol.ITERM, (8, 17))),
     "WezTerm": (WEZTERM, Graphics(Protocol.ITERM, (8, 16))),

@@ -183,6 +183,8 @@ async def test_a_wrong_request_leaves_no_trace_in_the_terminal(
 VISITS = {
     "the page": ("", "text/html"),
     "its script": ("page/page.js", "javascript"),
+    "what draws pictures": ("page/pictures.js", "javascript"),
+    "what fingers do": ("page/fingers.js", "javascript"),
     "its style": ("page/page.css", "text/css"),
     "the terminal": ("static/js/textual.js", "javascript"),
     "the terminal's style": ("static/css/xterm.css", "text/css"),
@@ -248,6 +250,7 @@ MESSAGES: dict[str, tuple[str, str]] = {
     "an enormous size": ('["resize", {"width": 0, "height": 99999}]', '{"type": "resize", "width": 1, "height": 1000}'),
     "focus": ('["focus"]', '{"type": "focus"}'),
     "no focus": ('["blur"]', '{"type": "blur"}'),
+    "a button": ('["act", "run"]', '{"type": "act", "name": "run"}'),
     "a ping": ('["ping", "5"]', '["pong", "5"]'),
     "no JSON": ("[[", '{"type": "blur"}'),
     "deep JSON": ("[" * 100_000, '{"type": "blur"}'),

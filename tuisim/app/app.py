@@ -8,9 +8,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from textual import events
+from textual import events, on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
+from textual.driver import Driver
 from textual.timer import Timer
 from textual.widget import Widget
 from textual.widgets import Input
@@ -49,9 +50,10 @@ from tuisim.runs.child.process import warm_up
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.source import Program
-from tuisim.terminal.pacer import Pacer
+from tuisim.terminal.pacer import PAGE_QUEUED_S, Pacer
 from tuisim.terminal.picture_mode import PictureMode
 from tuisim.terminal.picture_options import AUTO
+from tuisim.terminal.probe import in_browser
 from tuisim.terminal.textual_internals import is_leaving
 
 if TYPE_CHECKING:
@@ -147,7 +149,7 @@ class LabApp(PanelMessages):
         self.run_controller = RunController(settings.program, first, settings.speed)
         self.panel_area = PanelArea(settings.panels_on, settings.panels_off)
         self.key_footer = KeyFooter()
-        self.pacer = Pacer(settings.fps)
+        self.pacer = Pacer(settings.fps, most_queued_s=PAGE_QUEUED_S if in_browser() else None)
         self.picture_mode.is_slow, self.picture_mode.is_idle = lambda: self.pacer.is_slow, lambda: self.pacer.is_idle
         self.voice = Voice(settings.quiet)
         self.feed = PanelFeed(self.panel_area, self.run_controller)
@@ -452,6 +454,11 @@ class LabApp(PanelMessages):
 
     def on_cursor_position(self, event: events.CursorPosition) -> None:
         self.pacer.answered()
+
+    @on(Driver.SignalResume)
+    def pace_again(self) -> None:
+        """Wait for no answers of a terminal that was away, or of another page."""
+        self.pacer.shown_elsewhere()
 
     def situation_changed(self) -> None:
         """Update the footer; together with the world once it stands still, or it would be said to before it does."""

@@ -24,7 +24,7 @@ from tuisim.charts.traces import TRACE_COLORS
 from tuisim.config.files import Scalar
 from tuisim.config.user_config import CELL_SET, SETTINGS, THEME, load_config
 from tuisim.errors import ConfigError, TuisimError
-from tuisim.terminal.app import BufferedApp, offer
+from tuisim.terminal.app import ActionAsked, BufferedApp, offer
 from tuisim.terminal.cells import PALETTE_256
 from tuisim.terminal.picture_mode import PictureMode, choose_colors, color_depth, picture_mode_for
 from tuisim.terminal.picture_options import NO_PIXELS
@@ -228,6 +228,15 @@ class TerminalApp(BufferedApp):
             raise TuisimError(f"{command[0]} cannot start: {error.strerror or error}") from None
         if not is_lent:
             raise TuisimError(f"{command[0]} needs a terminal, and here is none to give it, as in a browser")
+
+    @on(ActionAsked)
+    def act_as_asked(self, event: ActionAsked) -> None:
+        """Do what a button of the page asks for, also while the user types; a dialog comes first."""
+        host = self.screen if isinstance(self.screen, ActionHost) else self
+        if isinstance(self.screen, (Dialog, Palette)):
+            self.notify("A dialog is open: escape closes it", markup=False)
+        elif isinstance(host, ActionHost) and event.name in host.ACTIONS:
+            host.action_act(event.name)
 
     def action_command_palette(self) -> None:
         """Offer every action of the screen, else of the app; not above a dialog, which its dialogs would cover."""

@@ -19,6 +19,7 @@ from textual.color import Color
 from textual.css.query import NoMatches
 from textual.driver import Driver
 from textual.filter import LineFilter
+from textual.message import Message
 from textual.screen import Screen
 from textual.widget import WidgetError
 from textual.worker import WorkerFailed
@@ -67,6 +68,14 @@ def offer(app: App[Any], *files: Path) -> None:
     if app.is_web:
         for file in files:
             app.deliver_binary(file)
+
+
+class ActionAsked(Message):
+    """A button of the page that shows the app asks for an action."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__()
+        self.name = name
 
 
 class BufferedApp(HookedApp):

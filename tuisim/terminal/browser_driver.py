@@ -9,9 +9,13 @@ from typing import Any
 from textual import events, messages
 from textual.app import App
 from textual.drivers.web_driver import WebDriver
+from textual.message import Message
 
+from tuisim.terminal import kitty
+from tuisim.terminal.app import ActionAsked
+from tuisim.terminal.queries import QUESTIONS, AnswerParser
 from tuisim.terminal.server_asks import ServerAsks
-from tuisim.terminal.textual_internals import app_of, write_with
+from tuisim.terminal.textual_internals import app_of, parse_page_input_with, write_with
 
 _MODES = "\x1b[?1049h\x1b[?25l\x1b[?1000h\x1b[?1003h\x1b[?1015h\x1b[?1006h\x1b[?2004h"
 """What an app sets in a terminal: the screen of an app without a cursor, reports of the mouse and of pastes."""
@@ -42,6 +46,21 @@ class BrowserDriver(WebDriver):
                     self._server_is_gone = True
         return len(data)
 
+    def start_application_mode(self) -> None:
+        """Take the page over, and ask what it can do."""
+        super().start_application_mode()
+        self.write(QUESTIONS)
+
+    def write(self, data: str) -> None:
+        """Write to the page's terminal."""
+        super().write(kitty.for_page(data))
+
+    def process_message(self, message: Message) -> None:
+        """Pass on what the page sends, but not a size in pixels, which is for the places of the mouse: the server tells
+        the size of the app."""
+        if not isinstance(message, events.Resize):
+            super().process_message(message)
+
     def run_input_thread(self) -> None:
         """Pass on input until the app ends, or end it because the server has ended."""
         super().run_input_thread()
@@ -62,9 +81,14 @@ class BrowserDriver(WebDriver):
                 app_of(self).call_later(super().on_meta, packet_type, payload)
             case "show":
                 self.on_meta("resize", payload)
-                self.write(_MODES)
+                self.write(_MODES + QUESTIONS)
                 app_of(self).call_later(app_of(self).post_message, self.SignalResume())
+            case "act":
+                app_of(self).post_message(ActionAsked(str(payload["name"])))
             case "ask":
                 app_of(self).post_message(ServerAsks(payload))
             case _:
                 super().on_meta(packet_type, payload)
+
+
+parse_page_input_with(AnswerParser)

@@ -7,6 +7,7 @@ Reference: https://sw.kovidgoyal.net/kitty/graphics-protocol/#unicode-placeholde
 
 from __future__ import annotations
 
+import re
 import zlib
 from base64 import b64encode
 from collections.abc import Mapping
@@ -16,8 +17,11 @@ if TYPE_CHECKING:
     from tuisim.terminal.pixels import Pixels
 
 
+PAGE = "tuisim"
+"""The name that the page of a browser answers."""
 TERMINALS: Mapping[str, str] = {
     "kitty": "https://sw.kovidgoyal.net/kitty/graphics-protocol/#unicode-placeholders (since 0.28)",
+    PAGE: "tuisim/web/page/pictures.js: the page of a browser, see `for_page`",
     "ghostty": "https://ghostty.org/docs/features (kitty graphics protocol with Unicode placeholders)",
 }
 """Terminals that have placeholders, by name, and where that is written."""
@@ -35,6 +39,9 @@ A terminal without placeholders ignores the whole command, as kitty 0.26 does, a
 _CHUNK = 4096
 """Most characters of data in one command."""
 _COMPRESSION = 1
+_PAGE_COMMAND = 7766
+"""Number of the operating system command that brings a command to a page."""
+_PLACEHOLDERS = re.compile(f"(?:{PLACEHOLDER}..)+")
 
 
 def encode(picture: Pixels, image: int, cols: int, rows: int, *, answers_errors: bool = True) -> str:
@@ -71,6 +78,14 @@ def delete(image: int) -> str:
 def placeholder(col: int, row: int) -> str:
     """Return the text of a cell that shows a part of an image; its foreground colour is the number of the image."""
     return PLACEHOLDER + DIACRITICS[row] + DIACRITICS[col]
+
+
+def for_page(codes: str) -> str:
+    """Return codes as a page of a browser takes them.
+
+    Its terminal, xterm.js, ignores commands of this kind, and would draw a placeholder as a character.
+    """
+    return _PLACEHOLDERS.sub("\x1b[8m\\g<0>\x1b[28m", codes.replace("\x1b_G", f"\x1b]{_PAGE_COMMAND};G"))
 
 
 def through_tmux(codes: str) -> str:

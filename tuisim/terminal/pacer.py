@@ -59,6 +59,8 @@ PROOF_S = 10.0
 """
 UNPROVEN_GAP_S = 0.5
 """Time between two frames until the terminal has first answered."""
+PAGE_QUEUED_S = 0.5
+"""A page answers late because it is busy drawing, and glyphs are no less work for it than pixels."""
 MAX_ON_THE_WAY = 3
 _REMEMBERED = 8
 """Most unanswered queries that are remembered."""
@@ -80,10 +82,18 @@ class Pacer:
         fps: Maximum frames per second.
         asks: Whether to query the terminal at all.
         clock: A monotonic clock in seconds.
+        most_queued_s: The link counts as slow when a frame queues longer; the time between two frames if not given.
     """
 
-    def __init__(self, fps: int, asks: bool = True, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self,
+        fps: int,
+        asks: bool = True,
+        clock: Callable[[], float] = time.monotonic,
+        most_queued_s: float | None = None,
+    ) -> None:
         self._gap_s = 1.0 / fps
+        self._most_queued_s = self._gap_s if most_queued_s is None else most_queued_s
         self.asks = asks
         self._clock = clock
         self._asked: deque[tuple[float, int]] = deque(maxlen=_REMEMBERED)
@@ -156,6 +166,11 @@ class Pacer:
         self._loose_bytes = 0
         return True
 
+    def shown_elsewhere(self) -> None:
+        """Note that what was sent is not answered any more: another program, or page, had the terminal."""
+        self._asked.clear()
+        self._queued_s = None
+
     def answered(self) -> None:
         """Note an answer of the terminal."""
         self._heard_s = self._clock()
@@ -166,7 +181,7 @@ class Pacer:
         # Falls at once, rises slowly: a backlog must not be taken for latency.
         self._round_trip_s = took_s if first else min(took_s, self._round_trip_s + 0.001)
         queued_s = took_s - self._round_trip_s
-        if queued_s > self._gap_s:
+        if queued_s > self._most_queued_s:
             self._has_queued(self._heard_s)
         if queued_s > 2 * self._gap_s:
             self._allowed = 1

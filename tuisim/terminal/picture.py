@@ -17,6 +17,9 @@ from tuisim.terminal.cells import TRUECOLOR, CellRun, color_codes, runs_of
 from tuisim.terminal.picture_options import Protocol
 from tuisim.terminal.pixels import Pixels, packed_rgb
 
+MOST_POINTS, MOST_PAGE_POINTS = 12, 32
+"""Most points of a picture across a cell: in a terminal, and in a page, which shows each pixel of a fine screen."""
+
 
 @dataclass(frozen=True, slots=True)
 class Graphics:
@@ -27,11 +30,13 @@ class Graphics:
     """Width and height of a cell."""
     in_tmux: bool = False
     """Whether tmux has to pass codes on."""
+    most_points: int = MOST_POINTS
+    """Most points of a picture across a cell."""
 
     @property
     def scale(self) -> int:
         """How many pixels of the terminal, across and down, are one point of a picture: more would take too long."""
-        return max(1, -(-self.cell_px[0] // MOST_POINTS))
+        return max(1, -(-self.cell_px[0] // self.most_points))
 
     @property
     def cell_points(self) -> tuple[int, int]:
@@ -41,10 +46,6 @@ class Graphics:
             # It cannot be scaled by the terminal.
             return width_px, height_px
         return max(width_px // self.scale, 1), max(height_px // self.scale, 1)
-
-
-MOST_POINTS = 12
-"""Most points of a picture across a cell."""
 
 
 class PictureCell(NamedTuple):

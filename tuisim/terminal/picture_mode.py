@@ -16,7 +16,7 @@ from textual.widget import Widget
 
 from tuisim.terminal import kitty
 from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR
-from tuisim.terminal.picture import Graphics
+from tuisim.terminal.picture import MOST_PAGE_POINTS, MOST_POINTS, Graphics
 from tuisim.terminal.picture_options import AUTO, NO_PIXELS, CellSet, Protocol
 from tuisim.terminal.pixels import Rgb
 from tuisim.terminal.probe import best_cells, colors_without_asking, in_browser
@@ -154,7 +154,8 @@ def graphics_of(facts: TerminalFacts, wanted: str, cell_px: tuple[int, int] | No
     known_px = facts.cell_px or cell_px
     if protocol is None or (protocol is Protocol.SIXEL and wanted == AUTO and known_px is None):
         return None
-    return Graphics(protocol, known_px or DEFAULT_CELL_PX, in_tmux=facts.program == TMUX)
+    most_points = MOST_PAGE_POINTS if facts.program == kitty.PAGE else MOST_POINTS
+    return Graphics(protocol, known_px or DEFAULT_CELL_PX, facts.program == TMUX, most_points)
 
 
 def _protocol_of(facts: TerminalFacts) -> Protocol | None:

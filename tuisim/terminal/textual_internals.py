@@ -381,6 +381,14 @@ def parse_input_with(parser: type[XTermParser], decoder: Callable[[], Any]) -> N
         linux_driver.getincrementaldecoder = lambda _: decoder  # type: ignore[attr-defined, assignment]
 
 
+def parse_page_input_with(parser: type[XTermParser]) -> None:
+    """Let Textual's driver for browsers, which makes its parser itself, make this one."""
+    # Most apps run in a terminal.
+    from textual.drivers import web_driver
+
+    web_driver.XTermParser = parser  # type: ignore[attr-defined]
+
+
 _click, _move_page = getattr(OptionList, "_on_click", None), getattr(OptionList, "_move_page", None)
 
 

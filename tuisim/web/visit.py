@@ -202,6 +202,9 @@ class Visit:
                     await self._session.set_terminal_size(*_within(width, height))
                 case ["ping", str(sent)]:
                     await self._link.send_str(json.dumps(["pong", sent]))
+                case ["act", str(name)]:
+                    self._activity.note()
+                    await self._session.send_meta({"type": "act", "name": name})
                 case ["focus"]:
                     await self._session.focus()
                 case ["blur"]:

@@ -14,10 +14,27 @@ window.open = (url, ...more) => {
   link.click();
 };
 
+// Functions that get the terminal as soon as there is one.
+const terminalUsers = [];
+
+// textual.js keeps its terminal to itself: it is the first that is set under this name.
+Object.defineProperty(Object.prototype, "terminal", {
+  configurable: true,
+  set(terminal) {
+    delete Object.prototype.terminal;
+    this.terminal = terminal;
+    for (const use of terminalUsers) use(terminal);
+  },
+});
+
+let socket = null;
+const say = (...words) => socket?.send(JSON.stringify(words));
+
 const Socket = window.WebSocket;
 window.WebSocket = class extends Socket {
   constructor(url) {
     super(session.address(url));
+    socket = this;
     const focus = () => session.framed || document.querySelector(".xterm-helper-textarea").focus();
     this.addEventListener("message", focus, { once: true });
     this.addEventListener("message", (event) => session.heard(event.data));

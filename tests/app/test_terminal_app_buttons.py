@@ -1,0 +1,37 @@
+"""Buttons of the page that shows the app."""
+
+from __future__ import annotations
+
+from tests.app.app_help import ENDLESS, notices, ready, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.snapshot import IN_RUN
+from tuisim.terminal.app import ActionAsked
+
+
+async def test_a_button_of_the_page_acts_also_while_the_user_types() -> None:
+    async with LabApp(settings(ENDLESS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("d")
+        await until(pilot, lambda: app.is_typed_into)
+        app.post_message(ActionAsked("run"))
+        await until(pilot, lambda: app.run_controller.state in IN_RUN)
+        app.post_message(ActionAsked("stop"))
+        await until(pilot, lambda: app.run_controller.state not in IN_RUN)
+
+
+async def test_a_button_of_the_page_leaves_a_dialog_alone() -> None:
+    async with LabApp(settings(ENDLESS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("b")
+        await until(pilot, lambda: len(app.screen_stack) == 2)
+        app.post_message(ActionAsked("run"))
+        await until(pilot, lambda: "A dialog is open: escape closes it" in notices(app))
+        assert app.run_controller.state not in IN_RUN
+
+
+async def test_an_action_that_no_page_has_is_ignored() -> None:
+    async with LabApp(settings(ENDLESS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        app.post_message(ActionAsked("__init__"))
+        app.post_message(ActionAsked("panel-chart"))
+        await until(pilot, lambda: app.panel_area.shown("chart"))
