@@ -12,9 +12,11 @@ from tuisim.config.options import APP, OPTIONS, Option
 from tuisim.config.program_file import ProgramSource, find_program, program_of_text, read_program
 from tuisim.config.program_settings import ProgramSettings, program_settings
 from tuisim.config.worlds import load_world
+from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest
 from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S, RunOptions, start_run
+from tuisim.runs.presses import press_actions
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
@@ -240,8 +242,12 @@ def experiment(
     if chosen:
         varied[SEED] = chosen
     options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers) or (task.answers if task else ()))
+
+    def options_of(spec: RunSpec) -> RunOptions:
+        return replace(options, actions=press_actions(task.presses if task else (), spec.profile.tick_hz))
+
     judged = task.goals if task else ()
-    plan = Plan(tuple(subjects), varied, Path("parameters"), judged, Keep(keep), lambda _: options)
+    plan = Plan(tuple(subjects), varied, Path("parameters"), judged, Keep(keep), options_of)
     check_expressions(expressions or {}, plan.names, (goal.name for goal in judged))
     rows: dict[int, Row] = {}
     run_plan(plan, rows, workers=Workers(jobs))

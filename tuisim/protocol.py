@@ -10,6 +10,7 @@ from dataclasses import asdict
 from enum import StrEnum
 from typing import Any, ClassVar
 
+from tuisim.core.spec import BUTTONS
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 
@@ -355,10 +356,6 @@ class UserAction:
         """
         fields = {name: value for name, value in row.items() if name not in ("tick", "kind")}
         return cls(int(row["tick"]), COMMANDS[row["kind"]](**fields))
-
-
-BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
-"""The brick's buttons, by their names in the library."""
 
 
 # Events: child to host.

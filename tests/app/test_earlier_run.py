@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from textual.pilot import Pilot
+from textual.widgets import OptionList
 
 from tests.app.app_help import notices, program, ready, settings, until
+from tests.app.lesson_help import opened, run_over
 from tests.runs.test_recorded_run import stored
 from tuisim.app.app import LabApp
+from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.earlier_run import is_comparable
 from tuisim.app.snapshot import RunPhase
 from tuisim.core.geometry import Pose
@@ -71,3 +76,18 @@ def test_a_run_on_another_mat_is_not_comparable() -> None:
     bands, shapes = (Recording(stored(STRAIGHT, {"background": mat})) for mat in ("Grey_bands", "Two_shapes"))
     assert is_comparable(bands, bands)
     assert not is_comparable(shapes, bands)
+
+
+@pytest.mark.slow
+async def test_the_model_answer_of_a_lesson_drives_along(tmp_path: Path) -> None:
+    async with LabApp(opened(tmp_path)).run_test(size=SIZE) as pilot:
+        app = await ready(pilot)
+        await pilot.press("M")
+        await until(pilot, lambda: isinstance(app.screen, Chooser) and app.screen.is_ready)
+        listed = app.screen.query_one(OptionList)
+        listed.highlighted = listed.get_option_index("model")
+        await pilot.press("enter")
+        await until(pilot, lambda: app.run_controller.companion is not None)
+        for _ in range(2):
+            await run_over(pilot, app)
+            assert app.run_controller.earlier is app.run_controller.companion

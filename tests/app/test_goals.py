@@ -273,8 +273,8 @@ STARTS = {
     "as the world, of a program": (["task_goals.toml", "mine.py"], (300.0, "mine.py", 2)),
     "by option": (["--goals", "task_goals.toml", "mine.py"], (300.0, "mine.py", 2)),
     "by option, in another world": (["--goals", "task_goals.toml", "lab.toml", "mine.py"], (700.0, "mine.py", 2)),
-    "an example by name": (["--goals", "square"], (300.0, "square.py", 4)),
-    "an example by file": (["square_goals.toml"], (300.0, "square.py", 4)),
+    "an example by name": (["--goals", "square"], (300.0, "square.py", 5)),
+    "an example by file": (["square_goals.toml"], (300.0, "square.py", 5)),
     "no goals": (["lab.toml"], (700.0, None, 0)),
 }
 
@@ -302,7 +302,7 @@ def test_goals_on_the_command_line(name: str, task: Path, here: Command, monkeyp
 
 
 def test_wrong_goals_on_the_command_line(task: Path, here: Command) -> None:
-    task.write_text(GOALS.replace("points = 2", "points = -2"))
+    task.write_text(GOALS.replace("points = 2", "points = -2000"))
     done = here("open", "--goals", task.name)
     assert done.returncode == 2
-    assert "task_goals.toml, line 12: goal[1].points: must be a number from 0 to 1000, got -2" in done.stderr
+    assert "task_goals.toml, line 12: goal[1].points: must be a number from -1000 to 1000, got -2000" in done.stderr

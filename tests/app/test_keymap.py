@@ -32,10 +32,10 @@ def test_keys_are_those_of_the_user(keys: dict[str, tuple[str, ...]], written: d
 
 
 async def test_the_new_key_works_and_is_shown_and_the_old_one_does_nothing(tmp_path: Path) -> None:
-    (tmp_path / "config.toml").write_text("[keys]\npen = '%'\nzoom = 'p'\n")
+    (tmp_path / "config.toml").write_text("[keys]\npen = '%'\nzoom = 'p'\nmats = '$'\n")
     async with LabApp(settings(LOGS)).run_test(size=(200, 170)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: " % pen" in screen_text(app) and " p zoom" in screen_text(app))
+        await until(pilot, lambda: " $ mats" in screen_text(app))
         down = app.run_controller.pen_down
 
         await pilot.press("percent_sign")

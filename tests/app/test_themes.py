@@ -18,8 +18,8 @@ from tests.app.app_help import LOGS, ready, settings, until
 from tests.bench.cells import lab_of
 from tuisim import palette
 from tuisim.app.app import LabApp
-from tuisim.app.terminal_app import Palette
-from tuisim.app.themes import HIGH_CONTRAST, LIGHT, UNUSED_THEMES, ThemeColors, contrast
+from tuisim.app.dialogs.palette import ThemeChooser
+from tuisim.app.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors, contrast
 from tuisim.charts.traces import TRACE_COLORS
 
 THEMES = [
@@ -76,12 +76,13 @@ async def test_a_theme_is_chosen_from_the_list_and_kept() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await pilot.press("f10")
-        await until(pilot, lambda: isinstance(app.screen, Palette))
-        await pilot.press(*"high-contrast")
-        await until(pilot, lambda: app.screen.query_one("CommandList").display)
-        await pilot.pause(0.3)
-        await pilot.press("enter")
-        await until(pilot, lambda: app.theme == "high-contrast")
+        await until(pilot, lambda: isinstance(app.screen, ThemeChooser) and app.screen.is_ready)
+        await pilot.press(*"light")
+        await until(pilot, lambda: app.theme == "light")
+        await pilot.press("escape")
+        await until(pilot, lambda: app.theme == OWN_THEME)
+        await pilot.press("f10", *"high-contrast", "enter")
+        await until(pilot, lambda: app.theme == "high-contrast" and len(app.screen_stack) == 1)
         await pilot.pause()
         assert app.picture_mode.theme is not None
         background = {

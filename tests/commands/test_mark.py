@@ -249,7 +249,7 @@ def test_a_program_that_cannot_be_read_gets_what_a_syntax_error_gets(tmp_path: P
     (tmp_path / "goals.toml").write_text(STILL_GOALS)
     done = here("mark", "goals.toml", "class", "--seeds", "0", "--jobs", "1", "--export", "marks.csv")
     frame = pd.read_csv(tmp_path / "marks.csv").set_index("student")
-    assert (done.returncode, set(frame["points"])) == (0, {1.0}), done.stdout
+    assert (done.returncode, set(frame["points"])) == (0, {0.0}), done.stdout
     assert all(reason.startswith(("SyntaxError: ", "TabError: ")) for reason in frame["reason"]), done.stdout
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.commands.run_options import ButtonPress, parse_press, press_actions
+from tuisim.config.presses import ButtonPress, parse_press
+from tuisim.core.spec import BUTTONS
 from tuisim.errors import ConfigError
-from tuisim.protocol import BUTTONS, SetButtons, UserAction
+from tuisim.protocol import SetButtons, UserAction
+from tuisim.runs.presses import press_actions
 
 GIVEN = {
     "plain": ("enter@1", ButtonPress("enter", 1.0, 1.1)),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings, settings_of
 from tuisim.config.overrides import settings_of_keys
 from tuisim.config.robots import choose_robot
+from tuisim.core.drift_spec import DriftSpec
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError
 
@@ -53,6 +55,13 @@ def test_a_key_of_the_robot_leaves_the_rest_of_the_chosen_robot() -> None:
     assert (changed.wheel_diameter_mm, changed.touch_sensors) == (60.0, robot.spec.touch_sensors)
 
 
+def test_a_key_of_drift_leaves_the_rest_of_the_chosen_drift() -> None:
+    typical = DriftSpec(0.5, 1.0, 1.0, 1.0, 3.0, 0.05, 100.0, 10.0)
+    assert spec_with({"drift": "typical"}).world.drift == typical
+    assert spec_with({"drift.slip_pc": 7}, drift=typical).world.drift == replace(typical, slip_pc=7.0)
+    assert spec_with({"drift.slip_pc": 7}).world.drift == DriftSpec(slip_pc=7.0)
+
+
 def test_a_key_of_the_profile_leaves_the_rest_of_the_chosen_profile() -> None:
     profile = spec_with({"profile.color_read_ms": 60}, profile="nbev3devsim").profile
     assert (profile.tick_hz, profile.color_read_ns) == (30, 60_000_000)
@@ -78,6 +87,7 @@ def test_arguments_are_split_as_in_a_shell(value: object, expected: tuple[str, .
         pytest.param({"noise.motor": 501}, r"^set: noise.motor: must be a whole number from 0 to 500", id="too large"),
         pytest.param({"background": "Lollipo"}, r"^set: background: no such mat .*Lollipop", id="no such mat"),
         pytest.param({"program": "x.py"}, r"^set: program: cannot be varied", id="not part of a run"),
+        pytest.param({"drift.gyro": 1}, r"^set: drift.gyro: no such key .did you mean gyro_dps", id="misspelt drift"),
         pytest.param({"noise": 1, "noise.motor": 2}, r"noise.motor: is inside noise", id="a value and a table"),
         pytest.param({"noise.motor": 2, "noise": 1}, r"^set: noise: is given together", id="a table and a value"),
         pytest.param({"arguments": "'a"}, r"^set: arguments: cannot be split", id="an open quote"),

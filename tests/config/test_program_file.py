@@ -14,6 +14,7 @@ from tuisim.config.program_file import (
     prelude_for,
     programs,
     read_program,
+    with_mat,
 )
 from tuisim.errors import ConfigError
 
@@ -127,3 +128,20 @@ def test_what_is_no_program_is_told(name: str, data: bytes | None, said: str, tm
 def test_a_program_that_is_edited_has_the_names_that_it_may_use(text: str, prelude: str) -> None:
     program = parse_unfinished(text, "p.py")
     assert (program.text, program.prelude) == (text, prelude)
+
+
+MAGIC_MATS = {
+    "replaced": ("# %%sim_magic_preloaded -OHRb Grey_bands -x 3\nx\n", "# %%sim_magic_preloaded -OHRb Loop -x 3\nx\n"),
+    "added": ("%%sim_magic -x 3\n", "%%sim_magic -x 3 -b Loop\n"),
+    "long option": ("# %%sim_magic --background='a b.png' -x 5\n", "# %%sim_magic --background=Loop -x 5\n"),
+    "quoted": ('# %%sim_magic -b "a b.png"\n', "# %%sim_magic -b Loop\n"),
+    "without a line": ("print(1)\n", "# %%sim_magic_preloaded -b Loop\nprint(1)\n"),
+    "after the docstring": ('"""A\nB"""\nx\n', '"""A\nB"""\n# %%sim_magic_preloaded -b Loop\nx\n'),
+    "after the interpreter": ("#!/usr/bin/python3\nx\n", "#!/usr/bin/python3\n# %%sim_magic_preloaded -b Loop\nx\n"),
+    "unfinished": ("print(\n", "# %%sim_magic_preloaded -b Loop\nprint(\n"),
+}
+
+
+@pytest.mark.parametrize(("before", "after"), MAGIC_MATS.values(), ids=MAGIC_MATS)
+def test_a_mat_is_written_into_the_magic_line(before: str, after: str) -> None:
+    assert with_mat(before, "p.py", "Loop") == after

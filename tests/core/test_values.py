@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from tuisim.config.options import parse
+from tuisim.core.drift_spec import DriftSpec
 from tuisim.core.values import (
     Choice,
     Choices,
     Color,
     Flag,
     NamedNumber,
+    NamedPart,
     Number,
     Numbers,
     Seed,
@@ -34,7 +38,9 @@ KINDS: dict[str, Value] = {
     "choice": Choice((1, "b", ""), what="letter"),
     "choices": Choices(("a", "b"), what="letter"),
     "color": Color(),
+    "part": NamedPart(DriftSpec),
 }
+TYPICAL = DriftSpec(0.5, 1.0, 1.0, 1.0, 3.0, 0.05, 100.0, 10.0)
 
 
 @pytest.mark.parametrize(
@@ -51,6 +57,8 @@ KINDS: dict[str, Value] = {
         ("choices", ["b", "a"], ("b", "a")),
         ("color", "Teal", "teal"),
         ("color", "#FFaa00", "#ffaa00"),
+        ("part", "typical", TYPICAL),
+        ("part", {"slip_pc": "typical", "gyro_dps": 2}, DriftSpec(slip_pc=1.0, gyro_dps=2.0)),
     ],
 )
 def test_a_file_gives_it(kind: str, data: object, found: object) -> None:
@@ -77,6 +85,9 @@ def test_a_file_gives_it(kind: str, data: object, found: object) -> None:
         ("choice", True, "no such letter true"),
         ("choices", "a", "must be a list, got 'a'"),
         ("color", "reed", "no such colour 'reed'"),
+        ("part", 3, "must be none or typical, then values such as wheel_pc=1, got 3"),
+        ("part", {"gyro": 1}, "no such key"),
+        ("part", {"gyro_dps": True}, "must be typical, or a number from 0 to 20, got true"),
     ],
 )
 def test_a_wrong_value_of_a_file_is_told(kind: str, data: object, said: str) -> None:
@@ -103,12 +114,17 @@ def test_one_of_several_is_told_by_its_place() -> None:
         ("numbers", "1, -2", (1.0, -2.0), "1 -2"),
         ("text", "ab", "ab", "ab"),
         ("color", "Red", "red", "red"),
+        ("part", "none", DriftSpec(), "none"),
+        ("part", "typical", TYPICAL, "typical"),
+        ("part", "none, gyro_dps=2 slip_pc=typical", DriftSpec(slip_pc=1.0, gyro_dps=2.0), "slip_pc=1 gyro_dps=2"),
+        ("part", "typical gyro_dps=0", replace(TYPICAL, gyro_dps=0.0), "typical gyro_dps=0"),
     ],
 )
 def test_an_option_or_a_form_gives_it_and_shows_it(kind: str, text: str, found: object, again: str) -> None:
     value = parse(KINDS[kind], text, "-v")
     assert value == found
     assert KINDS[kind].to_text(value) == again
+    assert parse(KINDS[kind], again, "-v") == value
 
 
 @pytest.mark.parametrize(
@@ -120,6 +136,10 @@ def test_an_option_or_a_form_gives_it_and_shows_it(kind: str, text: str, found: 
         ("numbers", "1 up", "-v: must be 1 to 2 numbers from -9 to 9, got '1 up'"),
         ("choice", "c", "-v: no such letter 'c' (one of 1, b)"),
         ("color", "reed", "-v: no such colour 'reed' (did you mean red"),
+        ("part", "much", "-v: no such value 'much' (none or typical, then values such as wheel_pc=1)"),
+        ("part", "slip_pc=1 typical", "-v: no such value 'typical' (none or typical, then"),
+        ("part", "gyro=1", "-v gyro: no such key (did you mean gyro_dps?)"),
+        ("part", "gyro_dps=x", "-v gyro_dps: must be typical, or a number from 0 to 20, got 'x'"),
     ],
 )
 def test_a_wrong_text_of_an_option_is_told_as_it_was_typed(kind: str, text: str, said: str) -> None:

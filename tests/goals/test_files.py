@@ -164,14 +164,59 @@ BAD = {
         goal("print = 'x'", "after = 5", "before = 4"),
         "line 8: goal[2].after: must be less than before, 4, got 5",
     ),
-    "negative points": (
-        goal("finish = true", "points = -1"),
-        "line 8: goal[2].points: must be a number from 0 to 1000",
-    ),
     "title is no text": (f"title = 5\n{GOOD}", "line 1: title: must be text, got 5"),
     "world missing": (f"\nworld = 'none.toml'\n{GOOD}", "line 2: world: there is no such file: {folder}/none.toml"),
     "world is itself": (f"world = 'it.toml'\n{GOOD}", "line 1: world: {folder}/it.toml is based on itself"),
     "syntax": ("[[goal]]\nname = \n", "is not TOML: Invalid value (at line 2"),
+    "another world without words": (f"{GOOD}[[also]]\nstart = {{ x_mm = 5 }}", "line 5: also[1].where: is missing"),
+    "another world that is the same": (f"{GOOD}[[also]]\nwhere = 'x'", "line 5: also[1]: is the same world"),
+    "another world's goal that there is not": (
+        f"{GOOD}[[also]]\nwhere = 'x'\nseed = 1\n",
+        "line 7: also[1].seed: no such key",
+    ),
+    "another world with goals that there are not": (
+        f"{GOOD}[[also]]\nwhere = 'x'\nstart = {{ x_mm = 5 }}\ngoals = ['b']",
+        "line 8: also[1].goals[1]: there is no goal 'b' (one of a)",
+    ),
+    "another world's goal after one that there is not": (
+        f"{GOOD}[[also]]\nwhere = 'x'\nstart = {{ x_mm = 5 }}\n[[also.goal]]\nname = 'c'\nfinish = true\nafter = 'b'",
+        "line 11: also[1].goal[1].after: there is no goal 'b'",
+    ),
+    "a comparison that is none": (goal("keep = 'x_mm'"), "line 7: goal[2].keep.comparisons[1]: no comparison: 'x_mm'"),
+    "an instant that is kept": (goal("keep = 'sample Grey'"), "goal[2].keep.comparisons[1]: is only true at instants"),
+    "nothing that is kept": (goal("keep = { share = 0.5 }"), "line 7: goal[2].keep: does not say what is kept"),
+    "a gap from large to small": (goal("keep = { gap_mm = [5, 2] }"), "keep.gap_mm: must be from small to large"),
+    "a count of nothing": (goal("count = { of = 'sample Grey' }"), "line 7: goal[2].count: does not say how often"),
+    "a count that cannot be": (
+        goal("count = { of = 'sample Grey', at_least = 3, at_most = 2 }"),
+        "line 7: goal[2].count.at_most: must be 3 or more, got 2",
+    ),
+    "a sound of no pattern": (
+        goal("when = 'sound matches ('"),
+        "when.comparisons[1]: '(' is no regular expression",
+    ),
+    "a structure of nothing": (
+        goal("structure = 'lops >= 1'"),
+        "line 7: goal[2].structure.comparisons[1]: nothing is counted as 'lops' (did you mean loops",
+    ),
+    "a structure without a number": (goal("structure = 'loops >= x'"), "structure.comparisons[1]: no comparison"),
+    "a time within which a text is": (goal("use = 'print'", "within_s = 5"), "line 8: goal[2].within_s: does not fit"),
+    "too many points off": (goal("finish = true", "points = -1001"), "goal[2].points: must be a number from -1000 to"),
+    "a button that there is not": (f"press = ['entr@2']\n{GOOD}", "line 1: press[1]: the brick has no button 'entr'"),
+    "another world's press without a time": (
+        f"{GOOD}[[also]]\nwhere = 'x'\npress = ['enter']",
+        "line 7: also[1].press[1]: must be BUTTON@FROM or BUTTON@FROM-UNTIL",
+    ),
+    "another world's mat that there is not": (
+        f"background = 'Loop'\n{GOOD}[[also]]\nwhere = 'x'\nbackground = 'Lop'",
+        "line 8: also[1].background: no such mat",
+    ),
+    "a place from above to below": (
+        goal("print = { lines = 'x', y_mm = [[5, 2]] }"),
+        "line 7: goal[2].print.y_mm[1]: must be from below to above, got 5 to 2",
+    ),
+    "inputs that are none": (f"inputs = [5]\n{GOOD}", "line 1: inputs[1]: must be text, got 5"),
+    "hidden by a word": (goal("finish = true", "hidden = 'yes'"), "line 8: goal[2].hidden: must be true or false"),
 }
 
 
@@ -232,6 +277,24 @@ def test_world_of_another_file_is_overridden(tmp_path: Path) -> None:
     file = load_goals(tmp_path / "goals.toml")
     assert (file.title, file.program) == ("T", str(tmp_path / "follow.py"))
     assert file.settings == {"start.x_mm": 5.0, "background": "Loop", "seed": 4}
+
+
+def test_goals_of_another_file_are_added_to_and_replaced(tmp_path: Path) -> None:
+    base = "title = 'T'\nbackground = 'Loop'\n" + goal('print = "x"')
+    (tmp_path / "base.toml").write_text(base)
+    own = "[[goal]]\nname = 'b'\nprint = 'y'\nafter = 'a'\n[[also]]\nwhere = 'x'\nhidden = true\nstart = { x_mm = 5 }\n"
+    (tmp_path / "goals.toml").write_text(f"world = 'base.toml'\n{own}[[also.goal]]\nname = 'c'\nfinish = true\n")
+    file = load_goals(tmp_path / "goals.toml")
+    assert (file.title, [goal.name for goal in file.goals]) == ("T", ["a", "b"])
+    assert (file.goals[1].condition, file.goals[1].after) == (PrintCondition(("y",)), "a")
+    own_world, other = file.worlds
+    assert (own_world.where, own_world.settings, own_world.goals) == ("", {"background": "Loop"}, ("a", "b"))
+    assert (other.hidden, other.settings, other.goals) == (
+        True,
+        {"background": "Loop", "start.x_mm": 5},
+        ("a", "b", "c"),
+    )
+    assert [(goal.name, goal.hidden) for goal in file.every_goal] == [("a", False), ("b", False), ("c", True)]
 
 
 def test_short_forms(tmp_path: Path) -> None:

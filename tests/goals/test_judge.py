@@ -9,9 +9,10 @@ import pytest
 
 from tests.goals.recorded import Run, Step, ahead, drive, goals_of, says, wait, world
 from tests.running import Run as RunProgram
+from tuisim.goals.condition import ConditionKind
 from tuisim.goals.judge import FINDERS, judge
 from tuisim.goals.judgement import Judgement, points
-from tuisim.goals.spec import CONDITIONS, ConditionKind
+from tuisim.goals.spec import CONDITIONS
 from tuisim.protocol import End
 from tuisim.runs.run_folder import read_run
 from tuisim.runs.store import RunStore, compact_run

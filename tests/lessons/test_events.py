@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import pytest
 
+from tuisim.goals.trial_world import TrialWorld
 from tuisim.lessons.events import (
     BreakMet,
     Event,
@@ -27,7 +28,6 @@ from tuisim.lessons.spec import (
     Check,
     ExportCheck,
     NoteCheck,
-    OtherWorld,
     QuestionCheck,
     RunCheck,
     ShowCheck,
@@ -45,7 +45,7 @@ def runs(*seeds: int, met: str = "a b", from_start: bool = True) -> list[Event]:
 
 
 BACK = "from farther back"
-FARTHER = RunCheck(("a",), also=(OtherWorld(BACK, {"x_mm": 460.0}, ("a",)),))
+FARTHER = RunCheck(("a",), also=(TrialWorld(BACK, {"x_mm": 460.0}, ("a",)),))
 HERE = QuestionCheck("Q", 50.2, within=0.5, at_x_mm=((200.0, 400.0),), where="the band: m")
 SEEN = QuestionCheck("Q", 50.2, within=0.5, seen=("instrumentation", "chart"))
 RAN = QuestionCheck("Q", 50.2, within=0.5, run=True, printed="Error")

@@ -91,7 +91,7 @@ BAD = {
     ),
     "other world without words": (also("{ start = { x_mm = 1 } }"), "step[1].run.also[1].where: is missing"),
     "other world twice": (also("{ where = 'x', noise = { light = 1 } }, " * 2), "run.also[2].where: there are two 'x'"),
-    "other world that is the same": (also("{ where = 'x' }"), "step[1].run.also[1]: is the lesson's world"),
+    "other world that is the same": (also("{ where = 'x' }"), "step[1].run.also[1]: is the same world"),
     "key of no world": (also("{ where = 'x', program = 'a.py' }"), "step[1].run.also[1].program: no such key"),
     "other world on no mat": (also("{ where = 'x', background = 'None' }"), "no such mat 'None'"),
     "no goal of another world": (

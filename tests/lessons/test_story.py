@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from tuisim.goals.condition import Condition
 from tuisim.goals.judgement import Change, GoalState, Judgement
 from tuisim.goals.spec import (
     AvoidCondition,
-    Condition,
     FinishCondition,
     FollowCondition,
     Goal,

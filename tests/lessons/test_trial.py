@@ -15,7 +15,8 @@ from tuisim.goals.spec import LogCondition
 from tuisim.lessons.catalogue import shipped_paths
 from tuisim.lessons.files import load_lesson
 from tuisim.lessons.spec import Lesson, QuestionCheck, RunCheck
-from tuisim.lessons.trial import faults, task_of, warnings
+from tuisim.lessons.trial import faults, model_run, task_of, warnings
+from tuisim.runs.store import RunStore
 
 LESSONS = {name: load_lesson(path) for name, path in shipped_paths().items()}
 
@@ -100,3 +101,12 @@ def test_question_about_the_end_of_a_run_leads_back_to_its_start() -> None:
 def test_names_are_not_those_of_commands_or_examples() -> None:
     taken = {*COMMANDS, *learn.listing, *(file.path.stem for file in programs())}
     assert set(LESSONS) & taken == set()
+
+
+@pytest.mark.usefixtures("home")
+def test_the_model_answer_drives_and_is_not_stored() -> None:
+    recording = model_run(load_lesson(shipped_paths()["exact-moves"]), None)
+    assert recording.name == "the model answer"
+    assert not recording.folder.exists()
+    assert recording.telemetry.record(recording.newest).pose != recording.telemetry.record(0).pose
+    assert RunStore().runs() == []

@@ -7,7 +7,8 @@ import pytest
 from tests.lessons.test_trial import LESSONS
 from tuisim.batch.pool import run_many
 from tuisim.goals.judgement import GoalState
-from tuisim.lessons.spec import Lesson, OtherWorld, RunCheck
+from tuisim.goals.trial_world import TrialWorld
+from tuisim.lessons.spec import Lesson, RunCheck
 from tuisim.lessons.trial import task_of
 
 _ROWS = """\
@@ -510,7 +511,7 @@ def test_honest_way_passes(way: str) -> None:
         assert _missed(lesson, check, other, WAYS[way]) == []
 
 
-def _missed(lesson: Lesson, check: RunCheck, other: OtherWorld | None, text: str) -> list[str]:
+def _missed(lesson: Lesson, check: RunCheck, other: TrialWorld | None, text: str) -> list[str]:
     """The reasons of the goals that a program misses in a world."""
     (result,) = run_many([task_of(lesson, text, seed=1, other=other)], jobs=1)
     wanted = other.goals if other else check.goals

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -44,6 +45,13 @@ def test_canvas_gets_points_possible_and_a_column_a_goal(tmp_path: Path) -> None
     assert possible == ["Points Possible", "", "", "", "", "10", "7", "3"]
     assert ada == ["ada", "", "", "ada", "", "10", "7", "3"]
     assert ben == ["Ben B.", "7", "s7", "ben", "A", "8.25", "5.25", "3"]
+
+
+def test_hidden_goals_and_points_taken_off_are_only_in_the_total(tmp_path: Path) -> None:
+    place, wall = SHEET.columns
+    sheet = replace(SHEET, columns=(replace(place, hidden=True), replace(wall, points=-3.0)))
+    write_gradebook(tmp_path / "m.csv", GradebookKind.CANVAS, sheet, SOURCES, Roster({}), goals=True)
+    assert _rows(tmp_path / "m.csv")[0][-2:] == ["Section", "Grey bands"]
 
 
 def test_no_cell_is_a_formula(tmp_path: Path) -> None:

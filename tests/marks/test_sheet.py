@@ -81,6 +81,19 @@ def test_in_a_task_without_points_a_run_is_complete_if_it_meets_every_goal() -> 
     assert 'class="number part">0<' in page_of(sheet)
 
 
+@pytest.mark.parametrize(("place", "hit", "points"), [(True, False, 7), (True, True, 5), (False, True, 0)])
+def test_points_that_are_taken_off_never_leave_less_than_none(place: bool, hit: bool, points: float) -> None:
+    columns = (COLUMNS[0], Goal("hit", FinishCondition(), "Hit the wall.", -2.0))
+    goals = (GoalOutcome("place", place, "" if place else "too far"), GoalOutcome("hit", hit, is_penalty=True))
+    sheet = sheet_of("", columns, (0,), STUDENTS[:1], {"ada": [Outcome(0, "finished", goals=goals)]})
+    (row,) = sheet.rows
+    assert (sheet.most_points, row.points, row.robustness) == (7, points, float(place and not hit))
+    assert row.reason == ("too far" if not place else "Hit the wall." if hit else "")
+    told = "[happened] Hit the wall. (-2)" if hit else "[did not happen] Hit the wall."
+    assert told in feedback_of(sheet, row)
+    assert f'class="number {"missed" if hit else "met"}' in page_of(sheet)
+
+
 def test_a_table_has_a_column_a_goal_and_names_the_line() -> None:
     heads, rows = lines_of(SHEET)
     assert heads == ["student", "points", "robustness", "place", "wall", "reason"]
@@ -139,7 +152,7 @@ class _Elements(HTMLParser):
 
 
 def test_nothing_of_a_student_becomes_html() -> None:
-    links = {(EVIL, 0): 'class-runs/"><script>.html'}
+    links = {(EVIL, "", 0): 'class-runs/"><script>.html'}
     page = page_of(SHEET, links, ignored=("<script>alert(3)</script>.doc",))
     elements = _Elements(page).found
     tags = {tag for tag, _ in elements}
@@ -158,7 +171,7 @@ def test_the_page_shows_each_student_and_the_line() -> None:
 
 
 def test_seeds_with_equal_recordings_share_a_link() -> None:
-    links = {("ben", seed): f"runs/{'first' if seed in (0, 1, 3) else 'other'}.html" for seed in range(4)}
+    links = {("ben", "", seed): f"runs/{'first' if seed in (0, 1, 3) else 'other'}.html" for seed in range(4)}
     page = page_of(SHEET, links)
     assert '<a href="runs/first.html">0–1, 3</a>, <a href="runs/other.html">2</a>' in page
 

@@ -125,6 +125,7 @@ CASES = [
     Case(("-r", "--robot", "--robotSetup"), "Small_Robot", spec("robot.name"), "Small_Robot"),
     Case(("-o", "--obstacles"), "Square_posts", spec("world.obstacles.__len__()"), 4),
     Case(("--walls",), "off", spec("world.walls"), False),
+    Case(("--drift",), "gyro_dps=2", spec("world.drift.gyro_dps"), 2.0),
     Case(("--solid",), "", spec("world.solid"), True),
     Case(("--no-solid",), "--profile ev3", spec("world.solid, roboSim.spec.profile.name"), (False, "ev3")),
     Case(("-x", "--x", "--xpos"), "77", spec("world.start.x_mm"), 77),

@@ -48,7 +48,7 @@ class Recorder:
         tick = self.simulation.tick
         self.output.write(text.encode(), tick, self.simulation.due_ns(tick), line, stream)
 
-    def act(self, kind: str, **fields: int) -> None:
+    def act(self, kind: str, **fields: Any) -> None:
         """Do and record a user action, which counts from the present tick on."""
         if kind == "set_noise":
             self.simulation.noise = NoiseSpec(**fields)

@@ -15,6 +15,7 @@ import pytest
 from tests.runs.run_recorder import Recorder
 from tuisim.config.mat_cache import FieldFiles, open_field, prepare
 from tuisim.config.mats import background
+from tuisim.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.sensors import readings
@@ -105,10 +106,11 @@ def sensors_one_by_one(run: StoredRun, field: Field) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
+@pytest.mark.parametrize("drift", [NO_DRIFT, DriftSpec(wheel_pc=1, gyro_dps=1, echo_loss_pc=90, light_pc=30)])
 def test_sensors_are_those_of_the_core_to_the_last_bit(
-    record: Callable[..., Recorder], spec: RunSpec, field: Field
+    record: Callable[..., Recorder], spec: RunSpec, field: Field, drift: DriftSpec
 ) -> None:
-    world = replace(spec.world, obstacles=(Obstacle(300, 900, 50, 300),), noise=NoiseSpec(0, 80))
+    world = replace(spec.world, obstacles=(Obstacle(300, 900, 50, 300),), noise=NoiseSpec(0, 80), drift=drift)
     recorder = record(replace(spec, world=world))
     recorder.drive(400, 310, 60)
     recorder.drive(-200, 300, 60)
@@ -155,7 +157,7 @@ def test_noise_that_the_user_changes_is_in_the_sensors(
     expected = sensors_one_by_one(run, field)
     frame = telemetry_frame(run, field)
     pd.testing.assert_frame_equal(frame[expected.columns], expected, check_exact=True)
-    quiet = pd.DataFrame(quiet_color_columns(run.telemetry.array(), run.spec.robot.color_sensors[0], field))
+    quiet = pd.DataFrame(quiet_color_columns(run.telemetry.array(), run.spec.robot.color_sensors[0], run.spec, field))
     differs = (quiet != frame[quiet.columns]).any(axis=1)
     assert differs.tolist() == [False] * 5 + [True] * 5 + [False] * 6
 
@@ -170,7 +172,7 @@ def test_colour_at_any_place_is_that_of_the_core(spec: RunSpec, field: Field) ->
     records = np.zeros(len(places), np.dtype(list(TICK_FIELDS)))
     records["x_mm"], records["y_mm"], records["heading_deg"] = np.array(places).T
     for sensor in (*spec.robot.color_sensors, ColorSensorSpec("odd", "in2", 7.25, -3.5, 20)):
-        found = quiet_color_columns(records, sensor, field)
+        found = quiet_color_columns(records, sensor, spec, field)
         for at, record in enumerate(TICK_RECORD.iter_unpack(records.tobytes())):
             expected = reading(sensor, Instant(0, Pose(*record[2:5])), field)
             assert [column[at] for column in found.values()] == [expected.red, expected.green, expected.blue]

@@ -10,7 +10,7 @@ import pytest
 from tests.scene.scenes import ROBOT, VIEW, at, painter
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import BeaconSpec, InfraredSpec, Obstacle, RobotSpec, TouchSpec
-from tuisim.scene.painter import BEACON_CORE_RGB, BEACON_RGB, SceneState
+from tuisim.scene.painter import BEACON_CORE_RGB, BEACON_RGB, Faint, SceneState
 from tuisim.scene.robot import COLORED
 from tuisim.scene.view import Viewport, whole_field
 
@@ -78,15 +78,17 @@ def test_a_beacon_is_drawn_also_at_the_edge(view: Viewport) -> None:
 
 def test_the_ghost_is_drawn_below_the_robot() -> None:
     alone = painter().paint(VIEW, SceneState(ROBOT, HERE))
-    both = painter().paint(VIEW, SceneState(ROBOT, HERE, ghost=replace(HERE, x_mm=500.0)))
+    both = painter().paint(VIEW, SceneState(ROBOT, HERE, faint=((Faint.NOW, replace(HERE, x_mm=500.0)),)))
 
     assert at(both, 500, 500) != (255, 255, 255)
     assert at(both, 1000, 500) == at(alone, 1000, 500)
 
 
 def test_an_earlier_robot_is_drawn_below_all_others() -> None:
-    alone = painter().paint(VIEW, SceneState(ROBOT, HERE, ghost=replace(HERE, x_mm=1500.0)))
-    scene = SceneState(ROBOT, HERE, ghost=replace(HERE, x_mm=1500.0), earlier=replace(HERE, x_mm=500.0))
+    alone = painter().paint(VIEW, SceneState(ROBOT, HERE, faint=((Faint.NOW, replace(HERE, x_mm=1500.0)),)))
+    scene = SceneState(
+        ROBOT, HERE, faint=((Faint.BESIDE, replace(HERE, x_mm=500.0)), (Faint.NOW, replace(HERE, x_mm=1500.0)))
+    )
     both = painter().paint(VIEW, scene)
 
     assert at(both, 500, 500) != (255, 255, 255)

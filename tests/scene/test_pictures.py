@@ -8,6 +8,7 @@ from math import atan2, degrees
 import numpy as np
 import pytest
 
+from tests.running import Run
 from tests.scene.scenes import CORNERS, MIDDLE, pixel, spec_of
 from tuisim.config.robots import ROBOTS
 from tuisim.core.geometry import Pose
@@ -25,8 +26,17 @@ from tuisim.core.spec import (
 )
 from tuisim.scene.painter import BEACON_RGB, OBSTACLE_RGB, RAY_RGB, ScenePainter
 from tuisim.scene.pen import PenTrace, Piece
-from tuisim.scene.pictures import RIM_RGB, fitting_view, scene_of, world_painter, world_picture, world_view
+from tuisim.scene.pictures import (
+    RIM_RGB,
+    fitting_view,
+    path_picture,
+    scene_of,
+    world_painter,
+    world_picture,
+    world_view,
+)
 from tuisim.scene.robot import COLORED
+from tuisim.scene.view import whole_field
 from tuisim.terminal.pixels import Pixels
 
 WHITE: Pixels = np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8)
@@ -92,3 +102,12 @@ def test_a_robot_on_the_edge_is_not_cut_off(robot: str) -> None:
         picture = np.asarray(world_picture(spec, WHITE, Pose(x_mm, y_mm, outward)))
         border = np.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
         assert len(np.unique(border, axis=0)) == 1
+
+
+def test_the_way_of_a_run_is_drawn_small(run: Run) -> None:
+    done = run("tank_drive.on_for_seconds(50, 50, 2)\n", background="Empty_Map", pose=(500.0, 500.0, 0.0))
+    picture = path_picture(done.run.stored(), whole_field(50, 26), (0, 0, 0))
+    reddish = (picture[..., 0] > 200) & (picture[..., 1] < 150)
+    rows, columns = np.nonzero(reddish)
+    assert len({*rows}) <= 2
+    assert 5 < np.ptp(columns) < 20

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from tests.running import Done, over
-from tuisim.commands.run_options import parse_press, press_actions
+from tuisim.config.presses import parse_press
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import (
@@ -27,6 +27,7 @@ from tuisim.core.spec import (
     WorldSpec,
 )
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.runs.presses import press_actions
 from tuisim.source import Program
 
 START = Pose(500.0, 571.5, 0.0)

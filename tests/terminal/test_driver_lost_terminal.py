@@ -28,8 +28,9 @@ from tests.app.app_help import ready, settings
 from tests.running import PATIENCE_S
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.entries import SavedPoses
+from tuisim.app.dialogs.palette import Palette
 from tuisim.app.panel_area import PanelArea
-from tuisim.app.terminal_app import Palette, TerminalApp
+from tuisim.app.terminal_app import TerminalApp
 from tuisim.core.geometry import Pose
 from tuisim.terminal.driver import ResilientOutput, TerminalDriver
 
@@ -293,7 +294,9 @@ async def test_where_ctrl_z_suspends(
             suspended.clear()
 
 
-@pytest.mark.parametrize("opened", [lambda: SavedPoses(Pose(0, 0, 0)), Palette], ids=["dialog", "palette"])
+@pytest.mark.parametrize(
+    "opened", [lambda: SavedPoses(Pose(0, 0, 0)), lambda: Palette((), None)], ids=["dialog", "palette"]
+)
 async def test_a_screen_that_is_being_opened_when_the_app_ends_does_no_harm(
     opened: Callable[[], ModalScreen[object]],
 ) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import chain
 from typing import Any, ClassVar, Generic, TypeVar
 
 from rich.console import Console
@@ -189,32 +190,46 @@ class ActionHost(DOMNode):
         self.app.notify(str(error), severity="error", timeout=8, markup=False)
 
 
-_ALWAYS = ("help", "quit", "leave")
+_ALWAYS = ("palette", "help", "quit", "leave")
 
 FIELD_KEYS: tuple[KeyWord, ...] = (("enter", "apply"), ("esc", "leave"), ("tab", "next"))
 """Keys of a text field, where letters are not keys."""
 TYPING_KEYS: tuple[KeyWord, ...] = (
     ("esc", "done"), ("^s", "save"), ("^r", "run"), ("^f", "find"), ("tab", "complete"), ("^g", "line"),
-    ("^z", "undo"), ("^y", "redo"), ("^/", "comment"),
+    ("^z", "undo"), ("^p", "all"), ("^y", "redo"), ("^/", "comment"),
 )  # fmt: skip
 """Keys while the user types in the program."""
 
 
-def fitting(actions: Sequence[Action[Any, Any]], width: int) -> list[Action[Any, Any]]:
-    """Return the actions that fit a footer, the keys for help and for leaving before any other.
+BETWEEN_GROUPS = " │"
+_FEWEST, _FEWEST_AT, _COLUMNS_FOR_ONE = 9, 80, 20
+"""A footer has so many entries at so many columns, and one more for every further ones: more are not read."""
+
+
+def most_entries(columns: int) -> int:
+    """Return how many entries the footer of a terminal has at most."""
+    return _FEWEST + max(0, columns - _FEWEST_AT) // _COLUMNS_FOR_ONE
+
+
+def fitting(actions: Sequence[Action[Any, Any]], width: int, most: int) -> list[Action[Any, Any]]:
+    """Return the actions that fit a footer, those of a group beside each other, the keys for help and for leaving last.
 
     Args:
         actions: The available ones, the most useful first.
         width: Cells.
+        most: Entries.
     """
     always = [action for action in actions if action.id in _ALWAYS]
     left = width - sum(map(_cells, always))
-    chosen = []
+    groups: dict[str, list[Action[Any, Any]]] = {}
     for action in actions:
-        if action.footer and action not in always and _cells(action) <= left:
-            left -= _cells(action)
-            chosen.append(action)
-    return chosen + always
+        if not action.footer or action in always or len(always) + sum(map(len, groups.values())) >= most:
+            continue
+        cells = _cells(action) + (0 if action.group in groups else len(BETWEEN_GROUPS))
+        if cells <= left:
+            left -= cells
+            groups.setdefault(action.group, []).append(action)
+    return [*chain.from_iterable(groups.values()), *always]
 
 
 def _cells(action: Action[Any, Any]) -> int:
@@ -274,11 +289,15 @@ class KeyFooter(ActionWords):
         status = f" {self._status} " if self._status else ""
         key_style = self.get_component_rich_style("footer--key", partial=True)
         line = Text(no_wrap=True, end="")
-        for key, word in self._typing:
+        most = most_entries(width)
+        for key, word in self._typing[:most]:
             if len(line) + len(key) + len(word) + 2 <= width - len(status):
                 line.append(f" {key}", key_style)
                 line.append(f" {word}")
-        for action in fitting(self._actions, width - len(status) - len(line)):
+        shown = fitting(self._actions, width - len(status) - len(line), most - len(self._typing))
+        for before, action in zip([None, *shown], shown, strict=False):
+            if before and before.group != action.group:
+                line.append(BETWEEN_GROUPS, Style(color=palette.LINE))
             meta = Style(meta={ACT: action.id})
             line.append(f" {_key(action)}", key_style + meta)
             line.append(f" {action.footer}", meta)

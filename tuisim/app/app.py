@@ -18,7 +18,7 @@ from textual.widgets import Input
 
 from tuisim.app.action import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings
 from tuisim.app.actions import ActionContext, time_travel
-from tuisim.app.actions.files import welcome
+from tuisim.app.actions.files import welcome_at_start
 from tuisim.app.actions.keys import ACTIONS, PAGES, RUN_KEYS, TEXT_KEYS, footer_actions, working
 from tuisim.app.actions.lesson import reads_on, takes_pages
 from tuisim.app.background import enter, leave
@@ -94,7 +94,7 @@ class AppSettings:
     lessons_folder: str | None = None
     """The folder of own lessons, if one was named."""
     welcomes: bool = False
-    """Show the welcome, if this is the first start: nothing was named to be opened."""
+    """Show the welcome, at the first start or with something to go on with: nothing was named to be opened."""
     replay: StoredRun | None = None
     """A stored run to show; spec and program are its own."""
     panels_on: frozenset[str] = field(default_factory=frozenset)
@@ -213,13 +213,13 @@ class LabApp(PanelMessages):
         else:
             self.loader.prepare_mat()
             self.loader.begin()
-        self.document.begin()
+        self.document.begin(asks=not self.settings.welcomes)
         # Breakpoints apply, and are saved, whether or not a panel shows the program.
         self.debugger.program_changed(self.run_controller.program)
         self.lesson.begin()
         self._tell_config()
         if self.settings.welcomes:
-            welcome(self.context)
+            welcome_at_start(self.context)
         self._set_frame_gap(1 / self.settings.fps)
         self.set_interval(_REST_GAP_S, self._seldom)
         self.set_interval(PERIOD_S, self.check_files)

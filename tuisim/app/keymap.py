@@ -25,7 +25,6 @@ _TAKEN = {
     "shift+tab": "goes to the panel or field before",
     "enter": "applies a field",
     "ctrl+c": "copies",
-    "ctrl+p": "opens the command palette",
     "ctrl+q": "quits",
 }
 """Keys that are no lines of the table, and what they do."""

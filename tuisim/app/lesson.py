@@ -15,10 +15,12 @@ from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import settings_of
 from tuisim.core.spec import RunSpec, WorldSpec
+from tuisim.core.values import values_of
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.goals.files import GoalsFile
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.goals.spec import LogCondition, PrintCondition
+from tuisim.goals.trial_world import TrialWorld
 from tuisim.lessons import progress as stored
 from tuisim.lessons.catalogue import find_lesson, lesson_paths
 from tuisim.lessons.events import (
@@ -49,7 +51,6 @@ from tuisim.lessons.spec import (
     Lesson,
     LessonStep,
     NoteCheck,
-    OtherWorld,
     QuestionCheck,
     RunCheck,
     ShowCheck,
@@ -161,6 +162,7 @@ class LessonController:
         self._goals.judges_always = True
         # What the last run has shown belongs to another lesson.
         self._run_controller.close()
+        self._run_controller.companion = None
         self._app.run_changed()
 
     def _enter(self, lesson: Lesson) -> None:
@@ -405,7 +407,7 @@ class LessonController:
             return
         self._tried, self._remark = run_id, f"Your program is now also tried {check.also[0].where} …"
 
-        def work() -> list[tuple[OtherWorld, tuple[Judgement, ...]]]:
+        def work() -> list[tuple[TrialWorld, tuple[Judgement, ...]]]:
             from tuisim.lessons.trial import tried_elsewhere
 
             return tried_elsewhere(lesson, check, load_run(recording.folder))
@@ -414,7 +416,7 @@ class LessonController:
         background.run(self._panel_area, work, then, self._app.complain, group="lesson")
 
     def _tried_elsewhere(
-        self, check: RunCheck, run_id: str, found: list[tuple[OtherWorld, tuple[Judgement, ...]]]
+        self, check: RunCheck, run_id: str, found: list[tuple[TrialWorld, tuple[Judgement, ...]]]
     ) -> None:
         """Take in how the program did in other worlds, unless the student has gone on meanwhile."""
         if self.step is None or self.step.check is not check:
@@ -451,10 +453,9 @@ class LessonController:
             return ""
         wanted = self._wanted_spec().world
         if _place_of(self._elsewhere.world) == _place_of(wanted):
-            noise = wanted.noise
-            return (
-                f"This run had other noise: the lesson's is light {noise.light}, motors {noise.motor} (panel Noise, z)."
-            )
+            noise, drift = wanted.noise, values_of(WorldSpec)["drift"].to_text(wanted.drift)
+            levels = f"light {noise.light}, motors {noise.motor} (panel Noise, z), drift {drift} (panel Settings, Z)"
+            return f"This run had other noise or drift: the lesson's is {levels}."
         if self._run_controller.in_run:
             return "This run began elsewhere."
         if self._run_controller.pose == wanted.start:
@@ -563,14 +564,14 @@ def _why_elsewhere(missed: Judgement) -> str:
 
 def _world_of(spec: RunSpec) -> tuple[object, ...]:
     """Return what must be as the lesson says for a run to count."""
-    return (*_place_of(spec.world), spec.world.noise)
+    return (*_place_of(spec.world), spec.world.noise, spec.world.drift)
 
 
 def _place_of(world: WorldSpec) -> tuple[object, ...]:
     return world.background, world.start, world.obstacles
 
 
-def _at_start(other: OtherWorld) -> str:
+def _at_start(other: TrialWorld) -> str:
     """Return where the robot starts in another world, for a sentence; empty if it is where the lesson starts."""
     found = {axis: other.settings.get(f"start.{axis}_mm") for axis in "xy"}
     places = [f"{axis} = {value:g} mm" for axis, value in found.items() if value is not None]

@@ -186,7 +186,12 @@ class Loader:
             self._app.complain(error)
 
     def _open_program(self, path: str) -> None:
-        source = _read_program(path)
+        decided = self._open_source(source := _read_program(path))
+        self._app.say(f"{source.program.name} is open: {{run}} runs it")
+        self.tell(decided)
+
+    def _open_source(self, source: ProgramSource) -> Decided:
+        """Open a program with what its magic line asks for; return what its source decides."""
         program, said = _parts(source)
         plan, before = plans.with_choices(self._run_controller.next_run, said), self._run_controller.program
         plan, decided = plans.following(plan, source)
@@ -195,8 +200,7 @@ class Loader:
         self._note_program(program, said)
         self._load(plan, program)
         self._apply_app_settings({}, said)
-        self._app.say(f"{program.name} is open: {{run}} runs it")
-        self.tell(decided)
+        return decided
 
     def tell(self, decided: Decided) -> None:
         """Tell what the source of a program has decided, and what of it the brick would refuse, if anything."""
@@ -392,14 +396,14 @@ class Loader:
         self._apply_program(program_of_text(text, Path(path) if path else None, name))
 
     def open_new(self, text: str, name: str) -> None:
-        """Open a new program without a file and without a magic line. Not during a run."""
+        """Open a new program without a file. Not during a run.
+
+        Raises:
+            TuisimError: its magic line is wrong.
+        """
         from tuisim.config.program_file import program_of_text
 
-        file = program_of_text(text, None, name)
-        self._note_program(file.program, file.options)
-        self._run_controller.program = file.program
-        plan, _ = plans.following(self._run_controller.next_run, file)
-        self.set_next_run(plan)
+        self._open_source(program_of_text(text, None, name))
 
     def _apply_program(self, source: ProgramSource) -> None:
         """Apply another text of the open program, with the changes in its magic line, and in the robot it needs."""

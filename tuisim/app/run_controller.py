@@ -16,7 +16,7 @@ from tuisim.config.program_settings import require_library
 from tuisim.core.end_stops import flags_at_start
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.spec import BUTTONS, NoiseSpec, RunSpec
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.data_class import dataclass
@@ -111,6 +111,8 @@ class RunController:
         self.timeline = Timeline()
         self.earlier: Recording | None = None
         """The run before, or one that was compared with the run in view: it is drawn beside it."""
+        self.companion: Recording | None = None
+        """Drawn beside every run in place of the run before, such as that of a model answer."""
         self.shows_earlier = True
         self.pressed: frozenset[str] = frozenset()
         """The brick's buttons that the user holds down."""
@@ -217,7 +219,9 @@ class RunController:
     def _at_rest(self, pose: Pose) -> Instant:
         spec = self.next_run.spec
         flags = flags_at_start(spec.robot)
-        return Instant(0, pose, gyro_zero_deg=pose.heading_deg, end_flags=flags, noise=spec.world.noise, seed=spec.seed)
+        noise, drift = spec.world.noise, spec.world.drift
+        zero_deg = pose.heading_deg
+        return Instant(0, pose, gyro_zero_deg=zero_deg, end_flags=flags, noise=noise, drift=drift, seed=spec.seed)
 
     @property
     def _is_of_run(self) -> bool:
@@ -340,19 +344,25 @@ class RunController:
         later = self.timeline.recording
         self.earlier = earlier if earlier and later and is_comparable(earlier, later) else None
 
+    def accompany(self, companion: Recording | None) -> None:
+        """Draw a run beside every run from now on; None for the run before again."""
+        self.companion = companion
+        self.shows_earlier = True
+        self.show_earlier(companion)
+
     def _show_run(self, run: RunHandle, answers: tuple[str, ...] = ()) -> None:
         """Show a run that has been started, beside the one before; arguments as of `Recording`."""
         before = self.timeline.recording
         self.close()
         self.run, self._end = run, None
         self._show_recording(Recording(run, answers))
-        self.show_earlier(before)
+        self.show_earlier(self.companion or before)
 
     def _show_recording(self, recording: Recording) -> None:
         # What is drawn of a frame is of one instant.
         recording.hold()
         self.timeline.switch_to(recording)
-        self.show_earlier(None)
+        self.show_earlier(self.companion)
         self._pending.forget()
         self.pressed = frozenset()
         self._moved = False
@@ -390,7 +400,7 @@ class RunController:
         if buttons == self.pressed:
             return
         self.pressed = buttons
-        self.send(protocol.SetButtons(tuple(name for name in protocol.BUTTONS if name in buttons)))
+        self.send(protocol.SetButtons(tuple(name for name in BUTTONS if name in buttons)))
 
     def set_noise(self, noise: NoiseSpec) -> None:
         """Change the noise, at once and for the next run."""
@@ -441,7 +451,8 @@ class RunController:
         """
         self.timeline.go(None)
         self.next_run = plan
-        self._still = replace(self._still, noise=plan.spec.world.noise, seed=plan.spec.seed)
+        world = plan.spec.world
+        self._still = replace(self._still, noise=world.noise, drift=world.drift, seed=plan.spec.seed)
 
     def close(self) -> None:
         """Release the run; a child process that still runs is killed."""

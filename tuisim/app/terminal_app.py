@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from textwrap import wrap
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from rich.control import Control
 from textual import events, on
-from textual.command import CommandPalette, DiscoveryHit, Hit, Hits, Provider
 from textual.geometry import Size
 from textual.screen import Screen
-from textual.theme import Theme, ThemeProvider
-from textual.worker import Worker
+from textual.theme import Theme
 
 from tuisim import palette
 from tuisim.app import background
 from tuisim.app.action import ActionHost, with_keys_of
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
-from tuisim.app.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors
+from tuisim.app.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors, theme_names
 from tuisim.charts.traces import TRACE_COLORS
 from tuisim.config.files import Scalar
 from tuisim.config.user_config import CELL_SET, SETTINGS, THEME, load_config
@@ -30,7 +28,10 @@ from tuisim.terminal.app import ActionAsked, BufferedApp, offer
 from tuisim.terminal.cells import PALETTE_256
 from tuisim.terminal.picture_mode import PictureMode, choose_colors, color_depth, picture_mode_for
 from tuisim.terminal.picture_options import NO_PIXELS
-from tuisim.terminal.textual_internals import SUPPORTED, Codes, is_leaving, is_search
+from tuisim.terminal.textual_internals import SUPPORTED, Codes, is_leaving
+
+if TYPE_CHECKING:
+    from tuisim.app.dialogs.palette import ThemeChooser
 
 MINIMUM = Size(40, 12)
 """Minimum size of the terminal: panels and dialogs are unreadable below it."""
@@ -72,65 +73,13 @@ def _message_codes(size: Size) -> str:
     return "\x1b[0m\x1b[2J" + "".join(rows)
 
 
-class Palette(CommandPalette, ClosesOnce[None]):
-    """Textual's command palette, as one of the app's screens that close once."""
-
-    def is_ready_for(self, event: events.Event) -> bool:
-        """Return whether what a key is meant for is there: the commands that were found, unless it is typed."""
-        types = isinstance(event, events.Key) and (event.is_printable or event.key in ("escape", "backspace"))
-        return super().is_ready_for(event) and (types or not self._searches)
-
-    @property
-    def _searches(self) -> bool:
-        return any(is_search(worker, self) and not worker.is_finished for worker in self.workers)
-
-    def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
-        """Let waiting keys go on once the commands are found."""
-        if event.worker.is_finished:
-            self.app.post_message(self.Changed())
-
-    def on_click(self, event: events.Click) -> None:
-        """Ignore a click outside of the palette."""
-        # Where the terminal was until it became smaller there is nothing any more to be found.
-        if not self.region.contains(event.screen_x, event.screen_y):
-            event.prevent_default()
-
-
-def theme_list() -> Palette:
-    """Return Textual's list of themes."""
-    return Palette(providers=[ThemeProvider], placeholder="Search for themes…")
-
-
-class ActionProvider(Provider):
-    """Provides the actions of the screen that the palette opens above, else those of the app."""
-
-    def _offers(self) -> Iterator[tuple[str, Callable[[], None], str]]:
-        """Yield the title of each action, a call that runs it, and the text below the title."""
-        host = self.screen if isinstance(self.screen, ActionHost) else self.app
-        if isinstance(host, ActionHost):
-            for action in host.ACTIONS.values():
-                yield action.title, partial(host.action_act, action.id), f"{action.group} · key {action.key_label}"
-
-    async def discover(self) -> Hits:
-        """Yield every action, before anything is typed."""
-        for title, do, text in self._offers():
-            yield DiscoveryHit(title, do, help=text)
-
-    async def search(self, query: str) -> Hits:
-        """Yield the actions with a matching title."""
-        matcher = self.matcher(query)
-        for title, do, text in self._offers():
-            if (score := matcher.match(title)) > 0:
-                yield Hit(score, matcher.highlight(title), do, help=text)
-
-
 class TerminalApp(BufferedApp):
     """Base of the apps: with themes, a command palette, dialogs that close once, and a minimum size."""
 
     TITLE = "tuisim"
     NOTIFICATION_TIMEOUT = 4
-    # The palette offers the app's own actions: Textual's help, zoom and themes would be a second set of them.
-    COMMANDS: ClassVar[set[type[Provider] | Callable[[], type[Provider]]]] = {ActionProvider}
+    # The app has a palette of its own.
+    ENABLE_COMMAND_PALETTE = False
 
     def __init__(self, picture_mode: PictureMode | None = None) -> None:
         super().__init__(picture_mode)
@@ -160,12 +109,25 @@ class TerminalApp(BufferedApp):
         self.line_filters = [theme, *filters] if theme else filters
 
     def _theme_changed(self, theme: Theme) -> None:
-        """Draw everything in the colours of another theme, and keep the choice."""
+        """Draw everything in the colours of another theme."""
         self._take_theme()
-        if theme.name != load_config().value(THEME):
-            self.keep_setting(THEME, None if theme.name == OWN_THEME else theme.name)
         self.redraw_pictures()
         self.call_later(self.action_redraw)
+
+    def action_choose_theme(self) -> None:
+        """Let the user choose a theme, and keep the choice."""
+
+        def chosen(name: str | None) -> None:
+            if name is not None:
+                self.keep_setting(THEME, None if name == OWN_THEME else name)
+
+        self.push_screen(self.theme_chooser(), chosen)
+
+    def theme_chooser(self) -> ThemeChooser:
+        """Return the dialog of the themes."""
+        from tuisim.app.dialogs.palette import ThemeChooser
+
+        return ThemeChooser(theme_names(), self.theme, partial(setattr, self, "theme"))
 
     async def on_event(self, event: events.Event) -> None:
         """Lay out for the minimum size at least; ignore clicks on cells outside the terminal."""
@@ -277,9 +239,17 @@ class TerminalApp(BufferedApp):
             host.action_act(event.name)
 
     def action_command_palette(self) -> None:
-        """Open the command palette, unless it or a dialog is open: its commands would open dialogs above that one."""
-        if self.use_command_palette and not isinstance(self.screen, (Dialog, Palette)) and not is_leaving(self):
-            self.push_screen(Palette())
+        """Offer every action of the screen, else of the app; not above a dialog, which its dialogs would cover."""
+        host = self.screen if isinstance(self.screen, ActionHost) else self
+        if isinstance(self.screen, Dialog) or not isinstance(host, ActionHost) or is_leaving(self):
+            return
+        from tuisim.app.dialogs.palette import Palette
+
+        def chosen(action: str | None) -> None:
+            if action is not None:
+                host.action_act(action)
+
+        self.push_screen(Palette(host.ACTIONS.values(), host.situation()), chosen)
 
 
 def picture_mode_at_start(cells: str | None, colors: str) -> PictureMode:

@@ -13,7 +13,7 @@ from tuisim.config.mat_cache import FieldFiles, prepare
 from tuisim.config.mats import background
 from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError, TuisimError
-from tuisim.goals.judgement import GoalState, Judgement
+from tuisim.goals.judgement import Judgement
 from tuisim.protocol import End, Ended
 from tuisim.regular_file import of_the_machine
 from tuisim.runs.handle import RunHandle
@@ -116,7 +116,7 @@ def _is_kept(task: Task, run: StoredRun, ended: Ended, judgements: Sequence[Judg
         if run.output.length > MOST_OUTPUT_BYTES:
             return False
         is_good = ended.end is End.FINISHED and not ended.exit_code
-        return not is_good or any(one.state is not GoalState.MET for one in judgements)
+        return not is_good or not all(one.is_good for one in judgements)
     return task.keep is Keep.ALL
 
 

@@ -19,10 +19,11 @@ from tuisim.commands.echo import echo_error
 from tuisim.commands.listings import WORLD, names_of
 from tuisim.commands.notebooks import NotRun
 from tuisim.commands.resolve import check_arguments, prepare_runs
-from tuisim.commands.run_options import input_option, parse_press, press_actions, timeout_option
+from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.command_line import Arguments, WordType, argument, option
 from tuisim.config.files import read_file
 from tuisim.config.folders import user_path
+from tuisim.config.presses import parse_press
 from tuisim.config.worlds import WorldFile, means_world
 from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
@@ -30,6 +31,7 @@ from tuisim.errors import ConfigError
 from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.logs.export import LISTED, check_target
 from tuisim.runs.handle import RunOptions
+from tuisim.runs.presses import press_actions
 
 _GRID, _RESULTS, _LIMITS = "Parameters", "Results", "Input and limits"
 OPTIONS = (
@@ -197,5 +199,5 @@ def _run_options(spec: RunSpec, arguments: Arguments, goals: GoalsFile | None) -
     return RunOptions(
         time_limit_s=arguments.timeout,
         answers=arguments.input or (goals.answers if goals else ()),
-        actions=press_actions(arguments.press, spec.profile.tick_hz),
+        actions=press_actions(arguments.press or (goals.presses if goals else ()), spec.profile.tick_hz),
     )

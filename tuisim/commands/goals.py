@@ -7,20 +7,30 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from tuisim.commands.echo import Progress, echo, echo_error, echo_json, tell
+from tuisim.batch.parameters import parse_seeds
+from tuisim.batch.task import Keep
+from tuisim.commands.batch_options import jobs_option
+from tuisim.commands.echo import Progress, echo, echo_error, echo_json, echo_lines, echo_wrapped, table, tell
+from tuisim.commands.run_options import timeout_option
 from tuisim.config.build import build_run_spec, settings_from
-from tuisim.config.command_line import AS_JSON, Group, argument, command
+from tuisim.config.command_line import AS_JSON, Group, argument, command, option
 from tuisim.config.options import START, settings_of
 from tuisim.errors import ConfigError, counted
 from tuisim.goals.files import GoalsFile, example_names, load_goals
 from tuisim.goals.judge import judge
-from tuisim.goals.judgement import GoalState, Judgement, points
+from tuisim.goals.judgement import GoalState, Judgement, most_points, points
+from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan
+from tuisim.marks.sheet import Sheet, SheetRow, in_words
+from tuisim.runs.handle import RunOptions
+from tuisim.runs.presses import press_actions
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
 _RANGE = re.compile(r"(\d{1,9})\.\.(\d{1,9})")
 _WHERE = ("background", *START)
 """Settings that the places in a goals file depend on."""
+TRIAL_SEEDS = "0..2"
+_RUNS = "Runs"
 _MARKS = {GoalState.MET: "✓", GoalState.MISSED: "✗", GoalState.OPEN: "·"}
 
 
@@ -48,7 +58,7 @@ def check(goals_path: str, words: Sequence[str], as_json: bool) -> int:
             tell(f"checking run {name}", number, len(names))
             run = store.load_run(name)
             found = judge(file.goals, run)
-            all_met = all_met and all(each.state is GoalState.MET for each in found)
+            all_met = all_met and all(each.is_good for each in found)
             for note in (*run.notes, *_differences(file, run)):
                 echo_error(f"note: {note}")
             if as_json:
@@ -79,7 +89,7 @@ def _names(word: str, store: RunStore) -> Iterator[str]:
 
 def _differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
     """Yield notes if a run is not one of the program alone, from the start that a goals file names."""
-    if run.actions:
+    if run.actions and run.actions != press_actions(file.presses, run.spec.profile.tick_hz):
         yield f"run {run.number} was changed while it ran: {counted(len(run.actions), 'action')} of the user"
     try:
         found = settings_from(run.spec)
@@ -109,7 +119,7 @@ def _plain(run: StoredRun, judgements: Sequence[Judgement]) -> dict[str, Any]:
         "id": run.id,
         "program": run.program.name,
         "points": points(judgements),
-        "of": sum(each.goal.points for each in judgements),
+        "of": most_points(each.goal for each in judgements),
         "goals": [
             {
                 "name": each.goal.name,
@@ -127,8 +137,8 @@ def _plain(run: StoredRun, judgements: Sequence[Judgement]) -> dict[str, Any]:
 
 
 def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> None:
-    met = sum(each.state is GoalState.MET for each in judgements)
-    most = sum(each.goal.points for each in judgements)
+    met = sum(each.is_good for each in judgements)
+    most = most_points(each.goal for each in judgements)
     title = f" · {file.title}" if file.title else ""
     echo(
         f"run {run.number}, {run.program.name}{title}: {met} of {counted(len(judgements), 'goal')}, "
@@ -137,12 +147,21 @@ def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> N
     for each in judgements:
         goal = each.goal
         said = f": {goal.say}" if goal.say else ""
-        echo(f"  {_MARKS[each.state]} {goal.name} ({goal.points:g}){said}")
+        echo(f"  {_mark_of(each)} {goal.name} ({goal.points:g}){said}")
         for line in _details(each):
             echo(f"      {line}")
 
 
+def _mark_of(judgement: Judgement) -> str:
+    """Return the mark before a goal; one that takes points off is at its best if it is missed."""
+    is_penalty = judgement.goal.points < 0 and judgement.state is not GoalState.OPEN
+    return _MARKS[GoalState.MET if judgement.is_good else GoalState.MISSED] if is_penalty else _MARKS[judgement.state]
+
+
 def _details(judgement: Judgement) -> Iterator[str]:
+    if judgement.goal.points < 0 and judgement.state is GoalState.MISSED:
+        yield "did not happen"
+        return
     line = f", line {judgement.line}" if judgement.line else ""
     if (event := judgement.event) is not None:
         where = f"{event.state} at {event.time_s:.2f} s, x {event.x_mm:.0f} mm, y {event.y_mm:.0f} mm"
@@ -154,4 +173,56 @@ def _details(judgement: Judgement) -> Iterator[str]:
         yield f"Hint: {judgement.goal.hint}"
 
 
-goals = Group.of("goals", (check,), help="Check whether runs meet the goals of a task.")
+@command(
+    argument("goals_path", "TASK", example_names),
+    argument("wrong", "[PROGRAM…]", nargs=-1),
+    option("--seeds", default=TRIAL_SEEDS, metavar="SEEDS", group=_RUNS,
+           help=f"Run each program with these seeds: 0..4, or 1,2,5 ({TRIAL_SEEDS})."),
+    timeout_option(_RUNS, TIME_LIMIT_S),
+    jobs_option(group=_RUNS),
+    name="try",
+    help="""Say what a task gives to programs that do nothing for it, for its author.
+
+    Runs an empty program, one that stands still and one that prints the answers, then the program that TASK names,
+    its model, and the wrong examples: each PROGRAM, a file or a folder of them. Each is judged as `tuisim mark` does.
+
+    Exit code: 0 if only the model gets points, and wrong examples not all; 1 if not; 2 if a file is wrong.
+    """,
+)  # fmt: skip
+def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, jobs: int) -> int:
+    """Try a task out."""
+    from tuisim.marks.trial import trial_of
+
+    task = load_goals(goals_path)
+    plan = MarkPlan(
+        worlds=task.worlds,
+        seeds=parse_seeds(seeds, "--seeds"),
+        options=RunOptions(time_limit_s=timeout, stall_limit_s=STALL_LIMIT_S),
+        keep=Keep.NONE,
+        jobs=jobs,
+        arguments=settings_of(task.settings)["arguments"],
+    )
+    with Progress("goals try"):
+        trial = trial_of(task, plan, wrong, {})
+    echo_lines(
+        table(("PROGRAM", "POINTS", "MEETS"), [(row.name, *_earned(trial.sheet, row)) for row in trial.sheet.rows])
+    )
+    for fault in trial.faults:
+        echo_wrapped(f"{task.path.name}: {fault}")
+    if not task.program:
+        echo_error(f"note: {task.path.name} names no program, so that no model is tried")
+    if not trial.faults:
+        echo(f"{task.path.name}: all is well")
+    return int(bool(trial.faults))
+
+
+def _earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
+    """Return the points of a program, and which goals it meets."""
+    met = [column.name for column, cell in zip(sheet.columns, row.cells, strict=True) if cell.met]
+    good = all((cell.met == row.runs) is (column.points >= 0)
+               for column, cell in zip(sheet.columns, row.cells, strict=True))  # fmt: skip
+    names = "all" if good and row.runs else ", ".join(met) or "-"
+    return f"{in_words(row.points)} of {in_words(sheet.most_points)}", names
+
+
+goals = Group.of("goals", (check, try_task), help="Check whether runs meet the goals of a task, or try a task out.")

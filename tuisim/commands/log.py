@@ -92,7 +92,11 @@ SUBCOMMANDS: Mapping[str, Subcommand] = {
         "Resample each variable every --period seconds", "tables:even", ("period", "between", *_TABLE)
     ),
     "calc": Subcommand("Evaluate --expression over the columns", "tables:calculate", ("expression", *_FRAME)),
-    "reckon": Subcommand("Compute the pose by dead reckoning, and its error", "tables:reckon", _FRAME),
+    "reckon": Subcommand(
+        "Compare the pose by dead reckoning with the real one; --json or --out FILE for every tick",
+        "tables:reckon",
+        _FRAME,
+    ),
     "diff": Subcommand("Show where two runs differ; exit code 1 if they do", "tables:diff", ("json",), "RUN RUN"),
     "export": Subcommand("Write the log in another format", "tables:export", ("variable", "telemetry", "out")),
     "plot": Subcommand("Draw the chart, as text, SVG or PNG", "documents:plot", _CHART),

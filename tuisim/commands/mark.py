@@ -7,7 +7,6 @@ import shutil
 import sys
 from collections.abc import Mapping, Sequence
 from contextlib import closing, nullcontext
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,36 +19,29 @@ from tuisim.commands.echo import Progress, echo, echo_error, echo_lines, echo_wr
 from tuisim.commands.interruption import Interrupted, signals_raise
 from tuisim.commands.listings import names_of
 from tuisim.commands.run_options import input_option, timeout_option
-from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import Arguments, WordType, argument, command, option
-from tuisim.config.folders import backgrounds_folder
-from tuisim.config.mat_image import decode, read_file
-from tuisim.config.mats import background
 from tuisim.config.options import APP, PANEL, settings_of
-from tuisim.config.program_settings import ProgramSettings, program_settings
 from tuisim.config.shared_options import shared_options
-from tuisim.core.spec import RunSpec
-from tuisim.errors import ConfigError, ExportError, ProfileError, counted, listed, printable, see_page
+from tuisim.errors import ConfigError, ExportError, counted, listed, printable, see_page
 from tuisim.goals.files import GoalsFile, load_goals
-from tuisim.goals.spec import Goal
+from tuisim.goals.trial_world import TrialWorld
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
+from tuisim.marks.entries import entries_of
 from tuisim.marks.feedback import write_feedback
 from tuisim.marks.gradebook import GradebookKind, Roster, read_roster, write_gradebook
 from tuisim.marks.journal import Journal, journal_of
 from tuisim.marks.outcome import Outcome
 from tuisim.marks.overrides import Override, overridden, read_overrides
 from tuisim.marks.page import page_of, reports_folder
-from tuisim.marks.runs import STALL_LIMIT_S, MarkPlan, RunEntry, outcomes_of
-from tuisim.marks.sheet import Sheet, export_marks, lines_of, sheet_of, summary_of
-from tuisim.marks.students import Student, StudentsFound, file_outside, find_students
-from tuisim.regular_file import of_the_machine
+from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan, RunEntry, outcomes_of, runs_of
+from tuisim.marks.sheet import Sheet, columns_of, export_marks, lines_of, sheet_of, summary_of
+from tuisim.marks.students import Student, StudentsFound, find_students
 from tuisim.runs.child.isolation import check_isolation
 from tuisim.runs.child.supervisor import supervised
 from tuisim.runs.handle import RunOptions
 
 PAGE_SUFFIXES = (".html", ".htm")
 DEFAULT_SEEDS = "0..19"
-TIME_LIMIT_S = 120.0
 USUAL_KEEP = Keep.FAILED
 
 _LEFT_OUT = ("seed", "speed")
@@ -118,13 +110,11 @@ def mark(**given: Any) -> int:
         arguments.folders, Path(task.program).name if task.program else "", _excluded(arguments, task)
     )
     roster, overrides = _tutor_files(found, task, arguments)
-    entries, students = _entries(found, task, arguments)
+    entries, students = entries_of(found.students, task, arguments.settings)
     plan = MarkPlan(
-        goals=tuple(task.goals),
+        worlds=task.worlds,
         seeds=seeds,
-        options=RunOptions(
-            time_limit_s=arguments.timeout, stall_limit_s=STALL_LIMIT_S, answers=arguments.input or task.answers
-        ),
+        options=RunOptions(time_limit_s=arguments.timeout, stall_limit_s=STALL_LIMIT_S, answers=arguments.input),
         keep=Keep(arguments.keep or USUAL_KEEP),
         jobs=arguments.jobs,
         isolate=_isolates(arguments),
@@ -139,11 +129,11 @@ def mark(**given: Any) -> int:
         except Interrupted as interrupted:
             _tell_so_far(task, plan, students, outcomes)
             return interrupted.exit_code
-        sheet = overridden(sheet_of(task.title, _columns(task), seeds, students, outcomes), overrides)
+        sheet = overridden(_sheet(task, plan, students, outcomes), overrides)
         # First, so that marks are seen also if a file cannot be written.
         _print(sheet, found.ignored)
         _tell_refusals(students)
-        _write(sheet, task.goals, students, found.ignored, arguments)
+        _write(sheet, task.worlds, students, found.ignored, arguments)
         _write_gradebooks(sheet, students, roster, arguments)
     return max(_tell_unread(students), _tell_missing(outcomes))
 
@@ -176,7 +166,9 @@ def _tutor_files(found: StudentsFound, task: GoalsFile, arguments: Arguments) ->
         ConfigError: one of the files is wrong.
     """
     names = [student.name for student in found.students]
-    overrides = read_overrides(Path(arguments.overrides), _columns(task), names) if arguments.overrides else {}
+    overrides = (
+        read_overrides(Path(arguments.overrides), columns_of(task.every_goal), names) if arguments.overrides else {}
+    )
     if not arguments.roster:
         return Roster({}), overrides
     roster = read_roster(Path(arguments.roster))
@@ -194,17 +186,20 @@ def _tell_so_far(
     done = [
         student
         for student in students
-        if not student.source or len(outcomes[student.name]) == len(plan.seeds) or _gave_up(outcomes[student.name])
+        if not student.source or len(outcomes[student.name]) == runs_of(outcomes[student.name], plan)
     ]
     if done:
-        _print(sheet_of(task.title, _columns(task), plan.seeds, done, outcomes), ())
+        _print(_sheet(task, plan, done, outcomes), ())
     echo_error(f"tuisim: interrupted with {len(done)} of {counted(len(students), 'student')} marked, nothing exported;")
     kept = counted(sum(map(len, outcomes.values())), "run")
     echo_error(f"tuisim: {kept} kept: the same command with --resume goes on")
 
 
-def _gave_up(outcomes: Sequence[Outcome]) -> bool:
-    return bool(outcomes) and outcomes[0].gave_up
+def _sheet(
+    task: GoalsFile, plan: MarkPlan, students: Sequence[Student], outcomes: Mapping[str, Sequence[Outcome]]
+) -> Sheet:
+    worlds = [world.where for world in plan.worlds]
+    return sheet_of(task.title, columns_of(task.every_goal), plan.seeds, students, outcomes, worlds)
 
 
 def _tell_unread(students: Sequence[Student]) -> int:
@@ -237,8 +232,8 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
     """Raise ConfigError or ExportError if something is wrong that would only be noticed after the runs."""
     if not arguments.folders:
         raise ConfigError("no folder of programs is named", "tuisim mark GOALS FOLDER…")
-    if arguments.input and task.answers:
-        raise ConfigError(f"{task.path} has the answers of its dialogues", "give only one of them", key="--input")
+    if arguments.input and any(world.answers for world in task.worlds):
+        raise ConfigError(f"{task.path} has answers", "give only one of them", key="--input")
     targets = [Path(target) for target in arguments.export]
     for target in targets:
         if target.suffix.lower() in PAGE_SUFFIXES:
@@ -263,11 +258,6 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
         raise ConfigError(f"{arguments.feedback} is no folder", "name a folder", key="--feedback")
 
 
-def _columns(task: GoalsFile) -> list[Goal]:
-    """Return the goals that a student is shown, in words: not those that are only parts of others."""
-    return [replace(goal, say=goal.say or goal.name) for goal in task.goals if goal.points or goal.say]
-
-
 def _excluded(arguments: Arguments, task: GoalsFile) -> frozenset[Path]:
     """Return what may lie among the students' files without being one: the goals, and results."""
     found = [task.path]
@@ -280,104 +270,38 @@ def _excluded(arguments: Arguments, task: GoalsFile) -> frozenset[Path]:
     return frozenset(Path(os.path.realpath(path)) for path in found)
 
 
-def _entries(found: StudentsFound, task: GoalsFile, arguments: Arguments) -> tuple[list[RunEntry], list[Student]]:
-    """Return the students whose programs can be run, and all students.
-
-    Raises:
-        ConfigError: the world of the goals, or an option, is wrong, or none of the programs can run by its profile.
-    """
-    shared = build_run_spec(settings_of(task.settings, arguments.settings))
-    names_profile = "profile" in {**task.settings, **arguments.settings}
-    entries, students, misfits = [], [], []
-    for student in found.students:
-        spec = shared
-        if student.source:
-            try:
-                own = _settings(student, task, arguments)
-                spec = build_run_spec(own.settings)
-                if not task.settings:
-                    _check_background(spec)
-                student = replace(student, refusal=own.decided.refusal)
-            except ConfigError as error:
-                misfits += [error] if isinstance(error, ProfileError) and names_profile else []
-                cause = error.__cause__
-                is_unread = isinstance(cause, OSError) and of_the_machine(cause)
-                student = replace(student, source=None, problem=_told(error, student), is_unread=is_unread)
-        if student.source:
-            entries.append(RunEntry(student, spec))
-        students.append(student)
-    if misfits and not entries:
-        raise misfits[0]
-    return entries, students
-
-
-def _settings(student: Student, task: GoalsFile, arguments: Arguments) -> ProgramSettings:
-    """Return the settings of a student's program: in the world of the goals if they name one, else of its magic line.
-
-    In the world of the goals, the rules are those for the program's library where the goals name no others.
-
-    Raises:
-        ConfigError: the line, or a file that it names, is wrong.
-        ProfileError: a profile is named for another library.
-    """
-    assert student.source is not None
-    if task.settings:
-        bare = replace(student.source, options={})
-        return program_settings(bare, task.settings, arguments.settings, in_world=True, of_task=True)
-    if outside := file_outside(student):
-        raise ConfigError("the magic line names a file outside the folder", key=outside)
-    return program_settings(student.source, arguments.settings)
-
-
-def _check_background(spec: RunSpec) -> None:
-    """Read a picture of the student's own, to detect a damaged one before the runs.
-
-    Raises:
-        ConfigError: it is no picture, or it cannot be read.
-    """
-    image = background(spec.world.background).image
-    if not image.is_relative_to(backgrounds_folder()):
-        # A run for which it cannot be read is one that this machine could not make.
-        decode(read_file(image), image, spec.world.background_fit)
-
-
-def _told(error: ConfigError, student: Student) -> str:
-    """Return what is wrong, with the student's files named as they are in the folder."""
-    folder = student.path if student.path.is_dir() else student.path.parent
-    text = str(error)
-    for place in (os.path.abspath(folder), os.path.realpath(folder), str(folder)):
-        text = text.replace(f"{place}{os.sep}", "")
-    return printable(text)
-
-
 def _collect(
     entries: Sequence[RunEntry], plan: MarkPlan, journal: Path, outcomes: dict[str, list[Outcome]], *, resumes: bool
 ) -> None:
     """Run what is to be run; add the outcomes by name of student as they become known."""
-    total = len(entries) * len(plan.seeds)
+    wanted = {entry.student.name: runs_of((), plan) for entry in entries}
     with Journal(journal, resumes=resumes) as known, closing(outcomes_of(entries, plan, known)) as found:
         for done, (name, outcome) in enumerate(found, start=1):
             outcomes[name].append(outcome)
-            if outcome.gave_up and len(outcomes[name]) == 1:
-                total -= len(plan.seeds) - 1
+            wanted[name] = runs_of(outcomes[name], plan)
+            total = sum(wanted.values())
             tell(f"run {done} of {total}", done, total)
 
 
 def _write(
-    sheet: Sheet, goals: Sequence[Goal], students: Sequence[Student], ignored: Sequence[str], arguments: Arguments
+    sheet: Sheet,
+    worlds: Sequence[TrialWorld],
+    students: Sequence[Student],
+    ignored: Sequence[str],
+    arguments: Arguments,
 ) -> None:
     for target in map(Path, arguments.export):
         if target.suffix.lower() in EXPORTERS:
             tell(f"writing {target}")
             export_marks(sheet, target)
             continue
-        _write_page(sheet, goals, students, ignored, target)
+        _write_page(sheet, worlds, students, ignored, target)
     if arguments.feedback:
         write_feedback(Path(arguments.feedback), sheet, [student.text for student in students])
 
 
 def _write_page(
-    sheet: Sheet, goals: Sequence[Goal], students: Sequence[Student], ignored: Sequence[str], target: Path
+    sheet: Sheet, worlds: Sequence[TrialWorld], students: Sequence[Student], ignored: Sequence[str], target: Path
 ) -> None:
     # Their charts are slow to import, and a table needs none.
     from tuisim.marks.class_map import class_maps
@@ -386,8 +310,8 @@ def _write_page(
 
     kept = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
     links, misses = {}, []
-    for one in write_reports(sheet, goals, target):
-        links[one.student, one.seed] = one.path
+    for one in write_reports(sheet, worlds, target):
+        links[one.student, one.world, one.seed] = one.path
         misses.append(one.misses)
         tell(f"report {len(links)} of {kept}", len(links), kept)
     alike = similar({student.name: student.text for student in students})

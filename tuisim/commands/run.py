@@ -14,9 +14,10 @@ from tuisim.commands.listings import COLUMN, WORLD, names_of
 from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
 from tuisim.commands.relay import Follower, RelayInterrupts
 from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
-from tuisim.commands.run_options import input_option, parse_press, press_actions, timeout_option
+from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.command_line import Arguments, WordType, argument, choice, command, option
 from tuisim.config.options import APP, PANEL
+from tuisim.config.presses import parse_press
 from tuisim.config.shared_options import shared_options
 from tuisim.config.user_config import FILE, Section, load_config
 from tuisim.core.geometry import pose_in_words
@@ -25,6 +26,7 @@ from tuisim.errors import SIGNALLED, ConfigError, ExportError, LogError, TuisimE
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
 from tuisim.protocol import Inspect, Inspected, Message, Paused, Resume
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.runs.presses import press_actions
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 from tuisim.source import source_lines
@@ -276,8 +278,8 @@ def _run_one(
         live=speed > 0,
         speed=speed,
         time_limit_s=arguments.timeout,
-        answers=arguments.input,
-        actions=press_actions(arguments.press, one.spec.profile.tick_hz),
+        answers=arguments.input or (one.world.inputs if one.world else ()),
+        actions=press_actions(arguments.press or (one.world.presses if one.world else ()), one.spec.profile.tick_hz),
         breaks=arguments.breaks,
     )
     handle = start_run(one.program, one.spec, options, store)

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import UTC, datetime, timedelta
+from math import degrees
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +29,11 @@ from tuisim.commands.echo import (
 from tuisim.commands.exit_status import describe, last_state
 from tuisim.commands.movies import movie, picture
 from tuisim.config.command_line import AS_JSON, Group, WordType, argument, command, option
+from tuisim.config.files import toml_form
 from tuisim.config.options import RUN_VALUES
 from tuisim.core import tree
+from tuisim.core.drift import drawn_errors
+from tuisim.core.spec import RunSpec
 from tuisim.core.values import shown
 from tuisim.errors import ConfigError, LogError, counted, shortened
 from tuisim.logs.export import EXPORTERS, LISTED, check_targets, export_samples, export_telemetry
@@ -132,7 +136,7 @@ def _plain(row: OutputRow) -> dict[str, object]:
 
 def _values(run: StoredRun) -> dict[str, Any]:
     """Return the values of a run that options and world files set, by path."""
-    return {path: tree.at(run.spec, one.spec_path) for path, one in RUN_VALUES.items()}
+    return {path: toml_form(one.value, tree.at(run.spec, one.spec_path)) for path, one in RUN_VALUES.items()}
 
 
 def _files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
@@ -141,6 +145,14 @@ def _files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
         return read_reads(run.folder), ()
     except LogError as error:
         return FilesRead(), (str(error),)
+
+
+def _drawn_words(spec: RunSpec) -> str:
+    """Return the errors that the seed of a run with drift has drawn."""
+    drawn = drawn_errors(spec.world.drift, spec.seed)
+    sizes = {"left wheel": drawn.left, "right wheel": drawn.right, "spacing": drawn.spacing}
+    parts = [f"{name} {100 * (times - 1):+.2f} %" for name, times in sizes.items()]
+    return ", ".join((*parts, f"gyro {drawn.gyro_dps:+.3f} °/s", f"light from {degrees(drawn.bright_rad):.0f}°"))
 
 
 def _show(run: StoredRun, *, as_json: bool) -> None:
@@ -160,6 +172,8 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
         f"{path} {shown(value)}" for path, value in _values(run).items() if value != RUN_VALUES[path].default
     ]:
         echo(f"values: {', '.join(chosen)}")
+    if not run.spec.world.drift.is_none:
+        echo(f"drawn: {_drawn_words(run.spec)}")
     if facts["arguments"]:
         echo(f"arguments: {shlex.join(facts['arguments'])}")
     read, damage = _files_read(run)

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from tuisim.atomic import replacing
 from tuisim.config.folders import user_path
 from tuisim.core.spec_fields import Spec
-from tuisim.core.values import NamedNumber, Value, WrongValue, shown, values_of
+from tuisim.core.values import NamedNumber, NamedPart, Value, WrongValue, shown, values_of
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, closest, did_you_mean, nearest
 
@@ -471,6 +471,8 @@ def toml_form(value: Value, found: Any) -> Scalar:
     """Return a value as a file gives it."""
     if isinstance(value, NamedNumber):
         return value.named(found)
+    if isinstance(value, NamedPart):
+        return value.to_text(found)
     scalar: Scalar = list(found) if isinstance(found, tuple) else found
     return scalar
 

@@ -35,7 +35,8 @@ def parse(value: Value, text: str, key: str) -> Any:
     try:
         return value.from_text(text)
     except WrongValue as error:
-        raise ConfigError(error.message, error.hint, key=key) from None
+        where = f"{key} {error.part}" if error.part else key
+        raise ConfigError(error.message, error.hint, key=where) from None
 
 
 class Name(Value):

@@ -8,16 +8,19 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from tuisim.config.files import Location
-from tuisim.config.options import Settings
+from tuisim.config.files import Location, read_part
+from tuisim.config.options import RUN_VALUES, Settings
 from tuisim.config.profiles import load_profile, profile_from_table
 from tuisim.config.robots import RobotChoice, choose_robot, robot_from_table
 from tuisim.config.worlds import world_from_table
 from tuisim.core.profile import ProfileSpec
+from tuisim.core.values import NamedPart
 from tuisim.errors import ProfileError, RobotError
 
 _NOT_VARIED = ("world", "title", "goal", "program", "autorun", "rays", "panels", "hidden_panels", "obstacle", "remote")
 """Keys of a world file that do not affect a run, or that have no single value."""
+_PARTS = {path: one.default for path, one in RUN_VALUES.items() if isinstance(one.value, NamedPart)}
+"""The default of each value that has others inside it: a key of one leaves the others as they are."""
 
 
 def settings_of_keys(values: Mapping[str, Any], chosen: Settings, path: Path) -> dict[str, Any]:
@@ -40,7 +43,10 @@ def settings_of_keys(values: Mapping[str, Any], chosen: Settings, path: Path) ->
         table["arguments"] = _words(table["arguments"], at.at("arguments"))
     changed = {key: table.pop(key) for key in ("robot", "profile") if isinstance(table.get(key), dict)}
     named = {key: table.pop(f"{key}=") for key in ("robot", "profile") if f"{key}=" in table}
+    parts = {key: table.pop(key) for key, base in _PARTS.items() if isinstance(table.get(key), dict)}
     found = dict(world_from_table(table | named, path, chosen["mats"]).settings)
+    for key, inside in parts.items():
+        found[key] = read_part(inside, chosen[key] or _PARTS[key], at.at(key))
     if "robot" in changed:
         word = found.get("robot", chosen["robot"])
         found["robot"] = _changed_robot(changed["robot"], word, at.at("robot", RobotError))

@@ -7,6 +7,7 @@ import os
 import re
 import shlex
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -142,6 +143,49 @@ def find_magic(text: str, name: str) -> Magic | None:
             raise ConfigError(f"the magic line cannot be split into words: {error}", file=where) from None
         return Magic(number, PRELUDES[match["name"]], options, match["comment"] is not None)
     return None
+
+
+def with_mat(text: str, name: str, mat: str) -> str:
+    """Return a program whose magic line names a mat; if it has none, with a line for the preloaded prelude.
+
+    Args:
+        text: The program.
+        name: Of its file, for errors.
+        mat: Name of the mat, or path of its image.
+
+    Raises:
+        ConfigError: the magic line that is there is wrong.
+    """
+    magic = find_magic(text, name)
+    lines = text.split("\n")
+    if magic is None:
+        at = _after_docstring(lines)
+        return "\n".join([*lines[:at], f"# %%sim_magic_preloaded -b {shlex.quote(mat)}", *lines[at:]])
+    line = lines[magic.line - 1].rstrip()
+    wanted = {**magic.options, "background": mat}
+    before, quoted = str(magic.options.get("background", "\n")), shlex.quote(mat)
+    # Of several the last one counts.
+    named = (line.rpartition(word) for word in (f'"{before}"', shlex.quote(before), before))
+    for changed in (*(f"{one[0]}{quoted}{one[2]}" for one in named if one[1]), f"{line} -b {quoted}"):
+        lines[magic.line - 1] = changed
+        with suppress(ConfigError):
+            found = find_magic("\n".join(lines), name)
+            if found is not None and dict(found.options) == wanted:
+                break
+    return "\n".join(lines)
+
+
+def _after_docstring(lines: list[str]) -> int:
+    """Return the index of the line after the docstring, or after the lines that Python wants to be first."""
+    try:
+        first = ast.parse("\n".join(lines)).body[:1]
+    # It is being edited.
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        first = []
+    match first:
+        case [ast.Expr(value=ast.Constant(value=str()), end_lineno=int(last))]:
+            return last
+    return next((at for at, line in enumerate(lines[:2]) if not line.startswith(("#!", "# -*-"))), 0)
 
 
 def prelude_for(text: str, path: str = "") -> str:

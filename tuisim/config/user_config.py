@@ -13,7 +13,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from tuisim.config.files import Location, Scalar, means_file, parse_toml, read_value, table
+from tuisim.config.files import Location, Scalar, means_file, parse_toml, read_value, table, toml_form
 from tuisim.config.folders import config_folder, user_path
 from tuisim.config.options import OF_THE_APP, OPTIONS, Name, Settings
 from tuisim.core.values import Value, shown
@@ -78,7 +78,8 @@ def _of_options() -> Iterator[Setting]:
     for option in OPTIONS:
         if option.value.in_config and option.constant is not False:
             section = Section.APP if option.path in OF_THE_APP else Section.SIMULATION
-            yield Setting(section, option.name, option.value, option.default, option.path, option.is_live)
+            default = toml_form(option.value, option.default)
+            yield Setting(section, option.name, option.value, default, option.path, option.is_live)
 
 
 THEME, CELL_SET = f"{Section.APP}.theme", f"{Section.APP}.cells"

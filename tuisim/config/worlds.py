@@ -17,6 +17,7 @@ from tuisim.config.folders import programs_folder, user_path
 from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import load_obstacles, obstacle_lines, obstacles_from_list
 from tuisim.config.options import OPTION_PANELS, RUN_VALUES, settings_of
+from tuisim.config.presses import ButtonPress, parse_press
 from tuisim.config.profiles import load_profile, profile_from_table, profile_lines
 from tuisim.config.robots import RobotChoice, load_robot, robot_from_table, robot_lines
 from tuisim.core import tree
@@ -56,7 +57,10 @@ class _World(Struct):
     beacon: Any = UNSET
     remote: Any = UNSET
     title: Any = UNSET
+    press: Given[list[Any]] = UNSET
+    inputs: Given[list[Any]] = UNSET
     goal: Any = UNSET
+    also: Any = UNSET
 
 
 _TABLES: Mapping[str, tuple[str, ...]] = {
@@ -65,7 +69,9 @@ _TABLES: Mapping[str, tuple[str, ...]] = {
 }
 """The keys of each table with values of a run; none for a value that is in no table."""
 
-_NOT_IN_A_RUN = ("world", "mats", "rays", "autorun", "panels", "hidden_panels", "title", "goal")
+_DEFAULTS = {path: files.toml_form(one.value, one.default) for path, one in RUN_VALUES.items() if one.value.later}
+_OF_TASKS = ("title", "press", "inputs", "goal", "also")
+_NOT_IN_A_RUN = ("world", "mats", "rays", "autorun", "panels", "hidden_panels", *_OF_TASKS)
 """Keys that stay as they are when a run is saved into a file that has them."""
 _PANEL_FIELDS = {"panels": "panels_on", "hidden_panels": "panels_off"}
 
@@ -87,6 +93,10 @@ class WorldFile:
     """The file itself, and the files that it refers to."""
     is_task: bool = False
     """Whether it has goals: then its robot is the same for every program."""
+    presses: tuple[ButtonPress, ...] = ()
+    """The buttons of the brick that are pressed in a run."""
+    inputs: tuple[str, ...] = ()
+    """The answers to `input()` in a run."""
 
 
 def means_world(word: str) -> bool:
@@ -152,11 +162,25 @@ def world_from_table(data: object, path: Path, mats: str | None = None, above: t
         found["arguments"] = tuple(_argument(word, at.at(f"arguments[{number}]")) for number, word in words)
     program = _program(world["program"], path.parent, resolve) if "program" in world else None
     is_task = "goal" in world
+    presses = tuple(_press(text, place) for text, place in _texts(world, "press", at))
+    inputs = tuple(text for text, _ in _texts(world, "inputs", at))
     if "world" not in world:
-        return WorldFile(path, found, program, (path, *referred), is_task)
+        return WorldFile(path, found, program, (path, *referred), is_task, presses, inputs)
     base = _base(world["world"], at.at("world"), resolve, mats, (*above, path))
     every = (path, *referred, *base.files)
-    return WorldFile(path, {**base.settings, **found}, program or base.program, every, is_task or base.is_task)
+    return WorldFile(path, {**base.settings, **found}, program or base.program, every, is_task or base.is_task,
+                     presses or base.presses, inputs or base.inputs)  # fmt: skip
+
+
+def _texts(world: Mapping[str, Any], key: str, at: Location) -> list[tuple[str, Location]]:
+    """Return the texts in a list, each with its place."""
+    listed = files.entries(world.get(key, []), at.at(key), MAX_PRESSES, key)
+    return [(files.convert(text, str, place), place) for text, place in listed]
+
+
+def _press(text: str, at: Location) -> ButtonPress:
+    with files.errors_at(at.file, at.key):
+        return parse_press(text, "")
 
 
 def _base(word: str, at: Location, resolve: Resolver, mats: str | None, above: tuple[Path, ...]) -> WorldFile:
@@ -306,8 +330,10 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None, argumen
         top["arguments"] = list(arguments)
     mat = settings["background"]
     top["background"] = _relative(mat, folder) if os.sep in mat else mat
-    values = {path: tree.at(spec, one.spec_path) for path, one in RUN_VALUES.items()}
-    of_world = {name: values[name] for name, keys in _TABLES.items() if not keys}
+    values = {path: files.toml_form(one.value, tree.at(spec, one.spec_path)) for path, one in RUN_VALUES.items()}
+    # What came later is left out at its default, so that files do not change.
+    left_out = {path for path, one in RUN_VALUES.items() if one.value.later and values[path] == _DEFAULTS[path]}
+    of_world = {name: values[name] for name, keys in _TABLES.items() if not keys and name not in left_out}
     presets = {key: settings[key] for key in ("robot", "obstacles", "profile") if isinstance(settings[key], str)}
     top |= of_world | presets
     comments = {**_COMMENTS, **{path: one.value.help for path, one in RUN_VALUES.items()}}

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, assert_never
 from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.collision import Solids
+from tuisim.core.drift import MOST_TIMES, slipping_wheels
 from tuisim.core.drive import BrickDrive, BrowserDrive, Drive, Glide, Records, mm_per_degree
 from tuisim.core.end_stops import flags_at_start
 from tuisim.core.motors import POSITION, Motor, MotorState, top_speed_dps
@@ -87,8 +88,8 @@ class Motion:
 
     __slots__ = (
         "_buffer", "_early", "_hz", "_left_dps", "_left_mm_per_deg", "_longest_mm", "_right_dps", "_right_mm_per_deg",
-        "_room_end", "_sink", "_solids", "_spacing_mm", "_tick_s", "actions", "changed", "drive", "end_flags", "left",
-        "line", "noise", "pen_down", "right", "spec", "stall_ticks", "tick",
+        "_room_end", "_sink", "_slipping", "_solids", "_spacing_mm", "_tick_s", "actions", "changed", "drive",
+        "end_flags", "left", "line", "noise", "pen_down", "right", "spec", "stall_ticks", "tick",
     )  # fmt: skip
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
@@ -104,6 +105,7 @@ class Motion:
             # One wheel at full speed forwards, the other backwards.
             fastest = max(top_speed_dps(motor.kind, spec.profile) for motor in spec.robot.wheel_motors)
             farthest = fastest * self._tick_s * abs(self._left_mm_per_deg)
+            farthest *= 1 if spec.world.drift.is_none else MOST_TIMES
             self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
         self.tick = 0
         left, right = spec.robot.wheel_motors
@@ -126,6 +128,7 @@ class Motion:
         self.noise = spec.world.noise
         self.drive = drive_of(spec)
         """The robot's pose and how its wheels change it."""
+        self._slipping = slipping_wheels(spec)
         self._buffer: Buffer = sink.room(ROOM_TICKS)
         self._room_end = ROOM_TICKS
         """Number of records the buffer has space for."""
@@ -152,7 +155,7 @@ class Motion:
 
     def _quiet_ticks(self, most: int) -> int:
         """Return for how many ticks, at most `most`, nothing but ramps and motion happens."""
-        if self.noise.motor and not self._glides_with_noise():
+        if self._slipping is not None or (self.noise.motor and not self._glides_with_noise()):
             return 0
         return min(
             most,
@@ -175,7 +178,7 @@ class Motion:
         buffer = self._buffer if count < self._room_end else self._make_room(1)
         self.tick = tick = self.tick + 1
         left, right, drive = self.left, self.right, self.drive
-        before, aside_mm = None, None
+        before, aside_mm, slipping = None, None, self._slipping
         if self._solids is not None and self._solids.remaining_mm(self._pose()) < self._longest_mm:
             before = left.state(), right.state()
         noise = self.noise.motor
@@ -184,9 +187,16 @@ class Motion:
         left_deg, right_deg = left.step(tick, left_noise), right.step(tick, right_noise)
         if left.mode != left_mode or right.mode != right_mode:
             self.changed = True
+        left_roll, right_roll = left_deg, right_deg
+        if slipping is not None:
+            left_roll, right_roll = slipping.turned_deg(tick, left_deg, right_deg)
         if before is not None:
-            left_deg, right_deg, aside_mm = self._obstructed(before, left_deg, right_deg)
-        drive.roll(left_deg, right_deg)
+            part, aside_mm = self._obstructed(before, left_roll, right_roll)
+            left_deg, right_deg = left_deg * part, right_deg * part
+            left_roll, right_roll = left_roll * part, right_roll * part
+        drive.roll(left_roll, right_roll)
+        if slipping is not None:
+            drive.gyro_zero_deg = slipping.gyro_zero_deg(drive.gyro_zero_deg)
         if aside_mm is not None:
             drive.x_mm, drive.y_mm = drive.x_mm + aside_mm[0], drive.y_mm + aside_mm[1]
         self._left_dps, self._right_dps = left_deg * self._hz, right_deg * self._hz
@@ -236,26 +246,26 @@ class Motion:
 
     def _obstructed(
         self, before: tuple[MotorState, MotorState], left_deg: float, right_deg: float
-    ) -> tuple[float, float, tuple[float, float] | None]:
+    ) -> tuple[float, tuple[float, float] | None]:
         """Undo the part of a tick that an obstacle or wall blocks.
 
         Returns:
-            The remaining degrees of each wheel's motor, and the displacement that pushes the robot aside along x and y.
+            The part of the tick that remains, and the displacement that pushes the robot aside along x and y.
         """
         left_mm, right_mm = left_deg * self._left_mm_per_deg, right_deg * self._right_mm_per_deg
         if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
-            return left_deg, right_deg, None
+            return 1.0, None
         turn_deg = degrees((right_mm - left_mm) / self._spacing_mm)
         pose = self._pose()
         part, aside_mm = self._solids.leeway(pose, (left_mm + right_mm) / 2, turn_deg)
         if part == 1.0:
             self.left.blocked_ticks = self.right.blocked_ticks = 0
-            return left_deg, right_deg, aside_mm
+            return part, aside_mm
         for motor, state, turned_deg in zip((self.left, self.right), before, (left_deg, right_deg), strict=True):
             motor.hold_back(state, turned_deg, part)
             if motor.blocked_ticks == self.stall_ticks:
                 self.changed = True
-        return left_deg * part, right_deg * part, aside_mm
+        return part, aside_mm
 
     def _fields(self) -> tuple[float, ...]:
         """Return the record of the current tick."""

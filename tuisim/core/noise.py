@@ -144,6 +144,12 @@ def _reading_block(seed: int, block: int, channel: str) -> bytes:
     return stream(seed, block, f"{channel}/mean", _BLOCK_TICKS * _READING_BYTES)
 
 
+def drawn_numbers(seed: int, tick: int, channel: str, count: int) -> list[float]:
+    """Return numbers from 0 up to 1, evenly distributed, for one seed, tick and channel."""
+    numbers = Struct(f"<{count}I").unpack(stream(seed, tick, channel, 4 * count))
+    return [number / _NUMBERS for number in numbers]
+
+
 def reading_noise(seed: int, tick: int, channel: str) -> tuple[float, float, float]:
     """Return three normally distributed numbers for what a sensor reads in one tick."""
     block, offset = divmod(tick, _BLOCK_TICKS)
@@ -181,9 +187,9 @@ def noisy_channel(pixels: bytes, total: int, level: int, random: bytes) -> bytes
 
 
 @lru_cache(maxsize=8)
-def _wheel_block(seed: int, block: int, most_dps: int) -> tuple[list[float], list[float]]:
-    numbers = _WHEEL_NUMBERS.unpack(stream(seed, block, "wheels", _WHEEL_NUMBERS.size))
-    noises = [(number / 2147483647.5 - 1.0) * most_dps for number in numbers]
+def _wheel_block(seed: int, block: int, most: float, channel: str = "wheels") -> tuple[list[float], list[float]]:
+    numbers = _WHEEL_NUMBERS.unpack(stream(seed, block, channel, _WHEEL_NUMBERS.size))
+    noises = [(number / 2147483647.5 - 1.0) * most for number in numbers]
     return noises[0::2], noises[1::2]
 
 
@@ -202,4 +208,10 @@ def wheel_noises(seed: int, tick: int, count: int, most_dps: int) -> tuple[list[
 def wheel_noise(seed: int, tick: int, most_dps: int) -> tuple[float, float]:
     """Return the noise of the left and the right wheel in one tick: uniform, up to ±`most_dps`."""
     left, right = _wheel_block(seed, tick // _BLOCK_TICKS, most_dps)
+    return left[tick % _BLOCK_TICKS], right[tick % _BLOCK_TICKS]
+
+
+def wheel_slip(seed: int, tick: int) -> tuple[float, float]:
+    """Return a number for the slip of the left and the right wheel in one tick: uniform, with a variance of 1."""
+    left, right = _wheel_block(seed, tick // _BLOCK_TICKS, sqrt(3), "slip")
     return left[tick % _BLOCK_TICKS], right[tick % _BLOCK_TICKS]

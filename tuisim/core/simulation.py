@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
+from tuisim.core.drift import sensed_turn_rate_dps
 from tuisim.core.drive import float32, turn_rate_dps
 from tuisim.core.end_stops import EndStops
 from tuisim.core.geometry import Pose
@@ -44,7 +45,7 @@ class Simulation(Motion):
 
     def instant(self) -> Instant:
         """Return the current instant, with values rounded as the telemetry stores them."""
-        left, right = float32(self._left_dps), float32(self._right_dps)
+        left, right, spec = float32(self._left_dps), float32(self._right_dps), self.spec
         return Instant(
             tick=self.tick,
             pose=self.pose,
@@ -52,11 +53,14 @@ class Simulation(Motion):
             right_position_deg=self.right.position_deg,
             left_speed_dps=left,
             right_speed_dps=right,
-            turn_rate_dps=turn_rate_dps(left, right, self.spec.robot),
+            turn_rate_dps=turn_rate_dps(left, right, spec.robot)
+            if self._slipping is None
+            else sensed_turn_rate_dps(left, right, spec),
             gyro_zero_deg=self.drive.gyro_zero_deg,
             end_flags=self.end_flags,
             noise=self.noise,
-            seed=self.spec.seed,
+            drift=spec.world.drift,
+            seed=spec.seed,
         )
 
     def records_since(self, first: int) -> Iterator[tuple[float, ...]]:

@@ -13,6 +13,7 @@ import re
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from tuisim.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ProfileSpec
 from tuisim.core.spec_fields import (
@@ -21,6 +22,7 @@ from tuisim.core.spec_fields import (
     color,
     flag,
     named_number,
+    named_part,
     number,
     numbers,
     part,
@@ -57,6 +59,9 @@ centre or from the upper left corner."""
 
 MOTOR_KINDS = ("large", "medium")
 """Kinds of motors, for `MotorSpec.kind` and the wheel motors."""
+
+BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
+"""The brick's buttons, by their names in the library."""
 
 REMOTE_BUTTONS = ("top_left", "bottom_left", "top_right", "bottom_right", "beacon")
 """Buttons of the remote control, by their names in ev3dev2."""
@@ -525,6 +530,11 @@ class WorldSpec(Spec):
     """Whether the pen marks the mat that the sensors see."""
     start: Pose = part(Pose, values=START_VALUES, default=Pose(100.0, 800.0, 0.0))
     noise: NoiseSpec = part(NoiseSpec, default=NoiseSpec())
+    drift: DriftSpec = named_part(
+        DriftSpec, default=NO_DRIFT, later=True, label="Drift", flags=("--drift",),
+        help="errors of wheels and sensors: none, typical, or values",
+    )  # fmt: skip
+    """Errors of wheels and sensors that a program does not know of."""
     beacon: BeaconSpec | None = part(BeaconSpec, default=None)
     """An infrared beacon."""
     remote: tuple[RemotePress, ...] = parts(RemotePress, default=())

@@ -14,6 +14,7 @@ from tuisim.core.values import (
     Color,
     Flag,
     NamedNumber,
+    NamedPart,
     Number,
     Numbers,
     Part,
@@ -87,6 +88,11 @@ def part(of: type, *, default: Any = MISSING, optional: bool = False, **about: A
     """Return a field for a `Part`."""
     value = Part(of, **about)
     return _field(value, default, optional=optional)
+
+
+def named_part(of: type, *, default: Any = MISSING, **about: Any) -> Any:
+    """Return a field for a `NamedPart`."""
+    return _field(NamedPart(of, **about), default)
 
 
 def parts(of: type, *, default: Any = MISSING, **about: Any) -> Any:
@@ -176,7 +182,21 @@ class Spec:
 
 @dataclass_transform(
     frozen_default=True,
-    field_specifiers=(flag, number, whole, seed, named_number, numbers, text, choice, some, color, part, parts),
+    field_specifiers=(
+        flag,
+        number,
+        whole,
+        seed,
+        named_number,
+        numbers,
+        text,
+        choice,
+        some,
+        color,
+        part,
+        named_part,
+        parts,
+    ),
 )
 def spec(cls: type[_Spec]) -> type[_Spec]:
     """Make a class a spec: a subclass of `Spec` whose fields are values."""

@@ -9,19 +9,22 @@ from typing import Any, TypeVar
 from tuisim.core.profile import ProfileSpec, profile_from_plain, profile_to_plain
 from tuisim.core.spec import RunSpec
 from tuisim.core.spec_fields import Spec
-from tuisim.core.values import Part, Parts, Value, values_of
+from tuisim.core.values import NamedPart, Part, Parts, Value, values_of
 
 _Node = TypeVar("_Node")
 
 
 def leaves(kind: type) -> Iterator[tuple[str, Value]]:
-    """Yield path and value of all that every spec of a class has: not of sensors, which may be there or not."""
+    """Yield path and value of all that every spec of a class has: not of sensors, which may be there or not.
+
+    Values that are given together are one.
+    """
     for name, value in values_of(kind).items():
         yield from _leaves(name, value)
 
 
 def _leaves(path: str, value: Value) -> Iterator[tuple[str, Value]]:
-    if not isinstance(value, Part):
+    if not isinstance(value, Part) or isinstance(value, NamedPart):
         yield path, value
     elif not isinstance(value, Parts) and not value.optional:
         for name, inner in value.values.items():

@@ -11,11 +11,11 @@ from __future__ import annotations
 import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import Field
+from dataclasses import Field, replace
 from re import Pattern
 from typing import Any
 
-from tuisim.errors import closest, did_you_mean
+from tuisim.errors import closest, did_you_mean, nearest
 
 METADATA = "value"
 """Where a field has its value."""
@@ -486,6 +486,88 @@ class Part(Value):
     def from_data(self, data: object) -> Any:
         # A table of a file is read key by key, by `tuisim.config.files`.
         raise self.wrong(data)
+
+
+class NamedPart(Part):
+    """A spec of numbers inside another one, all given together: by the name of their sizes, or one by one.
+
+    The names are those that its numbers have, and `none` for their defaults. As text it is a name and what differs from
+    it, such as `typical gyro_dps=0`.
+    """
+
+    __slots__ = ()
+
+    @property
+    def allowed(self) -> str:
+        return f"{' or '.join(self._sizes)}, then values such as {self._example}"
+
+    @property
+    def _example(self) -> str:
+        return next(f"{name}=1" for name in self.values)
+
+    @property
+    def _sizes(self) -> dict[str, dict[str, float]]:
+        numbers = {name: one for name, one in self.values.items() if isinstance(one, NamedNumber)}
+        words = dict.fromkeys(word for one in numbers.values() for word in one.names)
+        return {"none": {}} | {word: {name: one.names[word] for name, one in numbers.items()} for word in words}
+
+    @property
+    def metavar(self) -> str:
+        return "SIZES"
+
+    @property
+    def choices(self) -> tuple[Any, ...]:
+        return tuple(self._sizes)
+
+    def from_data(self, data: object) -> Any:
+        if isinstance(data, self.of):
+            return data
+        if isinstance(data, dict):
+            return self.changed(self.of(), data)
+        if not isinstance(data, str) or not data.strip():
+            raise self.wrong(data)
+        found: dict[str, object] = {}
+        for place, word in enumerate(data.replace(",", " ").split()):
+            name, equals, text = word.partition("=")
+            if equals:
+                found[name] = _number_or_text(text)
+            elif place or name not in self._sizes:
+                raise WrongValue(f"no such value {shown(word)}", self.allowed)
+            else:
+                found |= self._sizes[name]
+        return self.changed(self.of(), found)
+
+    def changed(self, base: Any, data: Mapping[str, object]) -> Any:
+        """Return the spec with some of its values replaced by those that a document gives.
+
+        Raises:
+            WrongValue: one is unknown, or not allowed.
+        """
+        found = {}
+        for name, one in data.items():
+            if name not in self.values:
+                raise WrongValue("no such key", nearest(name, self.values), name)
+            try:
+                found[name] = self.values[name].from_data(one)
+            except WrongValue as error:
+                raise WrongValue(error.message, error.hint, name) from None
+        return replace(base, **found)
+
+    def to_text(self, value: Any) -> str:
+        usual = [(word, self.from_data(word)) for word in self._sizes]
+        (word, near), *_ = sorted(usual, key=lambda one: len(self._apart(value, one[1])))
+        apart = [f"{name}={getattr(value, name)!r}".removesuffix(".0") for name in self._apart(value, near)]
+        return " ".join(apart if apart and near == self.of() else (word, *apart))
+
+    def _apart(self, value: Any, other: Any) -> list[str]:
+        return [name for name in self.values if getattr(value, name) != getattr(other, name)]
+
+
+def _number_or_text(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 class Parts(Part):

@@ -138,9 +138,7 @@ def _found(condition: UseCondition | AvoidCondition, evidence: Evidence) -> dict
     program = evidence.program
     try:
         return {call: lines_of_calls(program.text, program.prelude, call) for call in condition.calls}
-    except SyntaxError as error:
-        return Occurrence(None, f"The program is not Python: {error.msg}.", error.lineno or 0)
-    except (ValueError, RecursionError, MemoryError) as error:
+    except RecursionError as error:
         return Occurrence(None, f"The program cannot be read: {error}.")
 
 

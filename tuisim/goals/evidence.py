@@ -8,10 +8,11 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from tuisim.config.mat_cache import open_field
-from tuisim.core.conditions import ValueCondition, ValueSource
+from tuisim.core.conditions import Operator, ValueCondition, ValueSource
 from tuisim.core.field import Field
 from tuisim.core.profile import NS_PER_S
 from tuisim.data_class import dataclass
+from tuisim.goals.brick import BRICK_COLUMNS, BRICK_STREAMS, BRICK_TEXTS, brick_column, text_ticks
 from tuisim.protocol import End, Ended, Unended
 from tuisim.runs.frames import column_values, held, tick_times_s
 from tuisim.runs.records import SAMPLE_STREAMS, OutputRow, Stream
@@ -110,8 +111,13 @@ class Evidence:
         """The samples, each with the index of its row."""
         return [(number, sample) for number, row in enumerate(self.rows) for sample in samples_of([row])]
 
+    @cached_property
+    def brick_rows(self) -> list[OutputRow]:
+        """The rows of what the brick showed and played, in order, up to `MAX_ROWS`."""
+        return list(islice((row for row in self._run.output.rows() if row.stream in BRICK_STREAMS), MAX_ROWS))
+
     def column(self, name: str) -> Array:
-        """Return a column of `columns_of` the robot at every tick.
+        """Return a column of `columns_of` the robot, or one of `BRICK_COLUMNS`, at every tick.
 
         Raises:
             LogError, ConfigError: the mat no longer exists, or its image has changed.
@@ -119,6 +125,9 @@ class Evidence:
         if name not in self.memo:
             run = self._run
             actions = run.actions if isinstance(run, StoredRun) else read_actions(run.folder)[0]
+            if name in BRICK_COLUMNS:
+                self.memo[name] = brick_column(name, len(self.records), self.brick_rows, actions)
+                return self.column(name)
             self.memo |= column_values((name,), self.records, self.spec, actions, self.mat)
         found: Array = self.memo[name]
         return found
@@ -132,10 +141,21 @@ class Evidence:
         """
         import numpy as np
 
+        if condition.operator is Operator.MATCHES and condition.name in BRICK_TEXTS:
+            return np.isin(np.arange(len(self.records)), text_ticks(condition, self.brick_rows))
         if condition.source is ValueSource.COLUMN:
             return held(condition, self.column(condition.name))
-        printed = (row for row in self.rows if row.stream in SAMPLE_STREAMS)
-        return np.isin(np.arange(len(self.records)), [row.tick for row in rows_when(condition, printed)])
+        return np.isin(np.arange(len(self.records)), [self.rows[number].tick for number in self.rows_held(condition)])
+
+    def rows_held(self, condition: ValueCondition) -> list[int]:
+        """Return the indices of the rows of which a condition on printed lines is true.
+
+        Raises:
+            ValueError: what it compares with is no number.
+        """
+        printed = [row for row in self.rows if row.stream in SAMPLE_STREAMS]
+        found = set(map(id, rows_when(condition, printed)))
+        return [number for number, row in enumerate(self.rows) if id(row) in found]
 
     @cached_property
     def mat(self) -> Field:

@@ -5,32 +5,24 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from tuisim.config import files
 from tuisim.config.files import Location
 from tuisim.config.folders import programs_folder, user_path
+from tuisim.config.presses import ButtonPress
 from tuisim.config.worlds import WorldFile, means_world, world_from_table
 from tuisim.core.values import shown
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest, see_page
+from tuisim.goals.condition import WINDOWED, Condition, ConditionKind, Points, Seconds
 from tuisim.goals.key_lines import line_of_key
 from tuisim.goals.picture import PictureTable, draw_from_table
-from tuisim.goals.spec import (
-    CONDITIONS,
-    MAX_GOALS,
-    AllOf,
-    AnyOf,
-    Condition,
-    ConditionKind,
-    DialogueCondition,
-    DrawCondition,
-    Goal,
-    Points,
-    Seconds,
-    Together,
-)
+from tuisim.goals.spec import CONDITIONS, MAX_GOALS, Combination, DrawCondition, Goal, Together
+from tuisim.goals.trial_world import TrialWorld, check_names, others_of
 
 MAX_NAME = 60
 _EXAMPLE = "_goals.toml"
@@ -51,12 +43,35 @@ class GoalsFile:
     """The world, by path; in precedence as those of a world file."""
     program: str | None = None
     """The program that it names, if any: a path, or the name of an example."""
+    others: tuple[TrialWorld, ...] = ()
+    """Other worlds in which programs are tried, too."""
+    presses: tuple[ButtonPress, ...] = ()
+    """The buttons of the brick that are pressed in a run."""
+    inputs: tuple[str, ...] = ()
+    """The answers to `input()`, if the goals have no dialogue."""
 
     @property
     def answers(self) -> tuple[str, ...]:
-        """The answers to `input()` that its dialogues give, in the order of the goals."""
-        dialogues = (part for goal in self.goals for part in goal.parts if isinstance(part, DialogueCondition))
-        return tuple(turn.answer for dialogue in dialogues for turn in dialogue.turns)
+        """The answers to `input()` in its own world."""
+        return self.worlds[0].answers
+
+    @property
+    def worlds(self) -> tuple[TrialWorld, ...]:
+        """All worlds in which programs are tried, its own first, each with all that it has."""
+        names = tuple(goal.name for goal in self.goals)
+        own = TrialWorld("", self.settings, names, self.goals, self.presses, self.inputs)
+        return (own, *(other.beside(own) for other in self.others))
+
+    @property
+    def every_goal(self) -> tuple[Goal, ...]:
+        """Its goals, and those that only another world has."""
+        found = {
+            goal.name: replace(goal, hidden=goal.hidden or world.hidden)
+            for world in reversed(self.worlds)
+            for goal in world.own_goals
+        }
+        names = dict.fromkeys(goal.name for world in self.worlds for goal in world.own_goals)
+        return tuple(found[name] for name in names)
 
 
 def load_goals(path: Path | str) -> GoalsFile:
@@ -68,19 +83,18 @@ def load_goals(path: Path | str) -> GoalsFile:
     Raises:
         ConfigError: it, or a file that it names, cannot be read or is wrong; the error names file, line and key.
     """
-    path = _found(user_path(path))
-    if not means_world(path.name):
-        raise ConfigError("is not a .toml file", "a goals file is TOML", file=str(path))
-    data = files.read_file(path, ConfigError)
-    with line_in_errors(path):
-        return _goals_file(data, path, world_from_table(data, path))
+    task = load_task(path)[1]
+    if task is None:
+        hint = f"begin each with a line [[goal]]; {see_page('goal-files')}"
+        raise ConfigError("there are no goals", hint, file=f"{user_path(path)}, line 1", key="goal")
+    return task
 
 
 def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, GoalsFile | None]:
     """Read a world file, with its goals if it has any.
 
     Args:
-        path: The file, or `NAME_goals.toml` for one of `example_names`.
+        path: The file, or one of `example_names`.
         mats: A folder of mats, unless the file names one.
 
     Raises:
@@ -92,7 +106,7 @@ def load_task(path: Path | str, mats: str | None = None) -> tuple[WorldFile, Goa
     data = files.read_file(path, ConfigError)
     with line_in_errors(path):
         world = world_from_table(data, path, mats)
-        return world, _goals_file(data, path, world) if "goal" in data else None
+        return world, _goals_file(data, path, world)
 
 
 @contextmanager
@@ -148,29 +162,49 @@ def _found(path: Path) -> Path:
     return programs_folder() / f"{name}{_EXAMPLE}" if name in example_names() else path
 
 
-def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile:
+def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
+    """Return the task in a file, with that of the file that it is based on; None if there is none."""
     at = Location(str(path))
-    if not data.get("goal"):
-        raise at.at("goal").wrong("there are no goals", f"begin each with a line [[goal]]; {see_page('goal-files')}")
-    goals = goals_from_list(data["goal"], at.at("goal"), path.parent)
-    title = files.convert(data["title"], str, at.at("title")) if "title" in data else ""
-    return GoalsFile(path, title, goals, world.settings, world.program)
+    base = load_task(path.parent / user_path(data["world"]))[1] if "world" in data else None
+    if base is None and "goal" not in data:
+        return None
+    inherited = base.goals if base else ()
+    own = goals_from_list(data["goal"], at.at("goal"), path.parent, inherited) if "goal" in data else ()
+    names = {goal.name for goal in own}
+    goals = (*(goal for goal in inherited if goal.name not in names), *own)
+    title = files.convert(data["title"], str, at.at("title")) if "title" in data else base.title if base else ""
+    others = _others(data["also"], goals, at.at("also"), path) if "also" in data else ()
+    known = base.others if base else ()
+    return GoalsFile(path, title, goals, world.settings, world.program, (*known, *others), world.presses, world.inputs)
 
 
-def goals_from_list(data: object, at: Location, folder: Path) -> tuple[Goal, ...]:
+def _others(data: object, goals: tuple[Goal, ...], at: Location, path: Path) -> tuple[TrialWorld, ...]:
+    names = tuple(goal.name for goal in goals)
+    others = others_of(data, names, at, path, partial(goals_from_list, beside=goals), of_task=True)
+    for number, other in enumerate(others, start=1):
+        check_names(other.goals, {*names, *(goal.name for goal in other.own_goals)}, at.at(f"[{number}]"))
+    return others
+
+
+def goals_from_list(data: object, at: Location, folder: Path, beside: Sequence[Goal] = ()) -> tuple[Goal, ...]:
     """Return the goals in a list of tables; the files that they name are in a folder.
+
+    Args:
+        beside: Goals that they may refer to, and replace.
 
     Raises:
         ConfigError: a goal is wrong; the error names its key.
     """
     listed = files.entries(data, at, MAX_GOALS, "goals")
     goals = tuple(_goal(entry, place, folder) for entry, place in listed)
-    _check_names(goals, [place for _, place in listed])
+    own = {goal.name for goal in goals}
+    kept = [goal for goal in beside if goal.name not in own]
+    _check_names((*goals, *kept), [*(place for _, place in listed), *[at] * len(kept)])
     return goals
 
 
 def _goal(data: object, at: Location, folder: Path) -> Goal:
-    found = files.table(data, at, (*_TEXTS, "points", *CONDITIONS, *_LIMITS))
+    found = files.table(data, at, (*_TEXTS, "points", "hidden", "within_s", *CONDITIONS, *_LIMITS))
     values: dict[str, Any] = {key: files.convert(found[key], str, at.at(key)) for key in _TEXTS if key in found}
     files.required(found, "name", at)
     if len(values["name"]) > MAX_NAME:
@@ -183,6 +217,10 @@ def _goal(data: object, at: Location, folder: Path) -> Goal:
     condition = conditions[0] if len(conditions) == 1 else Together(conditions)
     if "points" in found:
         values["points"] = files.convert(found["points"], Points, at.at("points"))
+    if "within_s" in found:
+        values["within_s"] = files.convert(found["within_s"], Seconds, at.at("within_s"))
+    if "hidden" in found:
+        values["hidden"] = files.convert(found["hidden"], bool, at.at("hidden"))
     values |= {limit: _limit(found[limit], at.at(limit)) for limit in _LIMITS if limit in found}
     goal = Goal(condition=condition, **values)
     _check_limits(goal, at)
@@ -228,6 +266,8 @@ def _check_limits(goal: Goal, at: Location) -> None:
     """Raise ConfigError for a limit that applies to none of the conditions, or comes before the goal counts."""
     kinds = [part.KIND for part in goal.parts]
     fitting = {limit for kind in kinds for limit in goal.limits(kind)}
+    if goal.within_s is not None and not set(kinds) & set(WINDOWED):
+        raise at.at("within_s").wrong("does not fit this condition", _UNFIT[kinds[0]])
     for limit in _LIMITS:
         if getattr(goal, limit) is not None and limit not in fitting:
             raise at.at(limit).wrong("does not fit this condition", _UNFIT[kinds[0]])
@@ -262,7 +302,7 @@ def _reference(goal: Goal, name: str, at: Location) -> Location:
         key
         for key, kind in CONDITIONS.items()
         for part in goal.parts
-        if type(part) is kind and isinstance(part, AllOf | AnyOf) and name in part.goals
+        if type(part) is kind and isinstance(part, Combination) and name in part.goals
     )
     key = next(limits, next(combined, ""))
     return at.at(key) if key else at

@@ -9,7 +9,9 @@ from typing import Any, assert_never
 from tuisim.core.field import Field
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
-from tuisim.goals import calls, output, pen_trace, places, readings
+from tuisim.goals import calls, columns, output, pen_trace, places, program_text, readings
+from tuisim.goals.comparisons import CountCondition, KeepCondition, StructureCondition, WhenCondition
+from tuisim.goals.condition import WINDOWED, Condition, ConditionKind
 from tuisim.goals.evidence import START, Evidence, EvidencePoint, EvidenceSpan, JudgedRun
 from tuisim.goals.found import Occurrence
 from tuisim.goals.judgement import Change, GoalState, Judgement
@@ -17,8 +19,6 @@ from tuisim.goals.spec import (
     AllOf,
     AnyOf,
     AvoidCondition,
-    Condition,
-    ConditionKind,
     DialogueCondition,
     DrawCondition,
     FinishCondition,
@@ -26,6 +26,7 @@ from tuisim.goals.spec import (
     Goal,
     InsideCondition,
     LogCondition,
+    NoneOf,
     OutsideCondition,
     PassCondition,
     PrintCondition,
@@ -33,7 +34,6 @@ from tuisim.goals.spec import (
     ReadCondition,
     TouchNothingCondition,
     UseCondition,
-    WhenCondition,
 )
 
 Finder = Callable[[Any, Evidence, EvidenceSpan], Occurrence]
@@ -49,11 +49,14 @@ FINDERS: Mapping[type, Finder] = {
     PrintCondition: output.find_printed,
     LogCondition: output.find_levels,
     ReadCondition: readings.find_read,
-    WhenCondition: readings.find_when,
+    WhenCondition: columns.find_when,
+    KeepCondition: columns.find_lapse,
+    CountCondition: columns.find_miscount,
     DialogueCondition: output.find_dialogue,
     FinishCondition: output.find_finish,
     UseCondition: calls.find_used,
     AvoidCondition: calls.find_avoided,
+    StructureCondition: program_text.find_structure,
 }
 """Finds when a condition was reached or violated in a span of a run."""
 
@@ -127,6 +130,8 @@ class _Judge:
         if self._evidence.falsified:
             # What is recorded may not have happened.
             return _Outcome(GoalState.MISSED, reason=f"It does not count: {self._evidence.falsified}.")
+        if fault := program_text.fault_in(self._evidence.program.text):
+            return _Outcome(GoalState.MISSED, reason=f"The program does not compile: {fault[0]}.", line=fault[1])
         start = START
         match goal.after:
             case str(name):
@@ -146,9 +151,9 @@ class _Judge:
 
     def _part(self, condition: Condition, goal: Goal, start: EvidencePoint) -> _Outcome:
         """Return the outcome of one condition of a goal, which counts after a moment."""
-        if isinstance(condition, AllOf | AnyOf):
+        if isinstance(condition, AllOf | AnyOf | NoneOf):
             return self._combined(condition, goal)
-        stop = self._stop(goal, condition.KIND)
+        stop = self._stop(goal, condition.KIND, start)
         span = self._evidence.span(start, stop)
         found = FINDERS[type(condition)](condition, self._evidence, span)
         match condition.KIND:
@@ -164,16 +169,18 @@ class _Judge:
             case _:
                 assert_never(condition.KIND)
 
-    def _stop(self, goal: Goal, kind: ConditionKind) -> EvidencePoint | None:
-        """Return the moment that limits a goal's conditions of a kind, if it has come."""
-        limits = [getattr(goal, limit) for limit in goal.limits(kind) if limit != "after"]
-        if not limits:
-            return None
-        (limit,) = limits
-        if isinstance(limit, str):
-            outcome = self._outcome(limit)
-            return outcome.moment if outcome.state is GoalState.MET else None
-        return self._evidence.at_time(limit)
+    def _stop(self, goal: Goal, kind: ConditionKind, start: EvidencePoint = START) -> EvidencePoint | None:
+        """Return the moment that limits a goal's conditions of a kind, if it has come; `start` begins them."""
+        stops = []
+        for limit in (getattr(goal, limit) for limit in goal.limits(kind) if limit != "after"):
+            if isinstance(limit, str):
+                outcome = self._outcome(limit)
+                stops.append(outcome.moment if outcome.state is GoalState.MET else None)
+            else:
+                stops.append(self._evidence.at_time(limit))
+        if goal.within_s is not None and kind in WINDOWED:
+            stops.append(self._evidence.at_time(self._evidence.time_s(start) + goal.within_s))
+        return min((stop for stop in stops if stop is not None), default=None)
 
     def _never(self, reason: str) -> _Outcome:
         """Return the outcome of what has not happened: open, or missed if the run has ended."""
@@ -201,10 +208,13 @@ class _Judge:
             return _Outcome(GoalState.MISSED, self._evidence.last, f"“{goal.until}” was not met.")
         return _Outcome(GoalState.MET, self._evidence.last, line=None)
 
-    def _combined(self, condition: AllOf | AnyOf, goal: Goal) -> _Outcome:
+    def _combined(self, condition: AllOf | AnyOf | NoneOf, goal: Goal) -> _Outcome:
         stop = self._stop(goal, condition.KIND)
         if isinstance(condition, AllOf):
             parts = [self._outcome(name, f"“{name}” was missed.") for name in condition.goals]
+            outcome = _first_of(parts, GoalState.MISSED)
+        elif isinstance(condition, NoneOf):
+            parts = [_inverted(name, self._outcome(name)) for name in condition.goals]
             outcome = _first_of(parts, GoalState.MISSED)
         else:
             parts = [self._outcome(name, "None of its goals was met.") for name in condition.goals]
@@ -212,6 +222,19 @@ class _Judge:
         if stop is not None and not (outcome.state is not GoalState.OPEN and outcome.moment < stop):
             return _Outcome(GoalState.MISSED, stop, _too_late(goal, ""), self._line(outcome))
         return outcome
+
+
+def _inverted(name: str, outcome: _Outcome) -> _Outcome:
+    """Return the outcome of not meeting a goal."""
+    match outcome.state:
+        case GoalState.MET:
+            return replace(outcome, state=GoalState.MISSED, reason=f"“{name}” was met.", happened=None)
+        case GoalState.MISSED:
+            return replace(outcome, state=GoalState.MET, reason="")
+        case GoalState.OPEN:
+            return outcome
+        case _:
+            assert_never(outcome.state)
 
 
 def _first_of(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
@@ -226,5 +249,8 @@ def _first_of(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
 
 def _too_late(goal: Goal, reason: str) -> str:
     """Return the reason of a goal that was not met before its limit."""
+    if goal.before is None:
+        limit = f"within {goal.within_s:g} s"
+        return f"Not {limit}: {reason[:1].lower()}{reason[1:]}" if reason else f"It was not met {limit}."
     limit = f"{goal.before:g} s" if isinstance(goal.before, float | int) else f"“{goal.before}”"
     return f"Not before {limit}: {reason[:1].lower()}{reason[1:]}" if reason else f"It was not met before {limit}."

@@ -49,6 +49,11 @@ class Judgement:
         return self.changes[-1].state if self.changes else GoalState.OPEN
 
     @property
+    def is_good(self) -> bool:
+        """Whether it is met, or not met if it takes points off."""
+        return (self.state is GoalState.MET) is (self.goal.points >= 0)
+
+    @property
     def event(self) -> Change | None:
         """When and where it was met or missed, for whoever reads of it; None while it is open."""
         return self.happened or (self.changes[-1] if self.changes else None)
@@ -60,5 +65,15 @@ class Judgement:
 
 
 def points(judgements: Iterable[Judgement]) -> float:
-    """Return the sum of the points of the goals that are met."""
-    return math.fsum(each.goal.points for each in judgements if each.state is GoalState.MET)
+    """Return the sum of the points of the goals that are met; never less than 0."""
+    return points_of(each.goal.points for each in judgements if each.state is GoalState.MET)
+
+
+def points_of(met: Iterable[float]) -> float:
+    """Return the sum of the points of goals that are met, some of which may be negative; never less than 0."""
+    return max(0.0, math.fsum(met))
+
+
+def most_points(goals: Iterable[Goal]) -> float:
+    """Return the points of a run that meets every goal but those whose points are negative."""
+    return math.fsum(goal.points for goal in goals if goal.points > 0)

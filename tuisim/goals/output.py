@@ -11,15 +11,15 @@ from tuisim.errors import counted
 from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.goals.found import Occurrence
 from tuisim.goals.provenance import provenance_of
-from tuisim.goals.readings import NOUNS, is_as_read, range_words, read_ticks, within_x
+from tuisim.goals.readings import NOUNS, is_as_read, place_words, range_words, read_ticks, within
 from tuisim.goals.spec import (
     DialogueCondition,
     DialogueTurn,
     FinishCondition,
     LogCondition,
     PrintCondition,
-    Range,
     Reading,
+    place_of,
 )
 from tuisim.protocol import End
 from tuisim.runs.records import OutputRow, Stream
@@ -148,17 +148,12 @@ def _between_mm_s(first: int, then: int, evidence: Evidence) -> float:
 
 def _elsewhere(condition: PrintCondition | LogCondition, count: int, tick: int, evidence: Evidence) -> str:
     """Return where the robot was at a tick if that was wrong, as the end of a sentence; empty if it was right."""
-    place = _range(condition, count)
-    x_mm = evidence.place_mm(tick)[0]
-    if place is None or place[0] <= x_mm <= place[1]:
+    place = place_of(condition, count)
+    x_mm, y_mm = evidence.place_mm(tick)
+    at = {"x_mm": x_mm, "y_mm": y_mm}
+    if all(least <= at[key] <= most for key, (least, most) in place.items()):
         return ""
-    return f"the robot was at x = {x_mm:.0f} mm; it must be at {range_words(place)}."
-
-
-def _range(condition: PrintCondition | LogCondition, count: int) -> Range | None:
-    if not condition.x_mm:
-        return None
-    return condition.x_mm[count if len(condition.x_mm) > 1 else 0]
+    return f"the robot was at {place_words(tick, place, evidence)}; it must be at {range_words(place)}."
 
 
 def _read_between(reading: Reading, first_tick: int, end_tick: int, evidence: Evidence) -> bool:
@@ -236,7 +231,7 @@ def _not_measured(condition: LogCondition, count: int, sample: Sample, evidence:
     printed = sum(one.name == condition.counts and one.tick <= sample.tick for _, one in evidence.samples)
     if condition.counts and printed != sample.value:
         return f"{value}, but the program had printed {counted(printed, 'sample')} {condition.counts}."
-    reading, place = condition.reading, _range(condition, count)
+    reading, place = condition.reading, place_of(condition, count)
     known = provenance_of(evidence.program.text, reading) if reading else None
     if reading is not None and known is not None and not known.gives(sample.line, sample.name):
         return f"{value}, but line {sample.line} does not compute it from what the {NOUNS[reading]} read."
@@ -247,10 +242,10 @@ def _not_measured(condition: LogCondition, count: int, sample: Sample, evidence:
     ticks = ticks[ticks <= sample.tick]
     if not len(ticks):
         return f"{value}, but the program had not read the {NOUNS[reading]} before."
-    there = ticks if place is None else within_x(ticks, place, evidence)
-    if place is not None and not len(there):
-        x_mm = evidence.place_mm(int(ticks[-1]))[0]
-        return f"{value}, read when the robot was at x = {x_mm:.0f} mm; it must be at {range_words(place)}."
+    there = within(ticks, place, evidence)
+    if not len(there):
+        where = place_words(int(ticks[-1]), place, evidence)
+        return f"{value}, read when the robot was at {where}; it must be at {range_words(place)}."
     if condition.as_read and not is_as_read(sample.value, there, evidence):
         return f"{value}, but that is not what the {NOUNS[reading]} gave where the program had read it."
     return ""

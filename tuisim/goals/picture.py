@@ -19,7 +19,8 @@ from tuisim.config.folders import user_path
 from tuisim.core.spec import BACKGROUND_FITS, FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
-from tuisim.goals.spec import MAX_PLACES, DrawCondition, Share, X, Y
+from tuisim.goals.condition import MAX_PLACES, Share, X, Y
+from tuisim.goals.spec import DrawCondition
 
 if TYPE_CHECKING:
     import numpy as np

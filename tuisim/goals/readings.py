@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from tuisim.core.conditions import ValueCondition, ValueSource
-from tuisim.core.sensors import named_column
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
-from tuisim.errors import ConfigError, counted
+from tuisim.errors import counted
 from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.goals.found import Occurrence, share_words
 from tuisim.goals.places import line_of_motion
 from tuisim.goals.provenance import Provenance, provenance_of
-from tuisim.goals.spec import FollowCondition, Range, ReadCondition, Reading, WhenCondition
+from tuisim.goals.spec import FollowCondition, Range, ReadCondition, Reading, place_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,9 +30,9 @@ _NOISE_SHARE = 0.1
 """The same for each percent of the light's noise."""
 
 
-def range_words(found: Range) -> str:
-    """Return a range for a sentence."""
-    return f"x from {found[0]:g} to {found[1]:g} mm"
+def range_words(place: Mapping[str, Range]) -> str:
+    """Return ranges of `place_of` for a sentence."""
+    return " and ".join(f"{key[0]} from {least:g} to {most:g} mm" for key, (least, most) in place.items())
 
 
 def read_ticks(reading: Reading, evidence: Evidence) -> Array:
@@ -60,11 +57,18 @@ def _reads(known: Provenance, evidence: Evidence) -> Array:
     return found
 
 
-def within_x(ticks: Array, found: Range, evidence: Evidence) -> Array:
-    """Return those of some ticks at which the robot was in a range."""
-    x_mm = evidence.records["x_mm"][ticks]
-    left: Array = ticks[(x_mm >= found[0]) & (x_mm <= found[1])]
-    return left
+def within(ticks: Array, place: Mapping[str, Range], evidence: Evidence) -> Array:
+    """Return those of some ticks at which the robot was in the ranges of `place_of`."""
+    for key, (least, most) in place.items():
+        values = evidence.records[key][ticks]
+        ticks = ticks[(values >= least) & (values <= most)]
+    return ticks
+
+
+def place_words(tick: int, place: Mapping[str, Range], evidence: Evidence) -> str:
+    """Return where the robot was at a tick along the axes of `place_of`, for a sentence."""
+    at = dict(zip(("x_mm", "y_mm"), evidence.place_mm(tick), strict=True))
+    return " and ".join(f"{key[0]} = {at[key]:.0f} mm" for key in place)
 
 
 def is_as_read(value: float, ticks: Array, evidence: Evidence) -> bool:
@@ -93,7 +97,7 @@ def _light(records: Array, evidence: Evidence) -> Array:
 
     rows = []
     for sensor in evidence.spec.robot.color_sensors:
-        channels = quiet_color_columns(records, sensor, evidence.mat)
+        channels = quiet_color_columns(records, sensor, evidence.spec, evidence.mat)
         red, green, blue = (channel.astype("i8") for channel in channels.values())
         rows += [red / 255 * 100, (red + green + blue) / 765 * 100, red]
     return np.array(rows).reshape(len(rows), len(records))
@@ -104,54 +108,17 @@ def find_read(condition: ReadCondition, evidence: Evidence, span: EvidenceSpan) 
     noun = NOUNS[condition.reading]
     every = read_ticks(condition.reading, evidence)
     ticks = every[(every >= span.first_tick) & (every < span.end_tick)]
-    for place in condition.x_mm:
-        ticks = within_x(ticks, place, evidence)
+    ticks = within(ticks, place := place_of(condition), evidence)
     if len(ticks) >= condition.times:
         tick = int(ticks[condition.times - 1])
         return Occurrence(EvidencePoint(tick), line=int(evidence.records["line"][tick]))
     if not len(every):
         return Occurrence(None, f"The program did not read the {noun}.")
-    where = f" at {range_words(condition.x_mm[0])}" if condition.x_mm else ""
+    where = f" at {range_words(place)}" if place else ""
     when = " in that time" if span.first_tick else ""
     times = counted(len(ticks), "time")
     text = f"The program read the {noun} {times}{where}{when}; {condition.times:,} are needed."
     return Occurrence(None, text, int(evidence.records["line"][every[0]]))
-
-
-def find_when(condition: WhenCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
-    """Find the first tick at which all conditions are true."""
-    import numpy as np
-
-    ticks = span.ticks
-    met = np.ones(len(evidence.records[ticks]), np.bool_)
-    never: list[str] = []
-    for text, wanted in zip(condition.comparisons, condition.conditions, strict=True):
-        try:
-            is_column = wanted.source is ValueSource.COLUMN
-            named = replace(wanted, name=named_column(wanted.name, evidence.spec.robot)) if is_column else wanted
-            here = evidence.held(named)[ticks]
-        except ConfigError as error:
-            return Occurrence(None, f"The robot has no column {wanted.name} ({error.hint}).")
-        except ValueError as error:
-            return Occurrence(None, f"{text}: {error}.")
-        if len(here) and not here.any():
-            never.append(f"{named} never became true{_nearest_words(named, evidence, span)}")
-        met &= here
-    found = np.flatnonzero(met)
-    if len(found):
-        return Occurrence(EvidencePoint(span.first_tick + int(found[0])))
-    return Occurrence(None, f"{'; '.join(never)}." if never else "They were not true at the same time.")
-
-
-def _nearest_words(wanted: ValueCondition, evidence: Evidence, span: EvidenceSpan) -> str:
-    """Return how near a column came to what it is compared with, as the end of a sentence; empty for what is not."""
-    import numpy as np
-
-    if wanted.source is not ValueSource.COLUMN or wanted.is_momentary:
-        return ""
-    values = evidence.column(wanted.name)[span.ticks]
-    at = int(np.argmin(np.abs(values - wanted.number)))
-    return f": the nearest was {values[at]:.6g} at {evidence.time_words(span.first_tick + at)}"
 
 
 def find_off_line(condition: FollowCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
@@ -207,7 +174,7 @@ def _reflected_percent(records: Array, sensor: ColorSensorSpec, evidence: Eviden
     """Return what `reflected_light_intensity_pc` would be without noise, at every tick."""
     from tuisim.runs.sensor_arrays import quiet_color_columns
 
-    red, *_ = quiet_color_columns(records, sensor, evidence.mat).values()
+    red, *_ = quiet_color_columns(records, sensor, evidence.spec, evidence.mat).values()
     percent: Array = red.astype("i8") / 255 * 100
     return percent
 

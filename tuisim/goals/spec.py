@@ -13,47 +13,27 @@ from typing import Annotated, ClassVar
 
 from msgspec import Meta
 
-from tuisim.core.conditions import ValueCondition, ValueSource, comparison_form, run_condition_in
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, require_regex
+from tuisim.goals.comparisons import CountCondition, KeepCondition, StructureCondition, WhenCondition
+from tuisim.goals.condition import (
+    LIMITS,
+    Condition,
+    ConditionKind,
+    Heading,
+    Number,
+    Offset,
+    Percent,
+    Seconds,
+    Share,
+    Tolerance,
+    X,
+    Y,
+    check_count,
+)
 
 MAX_GOALS = 200
-MAX_PLACES = 1000
-"""Largest number of places, levels, lines, calls or turns in one condition."""
-
-X = Annotated[float, Meta(ge=0, le=FIELD_WIDTH_MM)]
-Y = Annotated[float, Meta(ge=0, le=FIELD_HEIGHT_MM)]
-Heading = Annotated[float, Meta(ge=-36_000, le=36_000)]
-Tolerance = Annotated[float, Meta(ge=1, le=2000)]
-Share = Annotated[float, Meta(ge=0.01, le=1)]
-Percent = Annotated[float, Meta(ge=0, le=100)]
-Offset = Annotated[float, Meta(ge=-500, le=500)]
-Seconds = Annotated[float, Meta(ge=0, le=1e6)]
-Points = Annotated[float, Meta(ge=0, le=1000)]
-Number = Annotated[float, Meta(ge=-1e15, le=1e15)]
-
-
-class ConditionKind(StrEnum):
-    """When a condition is decided."""
-
-    REACHED = "reached"
-    """Met as soon as it is true once; missed if that never happens."""
-    HELD = "held"
-    """Missed as soon as it is violated; met if that never happens."""
-    FIXED = "fixed"
-    """Known from the program's text, before the run."""
-    COMBINED = "combined"
-    """Decided by other goals."""
-
-
-LIMITS: Mapping[ConditionKind, tuple[str, ...]] = {
-    ConditionKind.REACHED: ("before", "after"),
-    ConditionKind.HELD: ("after", "until"),
-    ConditionKind.FIXED: (),
-    ConditionKind.COMBINED: ("before",),
-}
-"""The limits that a condition of a kind can have."""
 
 
 class BodyPart(StrEnum):
@@ -75,29 +55,23 @@ class Reading(StrEnum):
 
 
 Range = tuple[X, X]
-"""From where to where along x."""
+"""From where to where along x, or along y."""
 
 
-def _check_ranges(found: tuple[Range, ...], wanted: int) -> None:
-    for number, (left, right) in enumerate(found, start=1):
-        if left >= right:
-            raise ConfigError(f"must be from left to right, got {left:g} to {right:g}", key=f"x_mm[{number}]")
-    if len(found) not in (0, 1, wanted):
-        raise ConfigError(f"must have one entry, or {wanted}, has {len(found)}", key="x_mm")
+def _check_ranges(condition: PrintCondition | LogCondition | ReadCondition, wanted: int) -> None:
+    for key, way in (("x_mm", "left to right"), ("y_mm", "below to above")):
+        found: tuple[Range, ...] = getattr(condition, key)
+        for number, (least, most) in enumerate(found, start=1):
+            if least >= most:
+                raise ConfigError(f"must be from {way}, got {least:g} to {most:g}", key=f"{key}[{number}]")
+        if len(found) not in (0, 1, wanted):
+            raise ConfigError(f"must have one entry, or {wanted}, has {len(found)}", key=key)
 
 
-def _check_count(found: tuple[object, ...], key: str) -> None:
-    if not 1 <= len(found) <= MAX_PLACES:
-        raise ConfigError(f"must have 1 to {MAX_PLACES} entries, has {len(found)}", key=key)
-
-
-@dataclass(frozen=True, slots=True)
-class Condition:
-    """What is asked of a run."""
-
-    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
-    SHORT: ClassVar[str] = ""
-    """The key that is meant if a file gives a value instead of a table; its value may be one text instead of a list."""
+def place_of(condition: PrintCondition | LogCondition | ReadCondition, count: int = 0) -> dict[str, Range]:
+    """Return where the robot must be for one of the lines or levels: ranges by `x_mm` and `y_mm`, as far as given."""
+    found = {key: getattr(condition, key) for key in ("x_mm", "y_mm")}
+    return {key: ranges[count if len(ranges) > 1 else 0] for key, ranges in found.items() if ranges}
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,7 +175,7 @@ class PassCondition(Condition):
     in_order: bool = True
 
     def __post_init__(self) -> None:
-        _check_count(self.places_mm, "places_mm")
+        check_count(self.places_mm, "places_mm")
 
 
 @dataclass(frozen=True, slots=True)
@@ -248,6 +222,8 @@ class PrintCondition(Condition):
     in_order: bool = True
     x_mm: tuple[Range, ...] = ()
     """Where the robot must be when it prints them: one range for all lines, or one for each; empty for anywhere."""
+    y_mm: tuple[Range, ...] = ()
+    """The same along y."""
     reading: Reading | None = None
     """A kind of reading that must decide that, or what, each line says, and be taken since the line before it."""
     once: bool = False
@@ -256,8 +232,8 @@ class PrintCondition(Condition):
     """Whether the robot must stand still when it prints them."""
 
     def __post_init__(self) -> None:
-        _check_count(self.lines, "lines")
-        _check_ranges(self.x_mm, len(self.lines))
+        check_count(self.lines, "lines")
+        _check_ranges(self, len(self.lines))
         for number, pattern in enumerate(self.lines, start=1):
             require_regex(pattern, f"lines[{number}]")
 
@@ -272,6 +248,8 @@ class LogCondition(Condition):
     in_order: bool = True
     x_mm: tuple[Range, ...] = ()
     """Where the robot must be when the value is read, or printed: one range, or one for each level; empty: anywhere."""
+    y_mm: tuple[Range, ...] = ()
+    """The same along y."""
     reading: Reading | None = None
     """The kind of reading from which the value must be computed."""
     as_read: bool = False
@@ -286,8 +264,8 @@ class LogCondition(Condition):
     def __post_init__(self) -> None:
         if self.as_read and self.reading is not Reading.COLOR:
             raise ConfigError("is only for readings of colour sensors", 'give reading = "color"', key="as_read")
-        _check_count(self.levels, "levels")
-        _check_ranges(self.x_mm, len(self.levels))
+        check_count(self.levels, "levels")
+        _check_ranges(self, len(self.levels))
         if not self.name.isidentifier():
             raise ConfigError(f"{self.name!r} cannot be the name of a sample", "such as Colour", key="name")
 
@@ -300,33 +278,11 @@ class ReadCondition(Condition):
     times: Annotated[int, Meta(ge=1, le=1_000_000)] = 1
     x_mm: tuple[Range, ...] = ()
     """Where the robot must be; empty for anywhere."""
+    y_mm: tuple[Range, ...] = ()
+    """The same along y."""
 
     def __post_init__(self) -> None:
-        _check_ranges(self.x_mm, 1)
-
-
-@dataclass(frozen=True, slots=True)
-class WhenCondition(Condition):
-    """Conditions on the recording are true, all in the same tick."""
-
-    SHORT: ClassVar[str] = "comparisons"
-
-    comparisons: tuple[str, ...]
-    """Such as `left_red_pc < 10`, see `core.conditions`."""
-
-    def __post_init__(self) -> None:
-        _check_count(self.comparisons, "comparisons")
-        for number, text in enumerate(self.comparisons, start=1):
-            key, found = f"comparisons[{number}]", run_condition_in(text)
-            if found is None:
-                raise ConfigError(f"no comparison: {text!r}", f"{comparison_form()}, such as left_red_pc < 10", key=key)
-            if found.source is ValueSource.PRINT:
-                require_regex(found.value, key)
-
-    @property
-    def conditions(self) -> tuple[ValueCondition, ...]:
-        """What the texts mean."""
-        return tuple(found for text in self.comparisons if (found := run_condition_in(text)))
+        _check_ranges(self, 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -344,7 +300,7 @@ class CallsCondition(Condition):
     calls: tuple[str, ...]
 
     def __post_init__(self) -> None:
-        _check_count(self.calls, "calls")
+        check_count(self.calls, "calls")
         for number, call in enumerate(self.calls, start=1):
             if not all(word.isidentifier() for word in call.removesuffix("()").split(".")):
                 hint = "a name such as tank_drive.on_for_rotations"
@@ -387,7 +343,7 @@ class DialogueCondition(Condition):
     turns: tuple[DialogueTurn, ...]
 
     def __post_init__(self) -> None:
-        _check_count(self.turns, "turns")
+        check_count(self.turns, "turns")
         for number, turn in enumerate(self.turns, start=1):
             require_regex(turn.prompt, f"turns[{number}].prompt")
             require_regex(turn.reply, f"turns[{number}].reply")
@@ -403,7 +359,7 @@ class Combination(Condition):
     goals: tuple[str, ...]
 
     def __post_init__(self) -> None:
-        _check_count(self.goals, "goals")
+        check_count(self.goals, "goals")
 
 
 @dataclass(frozen=True, slots=True)
@@ -414,6 +370,11 @@ class AllOf(Combination):
 @dataclass(frozen=True, slots=True)
 class AnyOf(Combination):
     """At least one of the goals is met."""
+
+
+@dataclass(frozen=True, slots=True)
+class NoneOf(Combination):
+    """None of the goals is met."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -437,12 +398,16 @@ CONDITIONS: Mapping[str, type[Condition]] = {
     "log": LogCondition,
     "read": ReadCondition,
     "when": WhenCondition,
+    "keep": KeepCondition,
+    "count": CountCondition,
     "dialogue": DialogueCondition,
     "finish": FinishCondition,
     "use": UseCondition,
     "avoid": AvoidCondition,
+    "structure": StructureCondition,
     "all": AllOf,
     "any": AnyOf,
+    "none": NoneOf,
 }
 """The kinds of conditions by their key in a file."""
 
@@ -458,18 +423,22 @@ class Goal:
     points: float = 1.0
     hint: str = ""
     """Shown if the goal is missed."""
+    hidden: bool = False
+    """Whether no student is told of it."""
     before: str | float | None = None
     """A goal or a time: the condition must be reached before."""
     after: str | float | None = None
     """A goal or a time: only what happens later counts."""
     until: str | float | None = None
     """A goal, which must be met then, or a time: the condition must be held up to it."""
+    within_s: float | None = None
+    """How long it counts from its beginning: it must be reached within that time, or held for that time."""
 
     @property
     def needs(self) -> tuple[str, ...]:
         """The names of the goals that this one refers to."""
         named = [word for word in (self.before, self.after, self.until) if isinstance(word, str)]
-        combined = [part for part in self.parts if isinstance(part, AllOf | AnyOf)]
+        combined = [part for part in self.parts if isinstance(part, Combination)]
         return (*(name for part in combined for name in part.goals), *named)
 
     @property

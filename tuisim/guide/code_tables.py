@@ -6,10 +6,11 @@ from tuisim.breakpoints import FORMS
 from tuisim.config.files import toml_value
 from tuisim.config.options import OPTIONS
 from tuisim.config.user_config import SETTINGS
+from tuisim.core.drift_spec import DriftSpec
 from tuisim.core.profile import MS, PROFILES, ProfileSpec
 from tuisim.core.sensors import column_names, mounted
 from tuisim.core.spec import RobotSpec
-from tuisim.core.values import values_of
+from tuisim.core.values import NamedNumber, values_of
 from tuisim.guide.tables import Table, code
 from tuisim.logs.export import EXPORTERS
 from tuisim.logs.units import unit_of
@@ -105,6 +106,13 @@ def profile_rules() -> Table:
         if rule.source
     ]
     return Table(("rule", *map(code, PROFILES), "source"), rows)
+
+
+def drift() -> Table:
+    """Return the sizes of drift, each with its typical size and its source."""
+    numbers = [(key, one) for key, one in values_of(DriftSpec).items() if isinstance(one, NamedNumber)]
+    rows = [(code(key), f"{one.names['typical']:g} {one.unit}", one.help, one.source) for key, one in numbers]
+    return Table(("size", "typical", "is", "source of the typical size"), rows)
 
 
 def _value(key: str, profile: ProfileSpec) -> str:

@@ -24,6 +24,7 @@ TABLES: Mapping[str, str] = {
     "options": "guide.code_tables:options",
     "settings": "guide.code_tables:settings",
     "profile-rules": "guide.code_tables:profile_rules",
+    "drift": "guide.code_tables:drift",
     "breakpoints": "guide.code_tables:breakpoints",
     "columns": "guide.code_tables:columns",
     "samples": "guide.code_tables:samples",

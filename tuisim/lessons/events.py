@@ -39,7 +39,7 @@ class TriedElsewhere:
 
     run_id: str
     where: str
-    """Which of the other worlds of the step, see `OtherWorld.where`."""
+    """Which of the other worlds of the step, see `TrialWorld.where`."""
     met: frozenset[str]
     """Names of the goals that it has met."""
 

@@ -24,9 +24,9 @@ from tuisim.core.values import shown
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.goals.files import goals_from_list, line_in_errors
+from tuisim.goals.trial_world import check_names, others_of
 from tuisim.lessons import telling
 from tuisim.lessons.events import event_of, is_met, model_event
-from tuisim.lessons.others import others_of
 from tuisim.lessons.spec import (
     CHECKS,
     MAX_HINTS,
@@ -299,23 +299,17 @@ def _check(kind: type[Check], data: object, at: Location, path: Path) -> Check:
     if kind is not RunCheck or not isinstance(data, dict) or "also" not in data:
         return files.convert(data, kind, at)
     run = files.convert({key: value for key, value in data.items() if key != "also"}, RunCheck, at)
-    return replace(run, also=others_of(data["also"], run.goals, at.at("also"), path))
+    return replace(run, also=others_of(data["also"], run.goals, at.at("also"), path, goals_from_list))
 
 
 def _check_goals(check: Check, goals: set[str], at: Location) -> None:
     if isinstance(check, RunCheck):
-        _check_names(check.goals, goals, at.at("run"))
+        check_names(check.goals, goals, at.at("run"))
         for number, other in enumerate(check.also, start=1):
             place, own = at.at(f"run.also[{number}]"), {goal.name for goal in other.own_goals}
             if twice := sorted(own & goals):
                 raise place.wrong(f"{twice[0]!r} is a goal of the lesson, too", "give it another name")
-            _check_names(other.goals, goals | own, place)
-
-
-def _check_names(names: Sequence[str], goals: set[str], at: Location) -> None:
-    for number, name in enumerate(names, start=1):
-        if name not in goals:
-            raise at.at(f"goals[{number}]").wrong(f"there is no goal {name!r}", f"one of {', '.join(sorted(goals))}")
+            check_names(other.goals, goals | own, place)
 
 
 def _check_models(step: LessonStep, at: Location) -> None:

@@ -16,7 +16,7 @@ title = "Drive half a metre"
 why = "A robot that knows how far it drives can leave its charging station and come back."
 minutes = 10
 
-# The world, with the keys of a world file: background, robot, obstacles, noise, pen, panels …
+# The world, with the keys of a world file: background, robot, obstacles, noise, drift, pen, panels …
 background = "Empty_Map"
 start = { x_mm = 500, y_mm = 500, heading_deg = 0 }
 
@@ -35,7 +35,8 @@ log = { name = "X", levels = [1000], within = 5, reading = "motor", x_mm = [[995
 # One [[step]] for each section ## below, in the same order, with exactly one check:
 #   run = ["GOAL", …]            a run meets goals; also run = { goals = ["GOAL"], times = 3, seeds = true }
 #       also = [{ where = "from farther back", start = { x_mm = 300 } }] tries the program of a good run in other
-#       worlds, too: background, start, robot, noise, obstacles; with goals or [[step.run.also.goal]] of their own
+#       worlds, too: background, start, robot, noise, drift, obstacles; with goals or [[step.run.also.goal]] of
+#       their own
 #   question = { ask = "…", answer = 50.2, within = 1 }     or answer = "a text", or choices = ["one", "another"]
 #       also what must have happened: at_x_mm = [[230, 411]] and where = "the grey band: m moves it back" say where the
 #       robot must be, seen = ["instrumentation"] what was looked at, run = true that there was a run, printed a REGEX

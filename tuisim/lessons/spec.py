@@ -17,6 +17,7 @@ from tuisim.config.options import OPTION_PANELS
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest, require_regex
 from tuisim.goals.spec import Goal, Range
+from tuisim.goals.trial_world import TrialWorld
 
 SHOWABLE = (*OPTION_PANELS, "debug", "brick", "obstacles", "goals")
 """Ids of the panels that a step can ask for."""
@@ -24,7 +25,6 @@ SEEABLE = (*SHOWABLE, "analyser")
 """Ids of what a student can look at for the answer to a question."""
 MAX_STEPS = 30
 MAX_HINTS = 10
-MAX_OTHERS = 3
 
 Count = Annotated[int, Meta(ge=1, le=100)]
 Seconds = Annotated[float, Meta(ge=0, le=1e6)]
@@ -49,20 +49,6 @@ class Way(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class OtherWorld:
-    """A world in which the program of a good run is tried, too: one that knows the lesson's world by heart fails."""
-
-    where: str
-    """What is other there, for the student, such as `from 10 cm farther back`."""
-    settings: Mapping[str, Any]
-    """What is other than in the lesson's world, by path."""
-    goals: tuple[str, ...]
-    """Names of the goals to be met there."""
-    own_goals: tuple[Goal, ...] = ()
-    """Those of them that only this world has."""
-
-
-@dataclass(frozen=True, slots=True)
 class RunCheck:
     """Runs of the program meet goals of the lesson."""
 
@@ -79,7 +65,7 @@ class RunCheck:
     """Whether each of these runs needs another seed."""
     anywhere: bool = False
     """Whether a run may begin at another place than the lesson's start."""
-    also: tuple[OtherWorld, ...] = ()
+    also: tuple[TrialWorld, ...] = ()
     """Other worlds in which the program of a good run must do well, too."""
 
     def __post_init__(self) -> None:

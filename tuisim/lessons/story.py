@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from tuisim.goals.condition import Condition
 from tuisim.goals.judgement import Change, GoalState, Judgement
 from tuisim.goals.spec import (
-    Condition,
     FinishCondition,
     FollowCondition,
     LogCondition,

@@ -12,9 +12,13 @@ from tuisim.config.program_file import parse_program
 from tuisim.config.program_settings import program_settings
 from tuisim.data_class import dataclass
 from tuisim.goals.judgement import GoalState, Judgement
-from tuisim.lessons.spec import Lesson, LessonStep, OtherWorld, QuestionCheck, RunCheck, Way
-from tuisim.runs.handle import RunOptions
+from tuisim.goals.trial_world import TrialWorld
+from tuisim.lessons.spec import Lesson, LessonStep, QuestionCheck, RunCheck, Way
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.recorded_run import Recording
 from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.store import RunStore
+from tuisim.runs.temporary import temporary_home
 from tuisim.source import source_lines
 
 TIME_LIMIT_S = 180.0
@@ -49,7 +53,7 @@ def trials(lesson: Lesson) -> list[Trial]:
     return found
 
 
-def task_of(lesson: Lesson, text: str, seed: int, index: int = 0, other: OtherWorld | None = None) -> Task:
+def task_of(lesson: Lesson, text: str, seed: int, index: int = 0, other: TrialWorld | None = None) -> Task:
     """Return the run of a program in the world of a lesson, or in another world of a step, with a seed.
 
     Raises:
@@ -63,7 +67,7 @@ def task_of(lesson: Lesson, text: str, seed: int, index: int = 0, other: OtherWo
     return Task(index, source.program, spec, RunOptions(time_limit_s=TIME_LIMIT_S), goals)
 
 
-def tried_elsewhere(lesson: Lesson, check: RunCheck, run: StoredRun) -> list[tuple[OtherWorld, tuple[Judgement, ...]]]:
+def tried_elsewhere(lesson: Lesson, check: RunCheck, run: StoredRun) -> list[tuple[TrialWorld, tuple[Judgement, ...]]]:
     """Try the program of a run in the other worlds of a check, and judge that; blocks meanwhile.
 
     Raises:
@@ -72,6 +76,28 @@ def tried_elsewhere(lesson: Lesson, check: RunCheck, run: StoredRun) -> list[tup
     text, seed = run.program.text, run.spec.seed
     tasks = [task_of(lesson, text, seed, index, other) for index, other in enumerate(check.also)]
     return [(check.also[result.index], result.judgements) for result in run_many(tasks, jobs=1)]
+
+
+def model_run(lesson: Lesson, step: LessonStep | None) -> Recording:
+    """Run the model answer of a step, or else of the lesson, in the lesson's world; blocks meanwhile. It is not stored.
+
+    Raises:
+        TuisimError: it cannot run.
+    """
+    text = (step.answer if step else "") or lesson.model_answer
+    task = task_of(lesson, text, build_run_spec(settings_of(lesson.settings)).seed)
+    with temporary_home() as home:
+        handle = start_run(task.program, task.spec, task.options, RunStore(home))
+        try:
+            handle.wait()
+            run = handle.stored()
+            # Its folder goes.
+            for view in (run.telemetry, run.output):
+                view.read_on()
+                view.holds = True
+            return Recording(run, name="the model answer")
+        finally:
+            handle.close()
 
 
 def faults(lesson: Lesson) -> list[str]:
@@ -91,7 +117,7 @@ def faults(lesson: Lesson) -> list[str]:
     return [fault for trial in tried for fault in _faults_of(lesson, trial, results)]
 
 
-def _worlds(trial: Trial) -> list[tuple[_Key, OtherWorld | None]]:
+def _worlds(trial: Trial) -> list[tuple[_Key, TrialWorld | None]]:
     """Return the worlds in which a trial runs, each with its key; None for that of the lesson."""
     check = trial.step.check
     assert isinstance(check, RunCheck)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -16,6 +17,8 @@ from tuisim.source import source_lines
 SUFFIX = ".txt"
 WIDTH = 88
 MOST_ERROR_LINES = 20
+_ELSEWHERE = "in each of the other worlds in which it was tried"
+"""What is told of a hidden world."""
 MOST_NAME_BYTES = 160
 """Longer names of files are cut off: with seed and suffix they must fit into the 255 bytes of common file systems."""
 _FORBIDDEN = frozenset('/\\:*?"<>|')
@@ -49,15 +52,19 @@ def feedback_of(sheet: Sheet, row: SheetRow, source: str = "") -> str:
     if row.comment:
         parts += [_wrapped(f"Comment: {row.comment}"), ""]
     parts += _how_often(row)
-    if row.failure:
+    if row.failure and row.hidden:
+        parts += [_wrapped(f"Your program did not run to its end {_ELSEWHERE}."), ""]
+    elif row.failure:
         parts += [_wrapped(f"Your program did not run to its end: {row.failure}"), ""]
         parts += [f"    {line}" for line in source_lines(row.error)[-MOST_ERROR_LINES:]]
         parts += [""] if row.error else []
     if row.refusal:
         parts += [_wrapped(f"Your program would not start on a brick: {row.refusal}"), ""]
     quoted = source_lines(source)
-    for column, cell in zip(sheet.columns, row.cells, strict=True):
-        parts += [*_goal(column, cell, row.runs, quoted), ""]
+    cells = list(zip(sheet.columns, row.cells, strict=True))
+    for column, cell in cells:
+        parts += [*_goal(column, cell, row.runs, quoted), ""] if not column.hidden else []
+    parts += _hidden([(column, cell) for column, cell in cells if column.hidden])
     lines = "\n".join(parts).rstrip("\n").split("\n")
     return "".join(f"{printable(line)}\n" for line in lines)
 
@@ -72,18 +79,30 @@ def _how_often(row: SheetRow) -> list[str]:
                      f"{full} of {row.runs} runs met every goal."), ""]  # fmt: skip
 
 
+def _hidden(cells: Sequence[tuple[Goal, Cell]]) -> list[str]:
+    """Return what is told of hidden goals: their points together."""
+    most = math.fsum(max(column.points, 0.0) for column, _ in cells)
+    points = math.fsum(cell.points for _, cell in cells)
+    return [f"Hidden goals: {in_words(points)} of {in_words(most)} points", ""] if cells else []
+
+
 def _goal(column: Goal, cell: Cell, runs: int, lines: Sequence[str]) -> list[str]:
+    if column.points < 0 and not cell.met:
+        return [_wrapped(f"[did not happen] {column.say}")]
     is_met = bool(runs) and cell.met == runs
-    mark = "met" if is_met else "missed" if not cell.met else "met in part"
-    points = f" ({in_words(cell.points)} of {in_words(column.points)})" if column.points else ""
+    mark = "happened" if column.points < 0 else "met" if is_met else "missed" if not cell.met else "met in part"
+    of = f" of {in_words(column.points)}" if column.points > 0 else ""
+    points = f" ({in_words(cell.points)}{of})" if column.points else ""
     found = [_wrapped(f"[{mark}] {column.say}{points}")]
-    if is_met:
+    if is_met and column.points >= 0:
         return found
-    if cell.met:
+    if cell.hidden:
+        found.append(_wrapped(f"Why: it is as asked for in the task's own world, but not {_ELSEWHERE}.", "    "))
+    elif cell.met:
         found.append(_wrapped(f"Met in {cell.met} of {runs} runs; missed with seed {cell.seed}.", "    "))
-    if cell.reason:
+    if cell.reason and not cell.hidden:
         found.append(_wrapped(f"Why: {cell.reason}", "    "))
-    if 0 < cell.line <= len(lines):
+    if 0 < cell.line <= len(lines) and not cell.hidden:
         found.append(f"    Line {cell.line}: {lines[cell.line - 1].strip()[:WIDTH]}")
     if column.hint:
         found.append(_wrapped(f"Hint: {column.hint}", "    "))

@@ -108,23 +108,24 @@ def write_gradebook(
 
     Args:
         sources: The texts of the students' programs, in the order of the rows, which the feedback quotes.
-        goals: Whether each goal has a column of its own, beside the one of the total.
+        goals: Whether each goal that is not hidden has a column of its own, beside the one of the total.
 
     Raises:
         ExportError: it cannot be written.
     """
     item = sheet.title or ITEM
-    columns = sheet.columns if goals else ()
-    names = [item, *(f"{item}: {column.name}" for column in columns)]
+    # Students see them: what is hidden, and what takes points off, is only in the total.
+    shown = [at for at, column in enumerate(sheet.columns) if goals and not column.hidden and column.points >= 0]
+    names = [item, *(f"{item}: {sheet.columns[at].name}" for at in shown)]
     heads = [*_IDENTITY[kind], *names]
     table = []
     if kind is GradebookKind.CANVAS:
-        most = [in_words(points) for points in (sheet.most_points, *(column.points for column in columns))]
+        most = [in_words(points) for points in (sheet.most_points, *(sheet.columns[at].points for at in shown))]
         table.append(["Points Possible", *[""] * (len(_IDENTITY[kind]) - 1), *most])
     else:
         heads.append("Feedback")
     for row, source in zip(sheet.rows, sources, strict=True):
-        points = [row.points, *(cell.points for cell in row.cells)][: len(names)]
+        points = [row.points, *(row.cells[at].points for at in shown)]
         cells = [*_identity(row, kind, roster), *map(in_words, points)]
         table.append(cells if kind is GradebookKind.CANVAS else [*cells, feedback_of(sheet, row, source)])
     text = io.StringIO()

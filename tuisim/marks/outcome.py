@@ -8,7 +8,8 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from tuisim.batch.task import Result
@@ -16,6 +17,7 @@ from tuisim.data_class import dataclass
 from tuisim.errors import printable, shortened
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.goals.spec import AllOf
+from tuisim.goals.trial_world import TrialWorld
 from tuisim.protocol import End
 from tuisim.runs.handle import user_python_path
 from tuisim.source import source_lines
@@ -41,11 +43,20 @@ class GoalOutcome:
     """Why it was missed; empty if it was met."""
     line: int = 0
     """The program's line that the reason is about; 0 if there is none."""
+    hidden: bool = False
+    """Whether it was missed only in hidden worlds, of which no student is told anything."""
+    is_penalty: bool = False
+    """Whether it takes points off."""
+
+    @property
+    def is_good(self) -> bool:
+        """Whether it is as it should be."""
+        return self.met is not self.is_penalty
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """One run of a student's program."""
+    """One run of a student's program, or with a seed all of its runs in the worlds of the task: see `merged`."""
 
     seed: int
     end: str
@@ -61,6 +72,10 @@ class Outcome:
     """In the order of the goals."""
     run_id: str = ""
     """Its id in the store; empty if it was not kept."""
+    world: str = ""
+    """In which of the other worlds it was, see `TrialWorld.where`; empty for the first."""
+    hidden: bool = False
+    """Whether that world is hidden; of merged ones whether it failed only in such a world."""
 
     @property
     def counts(self) -> bool:
@@ -73,23 +88,30 @@ class Outcome:
         return self.end in _GIVEN_UP
 
 
-def outcome_of(result: Result, seed: int, folder: Path) -> Outcome:
+def outcome_of(result: Result, seed: int, folder: Path, world: TrialWorld | None = None) -> Outcome:
     """Return the outcome of a task.
 
     Args:
         result: The result of the task.
         seed: Its seed.
         folder: The folder in which the program ran; its path does not appear in the outcome.
+        world: Another world, of whose goals only some may count.
     """
     failure = "" if result.end == End.FINISHED and not result.exit_code else _failure(result)
     judgements = {one.goal.name: one for one in result.judgements}
     goals = []
     for name, one in judgements.items():
+        if world is not None and name not in world.goals:
+            continue
         if one.state is GoalState.MET:
-            goals.append(GoalOutcome(name, True))
+            goals.append(GoalOutcome(name, True, is_penalty=one.goal.points < 0))
         else:
             cause = _cause(one, judgements)
-            goals.append(GoalOutcome(name, False, _one_line(portable(cause.reason, folder)), cause.line))
+            goals.append(
+                GoalOutcome(
+                    name, False, _one_line(portable(cause.reason, folder)), cause.line, is_penalty=one.goal.points < 0
+                )
+            )
     return Outcome(
         seed,
         result.end,
@@ -99,7 +121,52 @@ def outcome_of(result: Result, seed: int, folder: Path) -> Outcome:
         result.time_s,
         tuple(goals),
         result.run_id,
+        world.where if world else "",
+        bool(world and world.hidden),
     )
+
+
+def merged(outcomes: Sequence[Outcome], seeds: Sequence[int], worlds: Sequence[str] = ("",)) -> list[Outcome]:
+    """Return for each seed what came out of it: a goal is met if it is met in every world where it counts.
+
+    One that takes points off is met if it is in any. Seeds are left out for which a run is missing, or does not count.
+    Where the program gave up with the first seed, so it does with the others.
+
+    Args:
+        outcomes: Those of one student, in any order.
+        seeds: Those of the marking.
+        worlds: The worlds, the first one first.
+    """
+    known = {(one.world, one.seed): one for one in outcomes}
+    gave_up = {one.world: one for one in outcomes if one.gave_up and one.seed == seeds[0]}
+    found = []
+    for seed in seeds:
+        first = known.get((worlds[0], seed))
+        # A program that gave up in the first world was not run in the others.
+        own = worlds[:1] if worlds[0] in gave_up else worlds
+        parts = [first, *(known.get((world, seed), gave_up.get(world)) for world in own[1:])]
+        complete = [one for one in parts if one is not None and one.counts]
+        if len(complete) == len(parts):
+            found.append(_merged(seed, complete))
+    return found
+
+
+def _merged(seed: int, parts: Sequence[Outcome]) -> Outcome:
+    """Return what came out of the runs with a seed, the one in the first world first."""
+    # What a student may be told comes before what is hidden.
+    parts = sorted(parts, key=lambda part: part.hidden)
+    goals: dict[str, GoalOutcome] = {}
+    # Of a run of which nothing is recorded, no goal is known to be met.
+    is_known = all(part.goals for part in parts)
+    for part in parts:
+        for goal in part.goals if is_known else ():
+            if goal.name not in goals or goals[goal.name].is_good:
+                reason = f"{part.world}: {goal.reason}" if part.world and goal.reason else goal.reason
+                goals[goal.name] = replace(goal, reason=reason, hidden=part.hidden and not goal.is_good)
+    failed = next((part for part in parts if part.failure), None)
+    if failed is None or not failed.world:
+        return replace(failed or parts[0], seed=seed, goals=tuple(goals.values()))
+    return replace(failed, seed=seed, goals=tuple(goals.values()), failure=f"{failed.world}: {failed.failure}")
 
 
 def portable(text: str, folder: Path | str) -> str:

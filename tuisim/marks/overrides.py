@@ -12,7 +12,6 @@ heading = 1
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
 from pathlib import Path
@@ -20,6 +19,7 @@ from pathlib import Path
 from tuisim.config import files
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
+from tuisim.goals.judgement import points_of
 from tuisim.goals.spec import Goal
 from tuisim.marks.sheet import Sheet, SheetRow, rounded
 
@@ -68,6 +68,6 @@ def _row(row: SheetRow, columns: Sequence[Goal], override: Override) -> SheetRow
     )
     points = override.points
     if points is None:
-        points = rounded(math.fsum(cell.points for cell in cells)) if override.goals else row.points
+        points = rounded(points_of(cell.points for cell in cells)) if override.goals else row.points
     earned = row.points if points != row.points or cells != row.cells else None
     return replace(row, cells=cells, points=points, earned=earned, comment=override.comment)

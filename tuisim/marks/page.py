@@ -47,8 +47,8 @@ details pre { margin: .3rem 0; }
 code { font: .85rem ui-monospace, monospace; }
 """
 
-Links = Mapping[tuple[str, int], str]
-"""Relative paths of reports by student and seed."""
+Links = Mapping[tuple[str, str, int], str]
+"""Relative paths of reports by student, world and seed."""
 
 
 def page_of(
@@ -113,6 +113,8 @@ def _level(points: float, most: float) -> str:
 def _cell(cell: Cell, column: Goal, row: SheetRow) -> str:
     # A goal without points is met or missed, too.
     level = "met" if row.runs and cell.met == row.runs else "part" if cell.met else "missed"
+    if column.points < 0:
+        level = "missed" if cell.met else "met"
     seeds = f"met in {cell.met} of {row.runs} runs" if row.runs > 1 else ""
     hint = "; ".join(filter(None, (seeds, cell.reason)))
     return f'<td class="number {level}" title="{clean(hint)}">{in_words(cell.points)}</td>'
@@ -125,13 +127,15 @@ def _reason(row: SheetRow, links: Links) -> str:
     found += [clean(row.reason)] if row.reason else []
     if row.line:
         found.append(f"<br>line {row.line}: <code>{clean(row.source_line)}</code>")
-    reports: dict[str, list[int]] = {}
-    for outcome in row.outcomes:
-        if (row.name, outcome.seed) in links:
-            reports.setdefault(links[row.name, outcome.seed], []).append(outcome.seed)
-    if reports:
-        shown = ", ".join(f'<a href="{quote(path)}">{_ranges(seeds)}</a>' for path, seeds in reports.items())
-        found.append(f'<div class="soft">reports of runs by seed: {shown}</div>')
+    for world in dict.fromkeys(outcome.world for outcome in row.outcomes):
+        reports: dict[str, list[int]] = {}
+        for seed in (outcome.seed for outcome in row.outcomes if outcome.world == world):
+            if path := links.get((row.name, world, seed)):
+                reports.setdefault(path, []).append(seed)
+        if reports:
+            shown = ", ".join(f'<a href="{quote(path)}">{_ranges(seeds)}</a>' for path, seeds in reports.items())
+            where = f" {clean(world)}" if world else ""
+            found.append(f'<div class="soft">reports of runs{where} by seed: {shown}</div>')
     if row.stopped_early:
         found.append('<div class="soft">not run with further seeds</div>')
     if row.error:

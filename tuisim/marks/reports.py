@@ -15,8 +15,10 @@ from tuisim.analysis.source import LogRequest, opening
 from tuisim.charts.files import write_whole
 from tuisim.data_class import dataclass
 from tuisim.errors import ExportError, LogError
+from tuisim.goals.condition import ConditionKind
 from tuisim.goals.judgement import Change
-from tuisim.goals.spec import ConditionKind, Goal
+from tuisim.goals.spec import Goal
+from tuisim.goals.trial_world import TrialWorld
 from tuisim.marks.class_map import Miss, MissesOfRun
 from tuisim.marks.feedback import file_stems
 from tuisim.marks.outcome import GoalOutcome, Outcome, portable
@@ -36,6 +38,8 @@ class Report:
     """The report of a kept run."""
 
     student: str
+    world: str
+    """See `TrialWorld.where`."""
     seed: int
     path: str
     """Relative to the page."""
@@ -43,14 +47,14 @@ class Report:
     """Where it missed goals; none if another run with the same record has said so."""
 
 
-def write_reports(sheet: Sheet, goals: Sequence[Goal], page: Path) -> Iterator[Report]:
+def write_reports(sheet: Sheet, worlds: Sequence[TrialWorld], page: Path) -> Iterator[Report]:
     """Write the reports of kept runs; yield each once it is written.
 
     Runs of a student that recorded the same have one report. Runs that were removed from the store are left out.
     Reports of an earlier page of this name are replaced.
 
     Args:
-        goals: All goals of the task.
+        worlds: The worlds of the task, the first one first.
 
     Raises:
         ExportError: a report cannot be written.
@@ -58,23 +62,25 @@ def write_reports(sheet: Sheet, goals: Sequence[Goal], page: Path) -> Iterator[R
     folder, store = reports_folder(page), RunStore()
     shutil.rmtree(folder, ignore_errors=True)
     for stem, row in zip(file_stems(one.name for one in sheet.rows), sheet.rows, strict=True):
-        written: dict[str, str] = {}
+        written: dict[tuple[str, str], str] = {}
         for outcome in row.outcomes:
             run = _stored(store, outcome.run_id) if outcome.run_id else None
             if run is None:
                 continue
-            recorded, misses = _digest(run), tuple[Miss, ...]()
+            number, world = next((at, one) for at, one in enumerate(worlds) if one.where == outcome.world)
+            recorded, misses = (outcome.world, _digest(run)), tuple[Miss, ...]()
             if recorded not in written:
-                name = f"{stem}-seed-{outcome.seed}.html"
+                name = f"{stem}{f'-world-{number + 1}' if number else ''}-seed-{outcome.seed}.html"
                 *_, opened = opening(LogRequest(runs=(run.id,)))
                 opened = replace(opened, runs=tuple(map(_portable, opened.runs)))
-                judged = _judged(goals, outcome, run)
-                shown, pins = _verdicts(sheet.columns, judged, outcome)
-                misses = _misses(row.name, sheet.columns, judged, outcome, run)
-                title = f"{row.name}, seed {outcome.seed}"
+                columns = [column for column in sheet.columns if column.name in world.goals]
+                judged = _judged(world.own_goals, outcome, run)
+                shown, pins = _verdicts(columns, judged, outcome)
+                misses = _misses(row.name, columns, judged, outcome, run)
+                title = ", ".join(filter(None, (row.name, outcome.world, f"seed {outcome.seed}")))
                 _write(folder / name, report_of(opened, title=title, pins=pins, parts=[shown]))
                 written[recorded] = f"{folder.name}/{name}"
-            yield Report(row.name, outcome.seed, written[recorded], MissesOfRun(run, misses))
+            yield Report(row.name, outcome.world, outcome.seed, written[recorded], MissesOfRun(run, misses))
 
 
 def _write(path: Path, content: str) -> None:
@@ -118,7 +124,7 @@ def _misses(
 ) -> tuple[Miss, ...]:
     """Return where a run missed goals: those that were decided nowhere, at the robot's last place."""
     last = run.telemetry.last()
-    missed = {one.name: one for one in outcome.goals if not one.met}
+    missed = {one.name: one for one in outcome.goals if not one.is_good}
     found = []
     for column in columns:
         place = judged.get(column.name) or last
@@ -141,11 +147,11 @@ def _verdicts(columns: Sequence[Goal], judged: Mapping[str, Change], outcome: Ou
         goal = found.get(column.name, GoalOutcome(column.name, False, outcome.failure))
         result = "met" if goal.met else "missed"
         why = f"{goal.reason} (line {goal.line})" if goal.line else goal.reason
-        points = f"{in_words(column.points if goal.met else 0)} of {in_words(column.points)}"
+        points = f"{in_words(column.points if goal.met else 0)} of {in_words(max(0, column.points))}"
         if (event := judged.get(column.name)) is not None:
             result += f" at {event.time_s:.2f} s, x {event.x_mm:.0f}, y {event.y_mm:.0f} mm"
             said = f"{number}. {column.say} {result}"
-            pins.append(Pin(str(number), event.x_mm, event.y_mm, goal.met, f"{said}: {why}" if why else said))
+            pins.append(Pin(str(number), event.x_mm, event.y_mm, goal.is_good, f"{said}: {why}" if why else said))
         rows.append([str(number), column.say, result, why, points])
     return section("Goals", table(_HEADS, rows, numbers=len(_HEADS) - 1)), pins
 

@@ -13,17 +13,20 @@ from tuisim.batch.task import Keep, Task
 from tuisim.core.spec import RunSpec
 from tuisim.core.tree import to_plain
 from tuisim.data_class import dataclass
-from tuisim.goals.spec import Goal
+from tuisim.goals.trial_world import TrialWorld
 from tuisim.marks.journal import Journal
 from tuisim.marks.outcome import Outcome, outcome_of
 from tuisim.marks.students import Student
 from tuisim.marks.workspace import copy_of, digest_of, program_in
 from tuisim.runs.handle import RunOptions, user_python_path
+from tuisim.runs.presses import press_actions
 from tuisim.runs.removal import remove_tree
 from tuisim.runs.temporary import temporary_home
 
 STALL_LIMIT_S = 10.0
 """CPU seconds in one instant of simulated time after which a program counts as hung."""
+TIME_LIMIT_S = 120.0
+"""Simulated seconds that a program may take, if nobody says otherwise."""
 REAL_TIME_LIMIT_S = 120.0
 """Real seconds of one run."""
 
@@ -32,9 +35,11 @@ REAL_TIME_LIMIT_S = 120.0
 class MarkPlan:
     """What is run for each student."""
 
-    goals: tuple[Goal, ...]
+    worlds: tuple[TrialWorld, ...]
+    """Those of the task, the first one first."""
     seeds: tuple[int, ...]
     options: RunOptions
+    """Without answers to `input()`, it gets those of each world."""
     keep: Keep
     jobs: int = 0
     """Number of workers; 0 is one for each processor."""
@@ -49,8 +54,8 @@ class RunEntry:
     """A student whose program can be run."""
 
     student: Student
-    spec: RunSpec
-    """With any seed."""
+    specs: tuple[RunSpec, ...]
+    """In the order of the worlds, with any seed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,27 +64,51 @@ class _Turn:
 
     entry: RunEntry
     seed: int
+    world: TrialWorld
+    spec: RunSpec
+    options: RunOptions
     key: str
 
 
 def outcomes_of(entries: Sequence[RunEntry], plan: MarkPlan, journal: Journal) -> Generator[tuple[str, Outcome]]:
     """Run every student's program with every seed; yield names of students and outcomes as they become known.
 
-    A program that hangs, floods or dies with the first seed is not run with the others. Outcomes that the journal
-    knows are not run again. Closing the iterator stops what is running.
+    A program that hangs, floods or dies with the first seed is not run with the others; if it does so in the first
+    world, nor in the others. Outcomes that the journal knows are not run again. Closing the iterator stops what is
+    running.
 
     Raises:
         LogError: a student's files, a recording or the journal cannot be read or written.
     """
     turns = {entry.student.name: _turns(entry, plan) for entry in entries}
-    given_up: set[str] = set()
-    first = [every[0] for every in turns.values()]
-    for name, outcome in _run(first, plan, journal):
-        if outcome.gave_up:
-            given_up.add(name)
-        yield name, outcome
-    later = [turn for name, every in turns.items() if name not in given_up for turn in every[1:]]
-    yield from _run(later, plan, journal)
+    given_up: set[tuple[str, str]] = set()
+    first, *others = (world.where for world in plan.worlds)
+    rounds = (
+        (plan.seeds[:1], [first]),
+        (plan.seeds[:1], others),
+        (plan.seeds[1:], [first, *others]),
+    )
+    for seeds, worlds in rounds:
+        now = [
+            turn
+            for name, every in turns.items()
+            for turn in every
+            if turn.seed in seeds
+            and turn.world.where in worlds
+            and given_up.isdisjoint({(name, first), (name, turn.world.where)})
+        ]
+        for name, outcome in _run(now, plan, journal):
+            if outcome.gave_up and outcome.seed == plan.seeds[0]:
+                given_up.add((name, outcome.world))
+            yield name, outcome
+
+
+def runs_of(outcomes: Sequence[Outcome], plan: MarkPlan) -> int:
+    """Return how many runs a student's program has in all, as far as its outcomes tell."""
+    given_up = {one.world for one in outcomes if one.gave_up and one.seed == plan.seeds[0]}
+    if plan.worlds[0].where in given_up:
+        return 1
+    return sum(1 if world.where in given_up else len(plan.seeds) for world in plan.worlds)
 
 
 def _turns(entry: RunEntry, plan: MarkPlan) -> list[_Turn]:
@@ -90,13 +119,20 @@ def _turns(entry: RunEntry, plan: MarkPlan) -> list[_Turn]:
         student.main,
         student.source.program.prelude,
         digest_of(student),
-        repr(plan.goals),
     ]
-    basis += [plan.options.to_plain(), plan.keep, plan.isolate, plan.arguments, user_python_path()]
+    basis += [plan.keep, plan.isolate, plan.arguments, user_python_path()]
     turns = []
-    for seed in plan.seeds:
-        text = json.dumps([*basis, to_plain(replace(entry.spec, seed=seed))], sort_keys=True, default=str)
-        turns.append(_Turn(entry, seed, hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()))
+    for world, of_world in zip(plan.worlds, entry.specs, strict=True):
+        options = replace(
+            plan.options,
+            answers=plan.options.answers or world.answers,
+            actions=press_actions(world.presses, of_world.profile.tick_hz),
+        )
+        for seed in plan.seeds:
+            spec = replace(of_world, seed=seed)
+            own = [repr(world), options.to_plain(), to_plain(spec)]
+            text = json.dumps([*basis, *own], sort_keys=True, default=str).encode("utf-8", "surrogatepass")
+            turns.append(_Turn(entry, seed, world, spec, options, hashlib.sha256(text).hexdigest()))
     return turns
 
 
@@ -114,7 +150,7 @@ def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[t
         workspace = home.resolve()
         for result in run_many(_tasks(unknown, plan, workspace), plan.jobs):
             turn, place = unknown[result.index], workspace / str(result.index)
-            outcome = outcome_of(result, turn.seed, place)
+            outcome = outcome_of(result, turn.seed, place, turn.world)
             remove_tree(place)
             if outcome.counts:
                 journal.add(turn.key, outcome)
@@ -129,9 +165,9 @@ def _tasks(turns: Sequence[_Turn], plan: MarkPlan, workspace: Path) -> Iterator[
         yield Task(
             index=index,
             program=program,
-            spec=replace(turn.entry.spec, seed=turn.seed),
-            options=plan.options,
-            goals=plan.goals,
+            spec=turn.spec,
+            options=turn.options,
+            goals=turn.world.own_goals,
             parameters={"student": student.name, "seed": turn.seed},
             keep=plan.keep,
             real_time_limit_s=REAL_TIME_LIMIT_S,

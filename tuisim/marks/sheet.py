@@ -7,14 +7,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.data_class import dataclass
 from tuisim.errors import counted, printable
+from tuisim.goals.judgement import most_points, points_of
 from tuisim.goals.spec import Goal
 from tuisim.logs.export import export_frame
-from tuisim.marks.outcome import Outcome
+from tuisim.marks.outcome import Outcome, merged
 from tuisim.marks.students import Student
 from tuisim.source import source_lines
 
@@ -36,13 +38,15 @@ class Cell:
     points: float
     """Mean over the runs."""
     met: int
-    """Number of runs that met it."""
+    """Number of runs that met it; of a goal that takes points off, that is the fault."""
     reason: str = ""
     """Why it was missed by the first run that missed it; empty if none did."""
     line: int = 0
     """The program's line that the reason is about; 0 if there is none."""
     seed: int = 0
     """The seed of that run."""
+    hidden: bool = False
+    """Whether that was only in hidden worlds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +72,8 @@ class SheetRow:
     """The seed of that run."""
     failure: str = ""
     """Why the program of that run did not finish, or could not be run; empty if it finished."""
+    hidden: bool = False
+    """Whether that was only in a hidden world."""
     error: str = ""
     """The traceback of that run; empty if it has none."""
     runs: int = 0
@@ -95,7 +101,12 @@ class Sheet:
     @property
     def most_points(self) -> float:
         """The points of a program that meets every goal."""
-        return rounded(math.fsum(column.points for column in self.columns))
+        return rounded(most_points(self.columns))
+
+
+def columns_of(goals: Sequence[Goal]) -> list[Goal]:
+    """Return the goals that a student is shown, in words: not those that are only parts of others."""
+    return [replace(goal, say=goal.say or goal.name) for goal in goals if goal.points or goal.say]
 
 
 def sheet_of(
@@ -104,27 +115,35 @@ def sheet_of(
     seeds: Sequence[int],
     students: Sequence[Student],
     outcomes: Mapping[str, Sequence[Outcome]],
+    worlds: Sequence[str] = ("",),
 ) -> Sheet:
     """Return the sheet of a class.
 
     Args:
         outcomes: The outcomes of the runs so far, by the name of the student, in any order.
+        worlds: The worlds of the task, see `TrialWorld.where`, the first one first.
     """
-    rows = tuple(row_of(student, columns, outcomes.get(student.name, ()), len(seeds)) for student in students)
+    rows = tuple(row_of(student, columns, outcomes.get(student.name, ()), seeds, worlds) for student in students)
     return Sheet(title, tuple(columns), rows, tuple(seeds))
 
 
-def row_of(student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome], seeds: int) -> SheetRow:
+def row_of(
+    student: Student,
+    columns: Sequence[Goal],
+    outcomes: Sequence[Outcome],
+    seeds: Sequence[int],
+    worlds: Sequence[str],
+) -> SheetRow:
     """Return the row of a student."""
     if not student.source:
         cells = tuple(Cell(0.0, 0, student.problem) for _ in columns)
         return SheetRow(student.name, student.main, 0.0, 0.0, cells, student.problem, failure=student.problem)
-    ordered = tuple(sorted((one for one in outcomes if one.counts), key=lambda one: one.seed))
+    ordered = merged(outcomes, seeds, worlds)
     if not ordered:
         return SheetRow(student.name, student.main, 0.0, 0.0, tuple(Cell(0.0, 0, NOT_RUN) for _ in columns), NOT_RUN)
     totals = [_points(columns, one) for one in ordered]
     # In a task without points, every goal counts.
-    counted_goals = [column.name for column in columns if column.points] or [column.name for column in columns]
+    counted_goals = [column for column in columns if column.points] or columns
     incomplete = [one for one in ordered if _missed(one, counted_goals)]
     failed = incomplete[0] if incomplete else None
     reason, line = _reason(failed, counted_goals) if failed else ("", 0)
@@ -141,17 +160,20 @@ def row_of(student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome
         seed=failed.seed if failed else 0,
         failure=failed.failure if failed else "",
         error=failed.error if failed else "",
+        hidden=failed.hidden if failed else False,
         runs=len(ordered),
-        stopped_early=len(ordered) < seeds and ordered[0].gave_up,
+        stopped_early=len(ordered) < len(seeds) and ordered[0].gave_up,
         refusal=student.refusal,
-        outcomes=ordered,
+        outcomes=tuple(
+            sorted((one for one in outcomes if one.counts), key=lambda one: (worlds.index(one.world), one.seed))
+        ),
     )
 
 
 def _points(columns: Sequence[Goal], outcome: Outcome) -> float:
     """Return the points of one run; one of which nothing is recorded has no judgements, and no points."""
     met = {goal.name for goal in outcome.goals if goal.met}
-    return math.fsum(column.points for column in columns if column.name in met)
+    return points_of(column.points for column in columns if column.name in met)
 
 
 def _cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
@@ -160,25 +182,27 @@ def _cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
     points = rounded(column.points * met / len(goals))
     for outcome, goal in goals:
         if goal is None:
-            return Cell(points, met, outcome.failure, 0, outcome.seed)
-        if not goal.met:
-            return Cell(points, met, goal.reason, goal.line, outcome.seed)
+            # Of a run of which nothing is recorded, it is known only that it failed.
+            return Cell(points, met, outcome.failure, 0, outcome.seed, outcome.hidden)
+        if not goal.is_good:
+            return Cell(points, met, goal.reason, goal.line, outcome.seed, goal.hidden)
     return Cell(points, met)
 
 
-def _missed(outcome: Outcome, names: Sequence[str]) -> list[str]:
-    """Return which of the goals a run has not met."""
-    met = {goal.name for goal in outcome.goals if goal.met}
-    return [name for name in names if name not in met]
+def _missed(outcome: Outcome, columns: Sequence[Goal]) -> bool:
+    """Return whether a run has missed one of the goals, or met one that takes points off."""
+    good = {goal.name for goal in outcome.goals if goal.is_good}
+    return not all(column.name in good for column in columns)
 
 
-def _reason(outcome: Outcome, names: Sequence[str]) -> tuple[str, int]:
+def _reason(outcome: Outcome, columns: Sequence[Goal]) -> tuple[str, int]:
     """Return why a run failed, and the program's line: an error comes before the goals that it prevented."""
-    missed = [goal for goal in outcome.goals if not goal.met and goal.name in names]
+    names = {column.name: column.say for column in columns}
+    missed = [goal for goal in outcome.goals if not goal.is_good and goal.name in names]
     if outcome.failure:
         # A program that was stopped has no line of an error; what it did not get done has one.
         return outcome.failure, outcome.line or next((goal.line for goal in missed if goal.line), 0)
-    return (missed[0].reason, missed[0].line) if missed else ("", 0)
+    return (missed[0].reason or names[missed[0].name], missed[0].line) if missed else ("", 0)
 
 
 def rounded(value: float) -> float:

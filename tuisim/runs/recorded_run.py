@@ -36,12 +36,15 @@ class Recording:
     Args:
         source: A running run, or a stored one.
         answers: Scripted answers of a running run; for a stored run they are read from its options.
+        name: Display name; by default the number, or the id if it has none.
     """
 
-    def __init__(self, source: RunHandle | StoredRun, answers: tuple[str, ...] = ()) -> None:
+    def __init__(self, source: RunHandle | StoredRun, answers: tuple[str, ...] = (), name: str = "") -> None:
         self.run_id = source.id if isinstance(source, StoredRun) else source.run_id
         self.number: int = source.number
         """Number in the catalogue; 0 if it is not listed."""
+        self.name = name or (f"run {self.number}" if self.number else self.run_id)
+        """Display name."""
         self.spec: RunSpec = source.spec
         self.folder: Path = source.folder
         self.telemetry: TelemetryView = source.telemetry
@@ -54,11 +57,6 @@ class Recording:
         self._marks: _TimedMarks | None = None
         self.answers = tuple(source.options.get("answers", ())) if isinstance(source, StoredRun) else answers
         """Scripted answers to `input()`."""
-
-    @property
-    def name(self) -> str:
-        """Display name: the number, or the id if it has none."""
-        return f"run {self.number}" if self.number else self.run_id
 
     def hold(self) -> None:
         """Stay as written up to now, until the next `RunHandle.pump` of a running run."""

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tuisim.core.drive import turn_rate_dps
+from tuisim.core.drift import light_share, sensed_turn_rate_dps
 from tuisim.core.field import Field
 from tuisim.core.noise import stream
 from tuisim.core.sensors import SENSORS
@@ -37,6 +37,8 @@ def measured_at_once(
     """
     if isinstance(sensor, ColorSensorSpec) and (has_light_noise or sensor.strategy != "mean" or run.world.pen_marks):
         return None
+    if isinstance(sensor, UltrasonicSpec) and run.world.drift.echo_loss_pc:
+        return None
     measure = _AT_ONCE.get(type(sensor))
     if measure is None:
         return None
@@ -45,12 +47,13 @@ def measured_at_once(
         return measure(sensor, records, run, field)
 
 
-def quiet_color_columns(records: Array, sensor: ColorSensorSpec, field: Field) -> dict[str, Array]:
+def quiet_color_columns(records: Array, sensor: ColorSensorSpec, run: RunSpec, field: Field) -> dict[str, Array]:
     """Return red, green and blue of a colour sensor at every tick without light noise, by column.
 
     Args:
         records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
         sensor: The sensor.
+        run: The specification of the run.
         field: The mat; it must have sums of the sensor's diameter.
     """
     x_mm, y_mm = world_points_mm(records, sensor.x_mm, sensor.y_mm)
@@ -64,18 +67,20 @@ def quiet_color_columns(records: Array, sensor: ColorSensorSpec, field: Field) -
     table = np.frombuffer(field.sums[diameter], np.uint32).reshape(height, width, 3)
     sums[inside] = table[row[inside], col[inside]]
     means = sums / disc_pixels_of(diameter)
+    if run.world.drift.light_pc:
+        means *= light_share(x_mm, y_mm, run.world.drift, run.seed)[:, None]
     return {name: means[:, channel] for channel, name in enumerate(SENSORS["color"].names(sensor))}
 
 
 def _color(sensor: ColorSensorSpec, records: Array, run: RunSpec, field: Field) -> tuple[Array, ...]:
-    return tuple(quiet_color_columns(records, sensor, field).values())
+    return tuple(quiet_color_columns(records, sensor, run, field).values())
 
 
 def _gyro(sensor: GyroSpec, records: Array, run: RunSpec, field: Field) -> tuple[Array, ...]:
     left_dps: Any = records["left_speed_dps"].astype("f8")
     right_dps: Any = records["right_speed_dps"].astype("f8")
     angle_deg = records["gyro_zero_deg"].astype("f8") - records["heading_deg"]
-    rate_dps: Any = -turn_rate_dps(left_dps, right_dps, run.robot)
+    rate_dps: Any = -sensed_turn_rate_dps(left_dps, right_dps, run)
     return _rounded(angle_deg), _rounded(rate_dps)
 
 

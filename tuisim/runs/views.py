@@ -21,7 +21,7 @@ from stat import S_IRUSR
 from typing import TYPE_CHECKING, Any, ClassVar
 from weakref import finalize
 
-from tuisim.core.drive import turn_rate_dps
+from tuisim.core.drift import sensed_turn_rate_dps
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import Instant
@@ -93,10 +93,11 @@ def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
         right_position_deg=record.right_position_deg,
         left_speed_dps=record.left_speed_dps,
         right_speed_dps=record.right_speed_dps,
-        turn_rate_dps=turn_rate_dps(record.left_speed_dps, record.right_speed_dps, spec.robot),
+        turn_rate_dps=sensed_turn_rate_dps(record.left_speed_dps, record.right_speed_dps, spec),
         gyro_zero_deg=record.gyro_zero_deg,
         end_flags=record.flags & END_FLAGS,
         noise=noise,
+        drift=spec.world.drift,
         seed=spec.seed,
     )
 

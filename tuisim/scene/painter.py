@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from enum import StrEnum
 
 import numpy as np
 
@@ -22,6 +23,15 @@ from tuisim.terminal.pixels import Pixels
 _GHOST_OPACITY, _EARLIER_OPACITY = 0.75, 0.6
 
 
+class Faint(StrEnum):
+    """What a translucent robot is."""
+
+    BESIDE = "beside"
+    """That of another run, which is shown beside this one."""
+    NOW = "now"
+    """Where the robot is now, while a past instant is in view."""
+
+
 @dataclass(frozen=True, slots=True)
 class SceneState:
     """The objects on the mat at one moment."""
@@ -33,10 +43,8 @@ class SceneState:
     """(world angle in degrees, length in mm); empty to draw none."""
     rays_from: Pose | None = None
     """Pose of the robot when `rays` were cast; None for `pose`."""
-    ghost: Pose | None = None
-    """Pose of a second, translucent robot."""
-    earlier: Pose | None = None
-    """Pose of the robot of an earlier run, below both."""
+    faint: tuple[tuple[Faint, Pose], ...] = ()
+    """Translucent robots below the robot, the lowest first."""
     marked: int | None = None
     """Index of the selected obstacle."""
     pressed: tuple[bool, ...] = ()
@@ -80,7 +88,10 @@ class ScenePainter:
         self._grey = grey or mono
         self._mono = mono
         self._detail_cols = 1 if coarse else None
-        self._ghost_colors = GREY_GHOST if grey else GHOST
+        self._faint = {
+            Faint.BESIDE: (EARLIER, _EARLIER_OPACITY),
+            Faint.NOW: (GREY_GHOST if grey else GHOST, _GHOST_OPACITY),
+        }
         self._ground: Pixels | None = None
         self._ground_key: object = None
         self._pieces_drawn = 0
@@ -98,10 +109,9 @@ class ScenePainter:
             ultrasonic = scene.robot.ultrasonic
             x_mm, y_mm = world_point(scene.rays_from or scene.pose, ultrasonic.x_mm, ultrasonic.y_mm)
             draw_rays(picture, view, x_mm, y_mm, scene.rays, self._grey, is_solid=self._has_frame)
-        below = ((scene.earlier, EARLIER, _EARLIER_OPACITY), (scene.ghost, self._ghost_colors, _GHOST_OPACITY))
-        for pose, colors, opacity in below:
-            if pose is not None:
-                draw_robot(picture, view, pose, outline, colors, opacity, detail_cols=self._detail_cols)
+        for kind, pose in scene.faint:
+            colors, opacity = self._faint[kind]
+            draw_robot(picture, view, pose, outline, colors, opacity, detail_cols=self._detail_cols)
         draw = draw_mono_robot if self._mono else draw_robot
         if scene.has_robot:
             draw(

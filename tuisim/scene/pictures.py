@@ -11,7 +11,7 @@ from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.sensors.touch import pressed
 from tuisim.core.sensors.ultrasonic import rays_mm
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec, RunSpec
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, PenSpec, RobotSpec, RunSpec
 from tuisim.scene.painter import FRAME_PX, ScenePainter, SceneState
 from tuisim.scene.pen import PenTrace, Piece, pen_trace
 from tuisim.scene.robot import drawn_reach_mm
@@ -118,3 +118,24 @@ def world_at_end(run: StoredRun) -> Image:
 
     last, trace = run.telemetry.last(), pen_trace(run.spec, run.telemetry.array())
     return world_picture(run.spec, mat_pixels(mat_files(run)), sound_pose(last), (trace,))
+
+
+_PATH = PenSpec(color="red", width_mm=12.0)
+_MOST_PATH_POINTS = 2000
+
+
+def path_picture(run: StoredRun, port: Viewport, outside_rgb: Rgb) -> Pixels:
+    """Return a small picture of the way of a run on its mat, in the size of a view.
+
+    Raises:
+        LogError: the recording is damaged, or the mat no longer exists.
+    """
+    from tuisim.config.mat_cache import mat_pixels
+    from tuisim.runs.run_folder import mat_files
+
+    records = run.telemetry.array()
+    some = records[:: max(1, len(records) // _MOST_PATH_POINTS)]
+    trace = PenTrace()
+    trace.add(Piece.of(some["x_mm"].astype(float), some["y_mm"].astype(float), _PATH))
+    painter = ScenePainter(mat_pixels(mat_files(run)), outside_rgb, trace)
+    return painter.paint(port, scene_of(run.spec, None))

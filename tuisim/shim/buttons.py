@@ -12,8 +12,8 @@ from collections.abc import Callable
 from typing import Any
 
 from tuisim.core.profile import MS, NS_PER_S
+from tuisim.core.spec import BUTTONS
 from tuisim.data_class import dataclass
-from tuisim.protocol import BUTTONS
 from tuisim.shim.files.entries import DeviceFile, OpenFile, refuse_ioctl
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.waits import Wait, waits_for

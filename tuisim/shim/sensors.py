@@ -143,7 +143,8 @@ class ColorDevice(LegoSensor):
         self._spec = spec
         self._clear = color.rgb_reader(spec, session.field)
         self._noisy = color.noisy_rgb_reader(spec, session.field)
-        self._in_full = bool(session.sim.spec.world.pen_marks)
+        world = session.sim.spec.world
+        self._in_full = world.pen_marks or world.drift.light_pc > 0
         self._seen = (0, 0, 0)
         self._seen_tick, self._seen_actions = -1, -1
 

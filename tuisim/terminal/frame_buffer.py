@@ -11,6 +11,7 @@ import re
 import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache, partial
+from itertools import chain
 from typing import NamedTuple
 from weakref import WeakSet, finalize
 
@@ -61,6 +62,9 @@ class CellLook(NamedTuple):
 
 Cell = tuple[str, CellLook | PictureCell]
 """Character and style of a cell; the right half of a wide character is empty, and so is a part of a picture."""
+
+
+_Row = Sequence[Cell | None]
 
 
 class FrameBuffer:
@@ -129,7 +133,7 @@ class FrameBuffer:
                 if isinstance(look, PictureCell):
                     yield x, look
                 else:
-                    pen.write(x, y, text, look, row)
+                    pen.take(x, y, text, look, row)
                 row[x] = cell
 
 
@@ -253,6 +257,29 @@ def _color_codes(color: Color | None, depth: int) -> tuple[str, str]:
     return ";".join(least.get_ansi_codes()), ";".join(least.get_ansi_codes(foreground=False))
 
 
+_ROWS_OF_BLOCK = 8
+"""Rows in which cells of one style are written together: fewer would change styles more often, more would let a slow
+line draw the whole screen one colour after another."""
+
+
+class _Run:
+    """Cells beside each other that need no change of the style."""
+
+    __slots__ = ("cells", "look", "row", "x", "y")
+
+    def __init__(self, x: int, y: int, look: CellLook, cells: list[tuple[str, CellLook]], row: _Row) -> None:
+        self.x, self.y, self.look, self.cells, self.row = x, y, look, cells, row
+
+
+def _joined(one: CellLook, other: CellLook) -> CellLook | None:
+    """Return the style in which cells of two styles can be written, blanks in any colour; None if there is none."""
+    if one == other:
+        return one
+    if (one.background, one.link) != (other.background, other.link):
+        return None
+    return one if not other.foreground else other if not one.foreground else None
+
+
 class _Pen:
     """Writes cells, and tracks the terminal's cursor and current style.
 
@@ -263,6 +290,34 @@ class _Pen:
         self._parts: list[str] = []
         self._look = CellLook()
         self._x = self._y = -1
+        self._first_row = 0
+        """Of the block of rows whose runs wait."""
+        self._runs: list[_Run] = []
+        """They wait for the others of their block: those of one style are written together."""
+
+    def take(self, x: int, y: int, text: str, look: CellLook, row: Sequence[Cell | None]) -> None:
+        """Take a cell of a row, to be written when the other cells of the row are final."""
+        if not 0 <= y - self._first_row < _ROWS_OF_BLOCK:
+            self._write_runs()
+            self._first_row = y
+        last = self._runs[-1] if self._runs else None
+        if last is None or (last.y, last.x + len(last.cells)) != (y, x) or (joined := _joined(last.look, look)) is None:
+            self._runs.append(_Run(x, y, look, [(text, look)], row))
+        else:
+            last.cells.append((text, look))
+            last.look = joined
+
+    def _write_runs(self) -> None:
+        """Write what waits, with as few changes of the style as there are styles."""
+        grounds: dict[tuple[str, str], dict[CellLook, list[_Run]]] = {}
+        for run in self._runs:
+            of_ground = grounds.setdefault((run.look.background, run.look.link), {})
+            of_ground.setdefault(run.look, []).append(run)
+        for looks in grounds.values():
+            for run in chain.from_iterable(looks.values()):
+                for at, (text, look) in enumerate(run.cells):
+                    self.write(run.x + at, run.y, text, look, run.row)
+        self._runs = []
 
     def write(self, x: int, y: int, text: str, look: CellLook, row: Sequence[Cell | None]) -> None:
         """Write a cell of a row whose other cells are final."""
@@ -325,6 +380,7 @@ class _Pen:
 
     def finish(self) -> str:
         """Return everything that was written."""
+        self._write_runs()
         if self._look.link:
             self._parts.append("\x1b]8;;\x1b\\")
         if self._look != CellLook():

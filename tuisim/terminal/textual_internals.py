@@ -21,7 +21,6 @@ from textual import keys as textual_keys
 from textual import screen as textual_screen
 from textual.app import App
 from textual.binding import BindingsMap
-from textual.command import CommandPalette
 from textual.dom import DOMNode
 from textual.driver import Driver
 from textual.drivers import linux_driver
@@ -36,7 +35,6 @@ from textual.selection import Selection
 from textual.strip import Strip
 from textual.widget import Widget
 from textual.widgets import OptionList, TextArea
-from textual.worker import Worker
 
 if TYPE_CHECKING:
     from textual._callback import invoke as invoke
@@ -73,7 +71,6 @@ _USED: Mapping[type, tuple[str, ...]] = {
         "_background_screens", "_batch_count", "_closed", "_display", "_driver", "_exit", "_filters",
         "_handle_exception", "_running", "_shutdown",
     ),
-    CommandPalette: ("_GATHER_COMMANDS_GROUP",),
     Compositor: ("_dirty_regions", "_full_map", "_render_chops", "reflow", "render_strips"),
     DOMNode: ("_bindings",),
     LinuxDriver: (
@@ -318,11 +315,6 @@ def write_with(driver: Driver, write: Callable[[bytes], int]) -> None:
 def bindings_of(node: DOMNode) -> BindingsMap:
     """Return the keys of a node, to be changed."""
     return getattr(node, "_bindings", None) or BindingsMap()
-
-
-def is_search(worker: Worker[Any], palette: CommandPalette) -> bool:
-    """Return whether a worker searches the commands of a palette."""
-    return worker.node is palette and worker.group == getattr(palette, "_GATHER_COMMANDS_GROUP", None)
 
 
 def screen_strips(app: App[Any]) -> list[Strip]:

@@ -128,7 +128,7 @@ async def test_pen_is_p_and_not_shift_p() -> None:
 
 
 async def test_help_lists_every_key() -> None:
-    async with LabApp(settings()).run_test(size=(130, 170)) as pilot:
+    async with LabApp(settings()).run_test(size=(150, 240)) as pilot:
         app = await ready(pilot)
         await pilot.press("question_mark")
         assert isinstance(app.screen, GuideScreen)
@@ -155,11 +155,12 @@ async def test_choosing_a_mat_lays_it_out_with_its_start() -> None:
 
 @pytest.mark.parametrize("width", [60, 80, 120, 200])
 @pytest.mark.parametrize("state", [RunPhase.IDLE, RunPhase.RUNNING, RunPhase.PAUSED])
-def test_footer_fits_and_always_shows_help_and_quit(width: int, state: RunPhase) -> None:
+def test_footer_fits_and_always_shows_help_palette_and_quit(width: int, state: RunPhase) -> None:
     now = Situation(state, has_program=True, has_run=state != RunPhase.IDLE)
-    shown = fitting([action for action in ACTIONS.values() if not action.why_not(now)], width)
-    assert [action.id for action in shown[-2:]] == ["help", "quit"]
-    assert sum(len(f" {a.footer_key or a.key_label} {a.footer}") for a in shown) <= width
+    shown = fitting([action for action in ACTIONS.values() if not action.why_not(now)], width, 9)
+    assert [action.id for action in shown[-3:]] == ["help", "palette", "quit"]
+    groups = len({action.group for action in shown})
+    assert sum(len(f" {a.footer_key or a.key_label} {a.footer}") for a in shown) + 2 * (groups - 1) <= width
 
 
 def test_each_line_of_the_table_is_an_action() -> None:
@@ -187,6 +188,6 @@ def test_keys_differ() -> None:
 
 def test_in_the_past_the_footer_begins_with_the_ways_out() -> None:
     shown = fitting(
-        [ACTIONS[one] for one in working(Situation(RunPhase.PAUSED, True, True, in_past=True, looks_back=True))], 80
+        [ACTIONS[one] for one in working(Situation(RunPhase.PAUSED, True, True, in_past=True, looks_back=True))], 80, 9
     )
     assert [action.id for action in shown[:2]] == ["now", "branch"]

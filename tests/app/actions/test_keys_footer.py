@@ -27,8 +27,9 @@ pytestmark = pytest.mark.usefixtures("home")
 def test_after_a_run_the_next_steps_of_a_student_come_first(width: int) -> None:
     status = " time limit max "
     names = working(Situation(RunPhase.ENDED, has_program=True, has_run=True))
-    shown = fitting([ACTIONS[name] for name in names], width - len(status))
-    assert [action.footer_key or action.key for action in shown][:5] == ["R", "l", "e", "c", "d"]
+    shown = fitting([ACTIONS[name] for name in names], width - len(status), 9)
+    assert shown[0].key == "R"
+    assert {"R", "l", "e", "c"} < {action.key for action in shown}
 
 
 @pytest.mark.slow

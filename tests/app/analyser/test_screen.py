@@ -8,7 +8,6 @@ from typing import Any
 
 import pandas as pd
 import pytest
-from textual.command import CommandPalette
 from textual.pilot import Pilot
 from textual.widgets import Input
 
@@ -19,6 +18,7 @@ from tuisim.app.analyser.actions.keys import ACTIONS
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.analyser.panes import PaneView
 from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.dialogs.palette import Palette
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.program_file import parse_program
@@ -319,7 +319,7 @@ async def test_the_lab_below_hears_no_key(run: StoredRun) -> None:
         assert lab.screen is analyser
         assert lab.run_controller.snapshot().instant.pose == pose
         await pilot.press("ctrl+p")
-        await until(pilot, lambda: isinstance(lab.screen, CommandPalette))
+        await until(pilot, lambda: isinstance(lab.screen, Palette))
         await pilot.press("escape")
         await until(pilot, lambda: lab.screen is analyser)
         await pilot.press("q")

@@ -22,9 +22,9 @@ from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
+from tuisim.app.dialogs.palette import Palette
 from tuisim.app.dialogs.question import Question
 from tuisim.app.guide.screen import GuideScreen, KeyPage, Topic
-from tuisim.app.terminal_app import Palette
 
 IN_THE_LAB = {
     "mat": "b enter enter",
@@ -208,7 +208,7 @@ async def test_a_click_on_the_palette_where_the_terminal_was_does_no_harm() -> N
 
 
 @pytest.mark.parametrize(
-    "above", [lambda: GuideScreen(KeyPage("Help", "", {}), Topic()), Palette], ids=["help", "palette"]
+    "above", [lambda: GuideScreen(KeyPage("Help", "", {}), Topic()), lambda: Palette((), None)], ids=["help", "palette"]
 )
 async def test_a_dialog_that_is_closed_before_it_is_built_takes_along_what_is_above(
     above: Callable[[], Screen[None]],

@@ -27,6 +27,7 @@ from tuisim.runs.catalogue import RunInfo
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.packed_files import compact
 from tuisim.runs.store import RunStore
+from tuisim.terminal.cell_view import PixelView
 
 pytestmark = pytest.mark.usefixtures("home")
 
@@ -81,6 +82,8 @@ async def test_a_run_is_searched_for_and_chosen() -> None:
         await until(pilot, lambda: "1 of 2 runs" in screen_text(app))
         assert isinstance(app.screen, RunChooser)
         assert app.screen.query_one(OptionList).option_count == 1
+        way = app.screen.query_one(PixelView)
+        await until(pilot, lambda: way._strips != [])
         await pilot.press(*["backspace"] * 6, *"LOLLI", "enter")
         await until(pilot, lambda: app.run_controller.run_id == ids[1])
         await until(pilot, lambda: app.run_controller.mat is not None and app.run_controller.mat.name == "Lollipop")

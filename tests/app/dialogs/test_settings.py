@@ -18,7 +18,7 @@ from tuisim.terminal.picture_options import CellSet
 
 APPLIED: dict[str, tuple[list[str], object, Callable[[LabApp], bool]]] = {
     "app.ultrasound": (["enter"], True, lambda app: any(world.show_rays for world in app.query(World))),
-    "app.theme": (["enter", "wait", "home", "end", "enter"], "light", lambda app: app.theme == "light"),
+    "app.theme": (["enter", "wait", *"light", "enter"], "light", lambda app: app.theme == "light"),
     "app.cells": (["enter", "wait", "end", "enter"], "ascii", lambda app: app.picture_mode.cells is CellSet.ASCII),
     "app.pixels": (["enter", "wait", "end", "enter"], "none", lambda app: app.pixels == "none"),
     "app.speed": (["enter", "wait", "5", "enter"], 5, lambda app: app.run_controller.speed == 5.0),

@@ -1,4 +1,4 @@
-"""The first start: a welcome, once; and a program with a syntax error, which opens at its line."""
+"""The welcome, later with what one may go on with; and a program with a syntax error, which opens at its line."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ import pytest
 from tests.app.app_help import notices, ready, screen_text, settings, until, until_shown
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.chooser import Chooser
+from tuisim.app.dialogs.new_program import NewProgramDialog
 from tuisim.app.dialogs.welcome import Welcome
+from tuisim.app.editor.area import CodeArea
+from tuisim.app.editor.text_file import keep_draft
 from tuisim.app.snapshot import IN_RUN, RunPhase
 from tuisim.commands import app as command
 from tuisim.config.build import build_run_spec
@@ -34,28 +37,55 @@ async def test_the_welcome_appears_once(size: tuple[int, int], home: Path) -> No
             app = await ready(pilot)
             assert isinstance(app.screen, Welcome) is is_first
             if is_first:
-                await until_shown(pilot, "3 Open a file")
+                await until_shown(pilot, "4 Open a file")
                 await pilot.press("escape")
                 await until(pilot, partial(is_closed, app))
 
 
 CHOICES: dict[str, tuple[list[str], Any]] = {
-    "example by number": (["1"], lambda app: app.run_controller.state in {*IN_RUN, RunPhase.ENDED}),
-    "example by enter": (["enter"], lambda app: app.run_controller.state in {*IN_RUN, RunPhase.ENDED}),
-    "learn": (["down", "enter"], lambda app: isinstance(app.screen, Chooser) and "Lessons" in app.screen.TITLE_TEXT),
+    "new": (["1"], lambda app: isinstance(app.screen, NewProgramDialog)),
+    "example by number": (["2"], lambda app: app.run_controller.state in {*IN_RUN, RunPhase.ENDED}),
+    "example by enter": (["down", "enter"], lambda app: app.run_controller.state in {*IN_RUN, RunPhase.ENDED}),
+    "learn": (
+        ["down", "down", "enter"],
+        lambda app: isinstance(app.screen, Chooser) and "Lessons" in app.screen.TITLE_TEXT,
+    ),
     "help by its key": (["question_mark"], lambda app: "Search: words" in screen_text(app)),
     "quit by its key": (["q"], lambda app: not app.is_running or app._exit),
-    "open": (["3"], lambda app: isinstance(app.screen, Chooser) and "Lessons" not in app.screen.TITLE_TEXT),
+    "open": (["4"], lambda app: isinstance(app.screen, Chooser) and "Lessons" not in app.screen.TITLE_TEXT),
 }
 
 
-@pytest.mark.quick_cases("example by number", "open")
+@pytest.mark.quick_cases("new", "open")
 @pytest.mark.parametrize(("keys", "is_done"), CHOICES.values(), ids=CHOICES)
 async def test_each_choice_of_the_welcome_begins(keys: list[str], is_done: Any, home: Path) -> None:
     async with LabApp(FIRST).run_test(size=(80, 24)) as pilot:
         await ready(pilot)
         await pilot.press(*keys)
         await until(pilot, lambda: is_done(pilot.app))
+
+
+DRAFTS: dict[str, tuple[str, str]] = {
+    "of a new program": ("", "# %%sim_magic_preloaded -b Loop\nprint('kept')\n"),
+    "of a file": ("mine.py", "print('kept')\n"),
+}
+
+
+@pytest.mark.slow_cases("of a file")
+@pytest.mark.parametrize(("name", "text"), DRAFTS.values(), ids=DRAFTS)
+async def test_a_later_start_offers_unsaved_text_to_go_on_with(name: str, text: str, tmp_path: Path) -> None:
+    path = str(tmp_path / name) if name else ""
+    if path:
+        Path(path).write_text("print('before')\n")
+    keep_draft(path, text)
+    async with LabApp(FIRST).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until_shown(pilot, f"5 {name or 'new.py'}")
+        await pilot.press("enter")
+        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
+        assert app.query_one(CodeArea).program_text == text
+        assert app.document.dirty
+        assert name or app.run_controller.next_run.spec.world.background == "Loop"
 
 
 NAMED: dict[str, tuple[dict[str, Any], bool]] = {

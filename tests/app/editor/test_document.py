@@ -15,9 +15,9 @@ from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.question import Question
 from tuisim.app.dialogs.save import ProgramDialog
 from tuisim.app.editor.area import CodeArea
-from tuisim.app.editor.document import TEMPLATE
 from tuisim.app.editor.text_file import find_draft, keep_draft
 from tuisim.app.panels.code import Code
+from tuisim.app.setup.new_program import Skeleton, program_text
 from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
@@ -307,9 +307,10 @@ async def test_a_new_program_runs_and_asks_for_its_file(tmp_path: Path, monkeypa
     monkeypatch.chdir(tmp_path)
     async with LabApp(settings(speed=0.0)).run_test(size=(120, 40)) as pilot:
         app, code = await begun(pilot)
-        await pilot.press("ctrl+t")
+        await pilot.press("ctrl+t", "enter")
         await until(pilot, lambda: code.typing)
-        assert code.query_one(CodeArea).program_text == TEMPLATE
+        text = program_text("Grey_bands", "colorLeft", Skeleton.LOG)
+        assert code.query_one(CodeArea).program_text == text
         await pilot.press("f5")
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         assert app.run_controller._end == "finished"
@@ -317,7 +318,7 @@ async def test_a_new_program_runs_and_asks_for_its_file(tmp_path: Path, monkeypa
         await until(pilot, lambda: isinstance(app.screen, ProgramDialog))
         await pilot.press("enter")
         await until(pilot, lambda: (tmp_path / "new.py").exists())
-        assert (tmp_path / "new.py").read_text() == TEMPLATE
+        assert (tmp_path / "new.py").read_text() == text
 
 
 @pytest.mark.slow

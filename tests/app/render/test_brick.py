@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tuisim.app.render.brick import draw_brick, led_name
-from tuisim.protocol import BUTTONS
+from tuisim.core.spec import BUTTONS
 from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, ROW_BYTES, BrickState, TextScreen
 from tuisim.scene.discs import shrunk
 

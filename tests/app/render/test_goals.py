@@ -31,7 +31,16 @@ BY_TEXT = Judgement(Goal("part", UseCondition(("f",)), points=0), (Change(0, 0.0
 OPEN = Judgement(Goal("both", AllOf(("there",)), "First the one, then the other."), (), "5 mm to go.")
 
 
+KEPT = replace(MISSED, goal=replace(MISSED.goal, name="hit", say="Hit the wall.", points=-2))
+LOST = replace(MET, goal=replace(MET.goal, name="hit", say="Hit the wall.", points=-2))
+
 TEXTS = {
+    "no points taken off": (KEPT, "✓ kept   hit                  0", ["It did not happen: Hit the", "wall."]),
+    "points taken off": (
+        LOST,
+        "✗ lost   hit                 -2",
+        ["met at 1.00 s, x 300, y 80 mm,", "line 7", "Hit the wall."],
+    ),
     "met": (
         MET,
         "✓ met    there              2/2",

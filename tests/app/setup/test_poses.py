@@ -18,6 +18,7 @@ from tuisim.config.options import Settings
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import Obstacle
 from tuisim.errors import ConfigError
+from tuisim.scene.painter import Faint
 
 SPEC = plan_of(Settings()).spec
 POSTS = tuple(Obstacle(x, y, 150, 150) for x in range(200, 2300, 500) for y in (150, 500, 850))
@@ -169,7 +170,7 @@ async def test_the_cursor_of_the_chart_shows_where_the_robot_was() -> None:
         assert 150 < snapshot.instant.pose.x_mm < now.x_mm
         assert snapshot.now_pose == now
         assert world._view._scene is not None
-        assert (world._view._scene.pose, world._view._scene.ghost) == (snapshot.instant.pose, now)
+        assert (world._view._scene.pose, world._view._scene.faint) == (snapshot.instant.pose, ((Faint.NOW, now),))
         await pilot.press("escape")
         await until(pilot, lambda: not app.run_controller.snapshot().past)
         assert chart._state.cursor_s is None

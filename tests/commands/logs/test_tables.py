@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from io import StringIO
 from pathlib import Path
 
 import pandas as pd
@@ -27,10 +26,24 @@ def test_summary(here: Command, log: Path) -> None:
 
 
 def test_reckoning_without_noise_is_exact(here: Command) -> None:
-    here("run", "square")
-    assert pd.read_csv(StringIO(here("log", "reckon", "last").stdout)).error_mm.max() < 1.0
     here("run", "square", "-M", "300")
-    assert pd.read_csv(StringIO(here("log", "reckon", "last").stdout)).error_mm.max() < 1000.0
+    here("log", "reckon", "last", "--out", "reckoned.csv")
+    assert pd.read_csv("reckoned.csv").error_mm.max() < 0.01
+    lines = here("log", "reckon", "last").stdout.splitlines()
+    assert lines[-1].startswith("reckoned place: 0.00 mm off at the end, at most 0.00 mm")
+
+
+def test_reckoning_is_wrong_where_the_robot_drifts(here: Command) -> None:
+    here("run", "square", "--drift", "typical")
+    rows = [json.loads(line) for line in here("log", "reckon", "last", "--json").stdout.splitlines()]
+    assert len(rows) > 500 and rows[-1]["error_mm"] > 1
+    head, real, reckoned, error, summary = here("log", "reckon", "last").stdout.splitlines()
+    assert head.split() == ["AT", "THE", "END", "X", "MM", "Y", "MM", "HEADING", "DEG"]
+    for name, line in (("x_mm", 1), ("y_mm", 2)):
+        assert real.split()[line] == f"{rows[-1][name]:.2f}"
+        assert reckoned.split()[line] == f"{rows[-1][f'reckoned_{name}']:.2f}"
+        assert error.split()[line] == f"{rows[-1][f'reckoned_{name}'] - rows[-1][name]:.2f}"
+    assert summary.startswith(f"reckoned place: {rows[-1]['error_mm']:.2f} mm off at the end, at most ")
 
 
 def test_json_has_every_digit(here: Command, tmp_path: Path) -> None:

@@ -179,6 +179,12 @@ def other_first() -> frozenset[str]:
     return frozenset(tomllib.loads(DIFFERENCES.read_text("utf-8"))["other_first"])
 
 
+@cache
+def other_world() -> frozenset[str]:
+    """Return the cases whose world is meant to be another one."""
+    return frozenset(tomllib.loads(DIFFERENCES.read_text("utf-8"))["other_world"])
+
+
 def in_words_of_now(before: Recorded) -> Recorded:
     """Return what was recorded before, with the texts as they are said now."""
     return _in_other_words(before, accepted())

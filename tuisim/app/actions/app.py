@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from tuisim.app.action import KeyWord, key_groups
 from tuisim.app.layout.arrangement import Preset
 from tuisim.app.panels import PANELS
-from tuisim.app.terminal_app import theme_list
 from tuisim.config.files import Scalar
 from tuisim.config.user_config import CELL_SET, THEME, Setting, load_config
 from tuisim.terminal.picture_options import AUTO
@@ -154,14 +153,18 @@ def change_setting(context: ActionContext, one: Setting, value: Scalar | None) -
 def open_settings(context: ActionContext) -> None:
     """Open the settings screen."""
     from tuisim.app.dialogs.settings import SettingsScreen
-    from tuisim.app.themes import theme_names
 
-    context.app.push_screen(SettingsScreen(partial(change_setting, context), theme_names()))
+    context.app.push_screen(SettingsScreen(partial(change_setting, context), context.app.theme_chooser))
 
 
 def choose_theme(context: ActionContext) -> None:
     """Show the themes."""
-    context.app.push_screen(theme_list())
+    context.app.action_choose_theme()
+
+
+def open_palette(context: ActionContext) -> None:
+    """Show every command."""
+    context.app.action_command_palette()
 
 
 def leave(context: ActionContext) -> None:

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 from tuisim.app import background
 from tuisim.app.actions import lesson
 from tuisim.app.actions.time_travel import to_tick
+from tuisim.app.editor.document import NEW_NAME
+from tuisim.app.editor.text_file import find_draft
 from tuisim.app.setup import next_run as plans
 from tuisim.config.folders import programs_folder
 from tuisim.config.obstacles import save_obstacles as write
@@ -23,6 +25,7 @@ from tuisim.runs.store import RunStore
 
 if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext
+    from tuisim.app.setup.recent import Recent
     from tuisim.runs.diff import RunDiff
 
 
@@ -59,18 +62,33 @@ EXAMPLE = "log_greys.py"
 """The program that the welcome offers."""
 
 
-def welcome(context: ActionContext) -> None:
-    """Show the welcome unless it has been answered before, on this or an earlier start."""
-    from tuisim.app.dialogs.welcome import Begin, Welcome
+def welcome_at_start(context: ActionContext) -> None:
+    """Show the welcome at the first start, and at later ones if there is something to go on with."""
+    from tuisim.app.setup.recent import recent
 
-    if preference(_WELCOMED):
+    if not preference(_WELCOMED):
+        welcome(context)
         return
 
-    def chosen(what: Begin | None) -> None:
+    def found(entries: list[Recent]) -> None:
+        if entries:
+            welcome(context)
+
+    background.run(context.panels, partial(recent, NEW_NAME), found, group="welcome")
+
+
+def welcome(context: ActionContext) -> None:
+    """Show the ways to begin, and what there is to go on with."""
+    from tuisim.app.dialogs.welcome import Begin, Welcome
+    from tuisim.app.setup.recent import Recent, recent
+
+    def chosen(what: Begin | Recent | None) -> None:
         # Without a home folder it appears again, which is no reason to fail.
         with suppress(OSError):
             keep(_WELCOMED, True)
         match what:
+            case Begin.NEW:
+                new_program(context)
             case Begin.EXAMPLE:
                 open_path(context, str(programs_folder() / EXAMPLE))
                 context.app.start_run()
@@ -78,8 +96,24 @@ def welcome(context: ActionContext) -> None:
                 lesson.menu(context)
             case Begin.OPEN:
                 open_program(context)
+            case Recent():
+                context.document.when_safe(partial(_go_on, context, what))
 
-    context.app.push_screen(Welcome(), chosen)
+    context.app.push_screen(Welcome(not preference(_WELCOMED), partial(recent, NEW_NAME)), chosen)
+
+
+def _go_on(context: ActionContext, what: Recent) -> None:
+    from tuisim.app.setup.recent import Kind
+
+    match what.kind:
+        case Kind.DRAFT:
+            if draft := find_draft(what.word):
+                context.document.restore(draft)
+                edit(context)
+        case Kind.PROGRAM:
+            open_path(context, what.word)
+        case Kind.RUN:
+            context.loader.open_run(what.word)
 
 
 def save_robot(context: ActionContext) -> None:
@@ -164,10 +198,28 @@ def _open_in_own_editor(context: ActionContext, path: Path) -> None:
 
 
 def new_program(context: ActionContext) -> None:
-    """Start a new program in the code panel."""
-    if not context.panels.shown("code"):
-        context.panels.toggle("code")
-    context.app.call_after_refresh(context.document.new)
+    """Ask for mat, sensor and skeleton of a new program, and start it in the code panel."""
+    context.document.when_safe(partial(_ask_for_new, context))
+
+
+def _ask_for_new(context: ActionContext) -> None:
+    from tuisim.app.dialogs.new_program import NewProgramDialog
+    from tuisim.config.mats import mats, spec_name
+
+    plan = context.runs.next_run
+    known = mats(plan.settings["mats"])
+    current = next((name for name, mat in known.items() if spec_name(mat) == plan.spec.world.background), "")
+    # A mat that is laid out from a file of its own can be kept, too.
+    own = {} if current else {plan.spec.world.background: Path(plan.spec.world.background).name}
+    laid = current or plan.spec.world.background
+
+    def chosen(text: str | None) -> None:
+        if text is not None:
+            if not context.panels.shown("code"):
+                context.panels.toggle("code")
+            context.app.call_after_refresh(context.document.new, text)
+
+    context.app.push_screen(NewProgramDialog(own | {name: name for name in known}, laid), chosen)
 
 
 def compare(context: ActionContext) -> None:

@@ -193,9 +193,10 @@ ACTIONS: Mapping[str, LabAction] = {
         *_debugs(),
         *_travels(),
         Action("open", "o", "Open a program, a world or goals", FILES, files.open_program, _can_change_world, "open"),
+        Action("begin", "f4", "Begin: a new program, or go on with one", FILES, files.welcome, _can_change_world),
         Action("edit", "d", "Edit the program", FILES, files.edit, footer="edit"),
         Action("own-editor", "ctrl+e", "Edit the program in $EDITOR", FILES, files.edit_in_own_editor),
-        Action("new", "ctrl+t", "New program", FILES, files.new_program, _can_change_world, "new"),
+        Action("new", "ctrl+t", "New program: mat, sensor, text", FILES, files.new_program, _can_change_world, "new"),
         Action("mats", "b", "Choose a mat", ROBOT, robot.choose_mat, _can_change_world, "mats"),
         Action("home", "m", "Move the robot to its start pose", ROBOT, robot.home, footer="start"),
         Action("random", "j", "Move the robot to a random pose", ROBOT, robot.random_place),
@@ -232,6 +233,9 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("enlarge", "plus", "Enlarge the focused panel, or restore it", PANEL, app.enlarge),
         *_nudges(),
         Action("help", "question_mark", "Guide: keys, pages, search", APP, app.show_help, footer="help"),
+        Action(
+            "palette", "ctrl+p", "Commands: all of them, by name", APP, app.open_palette, footer="all", footer_key="^p"
+        ),
         Action("cells", "V", "Glyphs of the world: choose by eye", APP, app.choose_cells),
         Action("theme", "f10", "Theme: light, high contrast and others", APP, app.choose_theme),
         Action("settings", "asterisk", "Settings: your own defaults", APP, app.open_settings),

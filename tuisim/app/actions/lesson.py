@@ -5,14 +5,16 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+from tuisim.app import background
 from tuisim.lessons.progress import LessonProgress, load_progress
 from tuisim.lessons.spec import QuestionCheck as LessonQuestion
 
 if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext
     from tuisim.app.panel_area import PanelArea
+    from tuisim.runs.recorded_run import Recording
 
-_BEFORE, _SKIP, _OVER, _OPEN = "before", "skip", "over", "open "
+_BEFORE, _SKIP, _MODEL, _OVER, _OPEN = "before", "skip", "model", "over", "open "
 
 
 def answer(context: ActionContext) -> None:
@@ -69,6 +71,10 @@ def menu(context: ActionContext) -> None:
         here.append((_BEFORE, "Steps before", f"Read again: {before.title}"))
     if step := lesson.step:
         here.append((_SKIP, "Skip", f"Leave this step undone: {step.title}"))
+    if lesson.lesson and lesson.lesson.model_answer:
+        alone = "Drive without that of the model answer again"
+        beside = "See the way of the model answer, not its program"
+        here.append((_MODEL, "Grey robot", alone if context.runs.companion else beside))
     if lesson.lesson:
         here.append((_OVER, "Start over", f"All steps again: {lesson.lesson.title}"))
     progress = load_progress()
@@ -96,6 +102,8 @@ def _chosen(context: ActionContext, choice: str | None) -> None:
         context.lesson.show_step_before()
     elif choice == _SKIP:
         context.lesson.skip_step()
+    elif choice == _MODEL:
+        _switch_model(context)
     elif choice == _OVER:
         _ask_to_start_over(context)
     else:
@@ -114,3 +122,26 @@ def _ask_to_start_over(context: ActionContext) -> None:
             context.document.when_safe(context.lesson.start_over)
 
     context.app.push_screen(Question("Start over?", text, answers, "goes on as it is"), answered)
+
+
+def _switch_model(context: ActionContext) -> None:
+    """Let the robot of the model answer drive along beside every run, or no longer."""
+    from tuisim.lessons.trial import model_run
+
+    lesson, runs = context.lesson.lesson, context.runs
+    if lesson is None or runs.companion is not None:
+        runs.accompany(None)
+        context.app.draw(force=True)
+        return
+
+    def made(recording: Recording) -> None:
+        if context.lesson.lesson is lesson:
+            runs.accompany(recording)
+            context.app.say(
+                "The grey robot of the model answer drives along with each run: {parting} goes to where yours left it, "
+                "{earlier} hides it"
+            )
+            context.app.draw(force=True)
+
+    work = partial(model_run, lesson, context.lesson.step)
+    background.run(context.panels, work, made, context.app.complain, group="model", exclusive=True)

@@ -6,6 +6,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from tuisim.app.setup import next_run as plans
+from tuisim.config.folders import user_path
 from tuisim.config.mats import mats
 from tuisim.core.geometry import Pose
 from tuisim.errors import TuisimError
@@ -78,8 +79,26 @@ def choose_mat(context: ActionContext) -> None:
     def lay(name: str | None) -> None:
         if name:
             context.loader.change_mat(name)
+            _propose_to_write(context, name if name in known else str(user_path(name).absolute()))
 
     context.app.push_screen(MatPicker(context.runs.spec.world.background, known, folder), lay)
+
+
+def _propose_to_write(context: ActionContext, mat: str) -> None:
+    """Ask whether a mat is to be written into the magic line of the program that is open, if that names another."""
+    from tuisim.app.dialogs.question import Question
+
+    document = context.document
+    if context.lesson.lesson or (named := document.named_mat) is None or named == mat:
+        return
+
+    def answered(answer: str | None) -> None:
+        if answer:
+            document.write_mat(mat)
+
+    text = f"{document.name} begins with {f'the mat {named}' if named else 'a magic line without a mat'}."
+    answers = (("w", f"Write {mat} there"),)
+    context.app.push_screen(Question("The program's mat", text, answers, "keeps the program as it is"), answered)
 
 
 def choose(context: ActionContext, what: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 from typing import ClassVar
 
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import LogRequest
@@ -23,10 +23,7 @@ class Analyser(LogScreen):
     """The views of one log, and the keys that work on them."""
 
     ACTIONS = ACTIONS
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("ctrl+p", "app.command_palette", "Command palette", show=False),
-        *key_bindings(ACTIONS.values()),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = key_bindings(ACTIONS.values())
 
 
 class AnalyserApp(TerminalApp):

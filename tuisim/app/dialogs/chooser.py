@@ -257,7 +257,7 @@ class MatPicker(ListDialog):
         if name not in self._mats or not view.size:
             return
         self.query_one("#title", Static).update(self._mats[name].title)
-        port = _whole_field(view)
+        port = field_view(view)
         if (picture := self._pictures.get((name, port))) is not None:
             view.set_fine_picture(picture, view.graphics)
         else:
@@ -275,7 +275,7 @@ class MatPicker(ListDialog):
         if not self.is_attached or key[0] != self._shown:
             return
         view = self.query_one(PixelView)
-        if key[1] == _whole_field(view):
+        if key[1] == field_view(view):
             view.set_fine_picture(picture, view.graphics)
         else:
             # The view got its height while the image was decoded.
@@ -293,7 +293,7 @@ class _MatPicture(PixelView):
             picker.show_again()
 
 
-def _whole_field(view: PixelView) -> Viewport:
+def field_view(view: PixelView) -> Viewport:
     """Return the view of the whole field in the finest points of a widget."""
     cell = view.cell_for(view.graphics)
     return whole_field(cell.cols * view.size.width, cell.rows * view.size.height, cell)

@@ -28,7 +28,7 @@ from tuisim.terminal.textual_internals import HookedScreen
 
 Result = TypeVar("Result")
 
-_HEIGHTS: list[tuple[int, str]] | None = [(0, "-low"), (18, "-high")]
+_HEIGHTS = [(0, "-low"), (18, "-high"), (34, "-roomy")]
 """Classes of a dialog by the rows of the terminal."""
 
 
@@ -117,12 +117,16 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
         for screen in opened:
             if not screen.is_mounted:
                 # Textual cannot remove a screen that it is still mounting.
-                screen.call_later(self.dismiss, result)
+                screen.call_later(self._dismiss_now, result)
                 return AwaitComplete()
         for above in reversed(opened[1:]):
             above.dismiss(None)
         self.app.post_message(self.Changed())
         return super().dismiss(result)
+
+    def _dismiss_now(self, result: Result | None) -> None:
+        # Nobody may await it from the screen's own messages.
+        self.dismiss(result)
 
     def render_lines(self, crop: Region) -> list[Strip]:
         """Return what is below the dialog. Textual would make plain text of it, and pictures lose their pixels."""
@@ -142,10 +146,12 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
 
     TITLE_TEXT: str = ""
     HINT: str = "Escape closes"
-    VERTICAL_BREAKPOINTS = _HEIGHTS
+    VERTICAL_BREAKPOINTS: list[tuple[int, str]] | None = _HEIGHTS
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Close", show=False)]
 
     def compose(self) -> ComposeResult:
+        # Textual does so after it has drawn the dialog once.
+        self.add_class(max(one for one in _HEIGHTS if one[0] <= self.app.size.height)[1])
         frame = Vertical(classes="dialog")
         frame.border_title = self.TITLE_TEXT
         frame.border_subtitle = self.HINT

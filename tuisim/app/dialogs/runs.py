@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
@@ -12,17 +13,21 @@ from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.containers import VerticalScroll
+from textual.containers import Horizontal, VerticalScroll
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim import palette
+from tuisim.app import background
 from tuisim.app.branch import BRANCH_TAG
-from tuisim.app.dialogs.chooser import ListDialog
+from tuisim.app.dialogs.chooser import ListDialog, field_view
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.snapshot import GOOD_ENDS, end_label
 from tuisim.runs.catalogue import RunInfo
 from tuisim.runs.store import RunStore
+from tuisim.scene.view import Viewport
+from tuisim.terminal.cell_view import PixelView
+from tuisim.terminal.pixels import Pixels, Rgb
 from tuisim.terminal.text_runs import cut
 
 if TYPE_CHECKING:
@@ -87,6 +92,10 @@ class RunChooser(ListDialog):
     RunChooser .dialog {{ width: 110; padding: 1 0; }}
     RunChooser .heads {{ height: 1; text-wrap: nowrap; color: {palette.SOFT}; }}
     RunChooser OptionList {{ text-wrap: nowrap; text-overflow: ellipsis; }}
+    RunChooser .way {{ height: 7; margin-top: 1; padding-left: 1; }}
+    RunChooser PixelView {{ width: 25; height: 7; margin-right: 2; }}
+    RunChooser.-low .way {{ height: 1; margin: 0; }}
+    RunChooser.-low PixelView {{ display: none; }}
     """
     TITLE_TEXT: str = "Runs"
     HINT: str = "Enter opens · type to search · Escape closes"
@@ -98,12 +107,16 @@ class RunChooser(ListDialog):
             self.HINT = "Enter compares · type to search · Escape closes"
         self._left_out = compared.run_id if compared else ""
         self._runs: list[RunInfo] = []
+        self._looked_at = ""
+        """Id of the run whose way is shown."""
 
     def content(self) -> ComposeResult:
         yield Input(placeholder="Search: number, program, mat, end, tag, date", compact=True, select_on_focus=False)
         yield Static(_HEADS, markup=False, classes="heads")
         yield OptionList()
-        yield Static("Loading the list …", id="message", markup=False)
+        with Horizontal(classes="way"):
+            yield PixelView()
+            yield Static("Loading the list …", id="message", markup=False)
 
     def on_mount(self) -> None:
         """Read the list in the background: there may be thousands of runs."""
@@ -137,6 +150,27 @@ class RunChooser(ListDialog):
         else:
             self.say(f"{len(found):,} of {len(self._runs):,} runs")
 
+    @on(OptionList.OptionHighlighted)
+    def _look(self, event: OptionList.OptionHighlighted) -> None:
+        """Show the way of the selected run, as soon as it is drawn."""
+        self._looked_at, view = event.option.id or "", self.query_one(PixelView)
+        if not view.size:
+            self.call_after_refresh(self._look, event)
+            return
+        work = partial(_way, self._looked_at, field_view(view), view.ground_rgb)
+        show = partial(self._show_way, self._looked_at)
+        # The list says of each run how it ended, and opening it says what is wrong.
+        background.run(self, work, show, lambda _: show(None), group="way", exclusive=True)
+
+    def _show_way(self, run_id: str, picture: Pixels | None) -> None:
+        if not self.is_attached or run_id != self._looked_at:
+            return
+        view = self.query_one(PixelView)
+        if picture is None:
+            view.clear_picture()
+        else:
+            view.set_fine_picture(picture, view.graphics)
+
     @on(Input.Changed)
     def _search(self, event: Input.Changed) -> None:
         self._list(event.value)
@@ -149,6 +183,12 @@ class RunChooser(ListDialog):
         options = self.query_one(OptionList)
         if options.highlighted is not None:
             self.dismiss(options.get_option_at_index(options.highlighted).id)
+
+
+def _way(run_id: str, port: Viewport, outside_rgb: Rgb) -> Pixels:
+    from tuisim.scene.pictures import path_picture
+
+    return path_picture(RunStore().load_run(run_id), port, outside_rgb)
 
 
 def _stored_runs() -> list[RunInfo]:

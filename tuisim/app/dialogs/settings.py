@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import ClassVar
 
 from rich.table import Table
@@ -55,14 +55,14 @@ class SettingsScreen(Dialog[None]):
 
     Args:
         change: What writes and applies a setting.
-        themes: The names of the themes.
+        themes: Makes the dialog of the themes.
     """
 
     TITLE_TEXT: str = "Settings"
     HINT: str = "Enter changes · Delete resets · Escape closes"
     BINDINGS: ClassVar[list[BindingType]] = [Binding("delete,backspace", "usual", "As without the file", show=False)]
 
-    def __init__(self, change: Change, themes: Sequence[str]) -> None:
+    def __init__(self, change: Change, themes: Callable[[], Dialog[str]]) -> None:
         super().__init__()
         self._change = change
         self._themes = themes
@@ -113,7 +113,10 @@ class SettingsScreen(Dialog[None]):
         if isinstance(value, bool):
             self._choose(one, not value)
             return
-        names = self._themes if one.path == THEME else one.value.choices
+        if one.path == THEME:
+            self.app.push_screen(self._themes(), self._chosen)
+            return
+        names = one.value.choices
         if names and not isinstance(one.default, int | float):
             group = ChoiceGroup("", [(name, name, "") for name in map(str, names)])
             self.app.push_screen(Chooser(one.path, [group], in_words(value)), self._chosen)

@@ -1,10 +1,12 @@
-"""The welcome at the first start: three ways to begin."""
+"""The welcome: ways to begin, and what one may go on with."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from enum import StrEnum
 from typing import ClassVar
 
+from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
@@ -13,12 +15,14 @@ from textual.widgets.option_list import Option
 
 from tuisim.app.action import ActionHost, with_keys_of
 from tuisim.app.dialogs.dialog import Dialog, name_and_title
+from tuisim.app.setup.recent import Recent
 from tuisim.terminal.textual_internals import bindings_of
 
 
 class Begin(StrEnum):
     """What to begin with."""
 
+    NEW = "new"
     EXAMPLE = "example"
     LEARN = "learn"
     OPEN = "open"
@@ -29,6 +33,7 @@ _TEXT = (
     "and logged. How do you want to begin?"
 )
 _CHOICES = {
+    Begin.NEW: ("A new program", "Choose its mat, a sensor and a skeleton"),
     Begin.EXAMPLE: ("Run the example", "It drives over grey bands and logs them"),
     Begin.LEARN: ("Learn", "Lessons, from the first run to a line follower"),
     Begin.OPEN: ("Open a file", "A program of your own, or one of the examples"),
@@ -37,29 +42,32 @@ _ACTIONS = ("open", "lesson-menu", "help", "quit")
 """Actions of the app whose keys work here as well."""
 _KEY_WORDS = "Always: {open} opens a file, {lesson-menu} the lessons, {help} shows all keys, {quit} quits."
 _NAME_CELLS = 18
+_MOST_NUMBERED = 9
 
 
-class Welcome(Dialog[Begin]):
-    """Returns what to begin with; None on Escape."""
+class Welcome(Dialog[Begin | Recent]):
+    """Returns what to begin with, or to go on with; None on Escape.
+
+    Args:
+        is_first: Whether this is the first start, so that the text says what the app is.
+        find: Returns what there is to go on with; called in a thread.
+    """
 
     TITLE_TEXT: str = "Welcome to tuisim"
-    HINT: str = "1 2 3, or ↑ ↓ and Enter · Escape closes"
+    HINT: str = "A number, or ↑ ↓ and Enter · Escape closes"
     BINDINGS: ClassVar[list[BindingType]] = [
-        *(
-            Binding(str(number), f"begin('{what}')", _CHOICES[what][0], show=False)
-            for number, what in enumerate(Begin, start=1)
-        )
+        Binding(str(number), f"take({number})", "Begin", show=False) for number in range(1, _MOST_NUMBERED + 1)
     ]
 
+    def __init__(self, is_first: bool, find: Callable[[], list[Recent]]) -> None:
+        super().__init__()
+        self._is_first, self._find = is_first, find
+        self._entries: list[Begin | Recent] = [*Begin]
+
     def content(self) -> ComposeResult:
-        yield Static(_TEXT, classes="start", markup=False)
-        yield OptionList(
-            *(
-                Option(name_and_title(f"{number} {name}", title, _NAME_CELLS), id=what)
-                for number, (what, (name, title)) in enumerate(_CHOICES.items(), start=1)
-            ),
-            markup=False,
-        )
+        if self._is_first:
+            yield Static(_TEXT, classes="start", markup=False)
+        yield OptionList(*(_option(at, *_CHOICES[what]) for at, what in enumerate(Begin, start=1)), markup=False)
         yield Static()
         yield Static(with_keys_of(self.app, _KEY_WORDS), markup=False)
 
@@ -69,15 +77,34 @@ class Welcome(Dialog[Begin]):
             for key in actions[name].key.split(","):
                 bindings_of(self).bind(key, f"leave_for('{name}')", name, show=False)
         self.query_one(OptionList).focus()
+        self.wait_for(self._find, self._add, lambda error: self.app.notify(str(error), markup=False))
+
+    def _add(self, found: list[Recent]) -> None:
+        """List what there is to go on with; the likeliest is chosen."""
+        if not found:
+            return
+        listed = self.query_one(OptionList)
+        listed.add_options([None, Option(Text("Go on with", "italic"), disabled=True)])
+        first = listed.option_count
+        for one in found:
+            self._entries.append(one)
+            listed.add_option(_option(len(self._entries), one.name, one.title))
+        listed.highlighted = first
 
     @on(OptionList.OptionSelected)
     def _chosen(self, event: OptionList.OptionSelected) -> None:
-        self.dismiss(Begin(event.option.id or ""))
+        self.action_take(int(event.option.id or 0))
 
     def action_leave_for(self, action: str) -> None:
         """Close, and do what the key does in the app."""
         self.dismiss(None)
         self.app.call_later(self.app.run_action, f"app.act('{action}')")
 
-    def action_begin(self, what: str) -> None:
-        self.dismiss(Begin(what))
+    def action_take(self, number: int) -> None:
+        if number <= len(self._entries):
+            self.dismiss(self._entries[number - 1])
+
+
+def _option(number: int, name: str, title: str) -> Option:
+    numbered = f"{number} {name}" if number <= _MOST_NUMBERED else f"  {name}"
+    return Option(name_and_title(numbered, title, _NAME_CELLS), id=str(number))

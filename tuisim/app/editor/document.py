@@ -33,13 +33,6 @@ if TYPE_CHECKING:
 DRAFT_AFTER_S = 1.0
 """Delay after an edit before unsaved text is stored as a draft, in case of a crash."""
 NEW_NAME = "new.py"
-TEMPLATE = '''\
-"""A new program: drives ahead for two seconds."""
-from ev3dev2.motor import OUTPUT_B, OUTPUT_C, MoveTank, SpeedPercent
-
-tank = MoveTank(OUTPUT_B, OUTPUT_C)
-tank.on_for_seconds(SpeedPercent(30), SpeedPercent(30), 2)
-'''
 
 
 class Document:
@@ -64,6 +57,8 @@ class Document:
         self._is_file = False
         """Whether the text came from the file, so that saving there needs no question."""
         self._draft_pending = self._asking = False
+        self._restored = ""
+        """Path of the program whose unsaved text is being opened."""
         self._error_line = 0
         """Line of the current run's text at which it ended with an error; 0 for none, or once the text has changed."""
         self._error_words = ""
@@ -72,17 +67,22 @@ class Document:
         """A recording, and the text that it ran, as it was in the editor."""
 
     @property
+    def name(self) -> str:
+        """The file name of the open program."""
+        return self._name
+
+    @property
     def dirty(self) -> bool:
         """Whether there are unsaved changes."""
         return self._text != self._saved
 
     # The open program
 
-    def begin(self) -> None:
-        """Show what is open, and offer to restore a draft of a new program."""
+    def begin(self, asks: bool) -> None:
+        """Show what is open; if `asks`, offer to restore a draft of a new program."""
         self.introduce()
         self.open_at_mistake()
-        if self._program is None and (draft := find_draft("")):
+        if asks and self._program is None and (draft := find_draft("")):
             self._offer(draft)
 
     def open_at_mistake(self) -> None:
@@ -123,6 +123,8 @@ class Document:
         if offers and program.path and (draft := find_draft(program.path)):
             if draft.text == self._text:
                 drop_draft(program.path)
+            elif self._restored == program.path:
+                self._text = draft.text
             else:
                 self._offer(draft)
 
@@ -211,10 +213,21 @@ class Document:
     def _offered(self, draft: Draft, answer: str | None) -> None:
         if answer == "d":
             drop_draft(draft.path)
+        elif answer == "r" and self._program is None:
+            self.restore(draft)
         elif answer == "r" and draft.path == self._path:
-            if self._program is None:
-                self._open_new()
             self._text = draft.text
+            self.show()
+
+    def restore(self, draft: Draft) -> None:
+        """Open a program with its unsaved text."""
+        if draft.path:
+            self._restored = draft.path
+            self._loader.open_file(draft.path)
+            self._restored = ""
+        else:
+            self._open_new(draft.text)
+            self._saved = ""
             self.show()
 
     def when_safe(self, do: Callable[[], None]) -> None:
@@ -278,23 +291,52 @@ class Document:
             return False
         return True
 
-    def new(self) -> None:
-        """Start a new program, after a question if there are unsaved changes."""
+    def new(self, text: str) -> None:
+        """Start a new program with this text, and type at its end."""
+        draft = find_draft("")
+        self._open_new(text)
+        if draft:
+            self._offer(draft)
+        elif code := self._panel_area.code:
+            code.start_typing(at_end=True)
 
-        def begin() -> None:
-            self._open_new()
-            if draft := find_draft(""):
-                self._offer(draft)
-            elif code := self._panel_area.code:
-                code.start_typing()
+    def _open_new(self, text: str) -> None:
+        try:
+            self._loader.open_new(text, NEW_NAME)
+        except TuisimError as error:
+            # The draft of a magic line that is not finished: it opens without it.
+            self._app.complain(error)
+            self._loader.open_new("", NEW_NAME)
+            self._text = text
 
-        self.when_safe(begin)
+    def write_mat(self, mat: str) -> None:
+        """Write a mat into the magic line, and into the file unless that has to wait for other changes."""
+        from tuisim.config.program_file import with_mat
 
-    def _open_new(self) -> None:
-        self._load_program(None, offers=False)
-        self._program = None
-        self._name, self._text, self._saved = NEW_NAME, TEMPLATE, TEMPLATE
-        self._loader.open_new(TEMPLATE, NEW_NAME)
+        was_dirty = self.dirty
+        try:
+            self.edited(with_mat(self._text, self._name, mat))
+            self.show()
+            self._apply_text()
+        except TuisimError as error:
+            self._app.complain(error)
+            return
+        if not was_dirty:
+            self.save_own()
+        self._app.say(f"{self._name} begins with {mat}" + (", not saved yet" if self.dirty else ""))
+
+    @property
+    def named_mat(self) -> str | None:
+        """The mat in the magic line of a program that may be written, empty for none; None without such a line."""
+        from tuisim.config.program_file import find_magic
+
+        if not self._text or (self._path and is_protected(Path(self._path))):
+            return None
+        try:
+            magic = find_magic(self._text, self._name)
+        except TuisimError:
+            return None
+        return None if magic is None else str(magic.options.get("background", ""))
 
     # Saving
 

@@ -136,13 +136,23 @@ def keep_draft(path: str, text: str) -> None:
 
 def find_draft(path: str) -> Draft | None:
     """Return the draft of a program, None if there is no readable one."""
+    draft = _draft_in(file_of_program(FOLDER, path))
+    return draft if draft and draft.path == path else None
+
+
+def drafts() -> list[Draft]:
+    """Return all drafts, the newest first."""
+    found = filter(None, map(_draft_in, (home_folder() / FOLDER).glob("*.json")))
+    return sorted(found, key=lambda draft: -draft.written_s)
+
+
+def _draft_in(file: Path) -> Draft | None:
     try:
-        found = json.loads(read_regular(file_of_program(FOLDER, path), 2 * MAX_PROGRAM_BYTES))
-        draft = Draft(str(found["path"]), str(found["text"]), float(found["written_s"]))
+        found = json.loads(read_regular(file, 2 * MAX_PROGRAM_BYTES))
+        return Draft(str(found["path"]), str(found["text"]), float(found["written_s"]))
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         # Drafts are written atomically; a malformed file has nothing to restore.
         return None
-    return draft if draft.path == path else None
 
 
 def drop_draft(path: str) -> None:

@@ -19,7 +19,7 @@ from tuisim.config.user_config import load_config
 from tuisim.errors import ConfigError
 from tuisim.guide.tables import Table, code
 
-EVERYWHERE = (("ctrl+p", "Command palette"), ("tab", "Next panel or field"), ("Escape", "Leave a field"))
+EVERYWHERE = (("tab", "Next panel or field"), ("Escape", "Leave a field"))
 """Keys that are no lines of the app's table."""
 
 

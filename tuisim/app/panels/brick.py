@@ -12,8 +12,8 @@ from textual.timer import Timer
 
 from tuisim.app.render.brick import BrickPicture, draw_brick
 from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot
+from tuisim.core.spec import BUTTONS
 from tuisim.data_class import dataclass
-from tuisim.protocol import BUTTONS
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.pacer import Throttle
 

@@ -285,11 +285,12 @@ class Code(Vertical):
 
     # Typing
 
-    def start_typing(self, at_error: bool = False) -> None:
+    def start_typing(self, at_error: bool = False, at_end: bool = False) -> None:
         """Start typing in the text.
 
         Args:
             at_error: Start on the line that is marked as an error, if there is one.
+            at_end: Start at its end.
         """
         if not self._key:
             self.post_message(self.Wanted(ProgramCommand.NONE))
@@ -297,6 +298,8 @@ class Code(Vertical):
         self._area.focus()
         if at_error:
             self.go_to_error()
+        if at_end:
+            self._area.action_go_to_end(True)
         self._type(True)
 
     def stop_typing(self) -> None:

@@ -74,7 +74,7 @@ class Controls(ActionWords, can_focus=False):
             self._button(key, to, True)
             for key, to in ((self._key("slower"), "slower"), (self._key("faster"), "faster"))
         )
-        noise = now.instant.noise
+        noise, drift = now.instant.noise, "" if spec.world.drift.is_none else ", drift"
         lines = [
             buttons,
             Text(),
@@ -85,7 +85,7 @@ class Controls(ActionWords, can_focus=False):
             self._line("Robot", spec.robot.name),
             self._line("Profile", f"{spec.profile.name}, seed {spec.seed}"),
             self._line("Pen", f"{'down' if now.pen_down else 'up'}, {spec.robot.pen.color}"),
-            self._line("Noise", f"light ±{noise.light}, motor ±{noise.motor}"),
+            self._line("Noise", f"light ±{noise.light}, motor ±{noise.motor}{drift}"),
         ]
         if self.size.height < len(lines):
             del lines[1]

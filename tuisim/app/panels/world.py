@@ -26,7 +26,7 @@ from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec
 from tuisim.data_class import dataclass
 from tuisim.runs.records import Mark
 from tuisim.scene.mono_robot import body, pointer
-from tuisim.scene.painter import ScenePainter, SceneState
+from tuisim.scene.painter import Faint, ScenePainter, SceneState
 from tuisim.scene.pen import PenTrace, Piece
 from tuisim.scene.robot import drawn_scale
 from tuisim.scene.view import ZOOMS, Viewport, following
@@ -171,7 +171,8 @@ class World(Widget, can_focus=True):
 def _pointers(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:
     outline = outline_of(scene.robot)
     reach_mm = outline.front_mm * drawn_scale(outline, port)
-    ghost = pointer(port, scene.ghost, reach_mm, _GHOST_PIVOT) if scene.ghost else {}
+    now = dict(scene.faint).get(Faint.NOW)
+    ghost = pointer(port, now, reach_mm, _GHOST_PIVOT) if now else {}
     return ghost | body(port, scene.pose, outline) | pointer(port, scene.pose, reach_mm, _PIVOT)
 
 
@@ -276,9 +277,10 @@ class WorldView(PixelView):
         pose = self._held or snapshot.instant.pose
         boxes = spec.world.obstacles if self._draft is None else self._draft
         pressed = tuple(snapshot.further.get(f"{touch.name}_pressed", 0.0) > 0 for touch in spec.robot.touch_sensors)
+        others = ((Faint.BESIDE, snapshot.earlier_pose), (Faint.NOW, snapshot.now_pose))
+        faint = tuple((kind, where) for kind, where in others if where is not None)
         scene = SceneState(
-            spec.robot, pose, boxes, ghost=snapshot.now_pose, marked=self._marked, pressed=pressed,
-            beacon=spec.world.beacon, earlier=snapshot.earlier_pose,
+            spec.robot, pose, boxes, faint=faint, marked=self._marked, pressed=pressed, beacon=spec.world.beacon,
         )  # fmt: skip
         if not self.show_rays or self._held is not None:
             return scene

@@ -10,8 +10,9 @@ from rich.style import Style
 
 from tuisim import palette
 from tuisim.data_class import dataclass
-from tuisim.goals.judgement import GoalState, Judgement
-from tuisim.goals.spec import ConditionKind, Goal
+from tuisim.goals.condition import ConditionKind
+from tuisim.goals.judgement import GoalState, Judgement, most_points, points_of
+from tuisim.goals.spec import Goal
 from tuisim.terminal.text_runs import Line, cut
 
 _NAME = Style(color=palette.WHITE, bold=True)
@@ -24,6 +25,8 @@ _STATES = {
     GoalState.MET: ("✓", Style(color=palette.GREEN, bold=True)),
     GoalState.MISSED: ("✗", Style(color=palette.RED, bold=True)),
 }
+_PENALTY_WORDS = {GoalState.OPEN: "open", GoalState.MET: "lost", GoalState.MISSED: "kept"}
+"""What is said of a goal that takes points off."""
 _STATE_COLUMNS = 9
 """Columns of the sign and the word, such as `✗ missed `."""
 _TITLED_ROWS = 9
@@ -92,8 +95,8 @@ def draw_goals(
     """
     if not view.goals:
         return GoalsPicture(list(_wrapped(NO_GOALS, width, _PALE)))
-    reached = sum(goal.points for goal, state in zip(view.goals, states, strict=True) if state is GoalState.MET)
-    total = f"{reached:g} of {sum(goal.points for goal in view.goals):g} points"
+    reached = points_of(goal.points for goal, state in zip(view.goals, states, strict=True) if state is GoalState.MET)
+    total = f"{reached:g} of {most_points(view.goals):g} points"
     lines = list(_wrapped(view.title, width, _NAME)) if height >= _TITLED_ROWS else []
     lines.append([(total, _HEAD)])
     listed = [
@@ -127,11 +130,15 @@ def _around(listed: list[tuple[Line, int]], chosen: int, most: int) -> list[tupl
 
 def _header(goal: Goal, state: GoalState, width: int) -> Iterator[Line]:
     """Yield sign, word, name and points; a long name goes on in further lines."""
-    sign, style = _STATES[state]
-    points = f" {goal.points if state is GoalState.MET else 0:g}/{goal.points:g}" if goal.points else ""
+    # What takes points off is at its best if it is missed.
+    good = {GoalState.MET: GoalState.MISSED, GoalState.MISSED: GoalState.MET} if goal.points < 0 else {}
+    sign, style = _STATES[good.get(state, state)]
+    of = f"/{goal.points:g}" if goal.points > 0 else ""
+    points = f" {goal.points if state is GoalState.MET else 0:g}{of}" if goal.points else ""
+    word = _PENALTY_WORDS[state] if goal.points < 0 else state
     room = max(1, width - _STATE_COLUMNS - len(points))
     first, *rest = textwrap.wrap(goal.name, room) or [""]
-    yield [(f"{sign} {state:<6} ", style), (first.ljust(room), _NAME), (points, style)]
+    yield [(f"{sign} {word:<6} ", style), (first.ljust(room), _NAME), (points, style)]
     for text in rest:
         yield [(" " * _STATE_COLUMNS + text, _NAME)]
 
@@ -146,6 +153,8 @@ def _detail(judgement: Judgement, state: GoalState, width: int) -> Iterator[Line
         case GoalState.MET:
             yield from _wrapped(f"met {_when(judgement)}{line}", width, _PALE)
             yield from _wrapped(goal.say, width, _PLAIN)
+        case GoalState.MISSED if goal.points < 0:
+            yield from _wrapped(f"It did not happen: {goal.say or goal.name}", width, _PLAIN)
         case GoalState.MISSED:
             yield from _wrapped(f"missed {_when(judgement)}{line}", width, _PALE)
             yield from _wrapped(judgement.reason, width, _PLAIN)

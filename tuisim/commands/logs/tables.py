@@ -12,6 +12,7 @@ import numpy as np
 from tuisim.analysis.events import THRESHOLD_FORM, Threshold, threshold_of
 from tuisim.commands.echo import (
     CsvOut,
+    echo,
     echo_json,
     echo_json_list,
     echo_lines,
@@ -23,7 +24,7 @@ from tuisim.commands.echo import (
 from tuisim.commands.logs.sources import names_of, open_sources, the_source
 from tuisim.config.command_line import Arguments
 from tuisim.core.conditions import Operator
-from tuisim.errors import ConfigError
+from tuisim.errors import ConfigError, LogError
 from tuisim.logs import signals
 from tuisim.logs.arrow import unique_names
 from tuisim.logs.bands import BandReport, Column, band_report, in_words, items_of
@@ -39,6 +40,7 @@ from tuisim.runs.arrays import FloatArray
 if TYPE_CHECKING:
     import pandas as pd
 
+_POSE = ("x_mm", "y_mm", "heading_deg")
 _QUANTILE_NAMES = tuple(f"q{100 * part:g}" for part in signals.QUANTILES)
 
 
@@ -202,12 +204,30 @@ def wide_frame(log: Log) -> pd.DataFrame:
 
 
 def reckon(arguments: Arguments) -> int:
-    """Output the pose by dead reckoning from the wheel encoders, and its error."""
+    """Print how far the pose by dead reckoning from the wheel encoders is off; or output it at every tick.
+
+    Raises:
+        LogError: the log is no telemetry, or is empty.
+    """
     arguments.telemetry = True
     log = the_source(arguments)
     computed = {series.name: series.values for series in reckoned_series(log)}
-    frame = log.table.select(["time", "x_mm", "y_mm", "heading_deg"]).to_pandas()
-    show_frame(frame.assign(**computed), arguments)
+    frame = log.table.select(["time", *_POSE]).to_pandas().assign(**computed)
+    if arguments.out or arguments.json:
+        show_frame(frame, arguments)
+        return 0
+    if frame.empty:
+        raise LogError("has no ticks", file=log.title)
+    end, worst = frame.iloc[-1], frame.loc[frame["error_mm"].idxmax()]
+    real, reckoned = ([end[f"{of}{name}"] for name in _POSE] for of in ("", "reckoned_"))
+    error = [one - other for one, other in zip(reckoned, real, strict=True)]
+    # By the shorter way round.
+    error = [round(one, 2) + 0.0 for one in (*error[:2], (error[2] + 180.0) % 360.0 - 180.0)]
+    rows = [("real", *real), ("reckoned", *reckoned), ("error", *error)]
+    formats = dict(zip(("at_the_end", *_POSE), ("", ".2f", ".2f", ".2f"), strict=True))
+    show_rows([dict(zip(formats, row, strict=True)) for row in rows], arguments, formats)
+    echo(f"reckoned place: {end['error_mm']:.2f} mm off at the end, at most {worst['error_mm']:.2f} mm, "
+         f"at {worst['time']:.2f} s")  # fmt: skip
     return 0
 
 

@@ -9,6 +9,7 @@ from math import cos, radians, sin
 from typing import TYPE_CHECKING, assert_never
 
 from tuisim.core.columns import Column
+from tuisim.core.drift import light_share
 from tuisim.core.field import OUTSIDE_DISC_RGB, Field, disc_pixels, disc_weights, weighted_mean
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.noise import noisy_channel, noisy_sums, reading_noise, stream
@@ -228,7 +229,20 @@ def _seen_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
 
 
 def reading(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
-    """Return the reading of a colour sensor at an instant, including noise."""
+    """Return the reading of a colour sensor at an instant, including noise and the light of the place."""
+    seen = _evenly_lit(spec, instant, field)
+    if not instant.drift.light_pc:
+        return seen
+    share = _light_share(spec, instant)
+    return ColorReading(seen.red * share, seen.green * share, seen.blue * share)
+
+
+def _light_share(spec: ColorSensorSpec, instant: Instant) -> float:
+    share: float = light_share(*world_point(instant.pose, spec.x_mm, spec.y_mm), instant.drift, instant.seed)
+    return share
+
+
+def _evenly_lit(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
     if not instant.noise.light:
         return clear_reading(spec, instant.pose, field)
     if spec.strategy != "mean":
@@ -243,15 +257,23 @@ disc_pixels_of = lru_cache(maxsize=16)(disc_pixels)
 
 
 def pixel_array(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
-    """Return the pixels under a sensor as RGB bytes, row-major, d × d pixels, including noise.
+    """Return the pixels under a sensor as RGB bytes, row-major, d × d pixels, including noise and light.
 
     Pixels outside the disc are OUTSIDE_DISC_RGB.
     """
-    box = bytearray(_seen_box(spec, instant, field))
+    box = bytearray(_lit_box(spec, instant, field))
     for at, weight in enumerate(disc_weights(spec.diameter_mm, "mean")):
         if not weight:
             box[3 * at : 3 * at + 3] = bytes(OUTSIDE_DISC_RGB)
     return bytes(box)
+
+
+def _lit_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
+    box = _seen_box(spec, instant, field)
+    if not instant.drift.light_pc:
+        return box
+    share = _light_share(spec, instant)
+    return box.translate(bytes(min(WHITE, round(value * share)) for value in range(WHITE + 1)))
 
 
 def columns(spec: ColorSensorSpec) -> tuple[Column, ...]:

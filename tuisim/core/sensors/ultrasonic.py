@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from tuisim.core.columns import Column
+from tuisim.core.drift import lost_echoes
 from tuisim.core.geometry import Pose, world_point
-from tuisim.core.noise import stream
+from tuisim.core.noise import drawn_numbers, stream
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec, UltrasonicSpec, WorldSpec
 from tuisim.data_class import dataclass
 
@@ -114,19 +116,42 @@ def _ray_mm(start: tuple[float, float], angle_deg: float, facing_deg: float, fou
     return most
 
 
-def distance_mm(pose: Pose, spec: UltrasonicSpec, world: WorldSpec) -> int:
-    """Return the distance to the nearest echo in whole mm, `max_range_mm` if there is none, without noise."""
+def distance_mm(pose: Pose, spec: UltrasonicSpec, world: WorldSpec, heard: Surfaces | None = None) -> int:
+    """Return the distance to the nearest echo in whole mm, `max_range_mm` if there is none, without noise.
+
+    Args:
+        pose: The robot's.
+        spec: The sensor.
+        world: Its surroundings.
+        heard: The surfaces that send this pulse back; None for all.
+    """
     start, facing = world_point(pose, spec.x_mm, spec.y_mm), pose.heading_deg + spec.angle_deg
-    found, nearest = surfaces(world), spec.max_range_mm
+    found, nearest = heard or surfaces(world), spec.max_range_mm
     for ray_deg in spec.ray_angles_deg:
         # A ray need not be followed beyond the nearest echo found.
         nearest = _ray_mm(start, facing + ray_deg, facing, found, nearest)
     return round(nearest)
 
 
+def _heard(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> Surfaces | None:
+    """Return the surfaces that send back the pulse of an instant; None if no pulse can be lost."""
+    drift = world.drift
+    if not drift.echo_loss_pc:
+        return None
+    found = surfaces(world)
+    by_upright, by_level = drawn_numbers(instant.seed, instant.tick, f"{spec.name}/echo", 2)
+    # From 0 to 90 degrees off the normal of the upright surfaces, which points along x.
+    flat = abs((instant.pose.heading_deg + spec.angle_deg + 90.0) % 180.0 - 90.0)
+    if by_upright < lost_echoes(flat, drift):
+        found = replace(found, upright=(), upright_at=())
+    if by_level < lost_echoes(90.0 - flat, drift):
+        found = replace(found, level=(), level_at=())
+    return found
+
+
 def reading_mm(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> int:
     """Return the distance in whole mm including the sensor's noise, 0 … `max_range_mm`."""
-    distance = distance_mm(instant.pose, spec, world)
+    distance = distance_mm(instant.pose, spec, world, _heard(spec, instant, world))
     if not spec.noise_mm:
         return distance
     share = int.from_bytes(stream(instant.seed, instant.tick, spec.name, 4), "little") / 2147483647.5 - 1

@@ -12,7 +12,6 @@ from functools import partial
 from tuisim.app.action import Action, key_groups
 from tuisim.app.analyser.actions import chart, files, log, panes
 from tuisim.app.analyser.screen import LogScreen
-from tuisim.app.terminal_app import theme_list
 
 CURSOR, PANE, CHART, TABLE, LOG = "Cursor", "Panes", "Chart", "Table", "Log"
 FILES, APP = "Files", "App"
@@ -41,10 +40,6 @@ def _help(screen: LogScreen) -> None:
 
     keys = KeyPage("All keys of the analyser", _START, key_groups(screen.ACTIONS.values()))
     screen.app.push_screen(GuideScreen(keys, Topic()))
-
-
-def _choose_theme(screen: LogScreen) -> None:
-    screen.app.push_screen(theme_list())
 
 
 def _show(pane: str) -> Callable[[LogScreen], None]:
@@ -129,7 +124,8 @@ ACTIONS: Mapping[str, LogAction] = {
         Action("differences", "D", "Go to where two runs differ", LOG, log.differences, _log),
         Action("world", "w", "Show or hide the world", PANE, panes.world, _log),
         Action("help", "question_mark", "Guide: all keys, and every page", APP, _help, footer="help"),
-        Action("theme", "f10", "Theme: light, high contrast and others", APP, _choose_theme),
+        Action("palette", "ctrl+p", "Commands, by name", APP, _app("command_palette"), footer="all", footer_key="^p"),
+        Action("theme", "f10", "Theme: light, high contrast and others", APP, _app("choose_theme")),
         Action("pixels", "number_sign", "Characters or pixels", APP, _app("switch_pixels")),
         Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, _app("redraw")),
         Action(

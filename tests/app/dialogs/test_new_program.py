@@ -1,0 +1,62 @@
+"""A new program by keys, and its mat later on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.app.app_help import ready, until, until_shown
+from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.dialogs.chooser import MatPicker
+from tuisim.app.dialogs.new_program import NewProgramDialog
+from tuisim.app.dialogs.question import Question
+from tuisim.app.editor.area import CodeArea
+from tuisim.app.setup.new_program import Skeleton, program_text
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.config.program_file import read_program
+
+pytestmark = pytest.mark.usefixtures("home")
+
+CHOSEN = {
+    "as it is": ([], ("Empty_Map", "colorLeft", Skeleton.LOG)),
+    "letters": ([*"grey_b", "right", *"gy", "right", "u"], ("Grey_bands", "gyro", Skeleton.UNTIL)),
+    "letters in their order": ([*"gb"], ("Grey_bands", "colorLeft", Skeleton.LOG)),
+    "arrows": (["down", "tab", "down", "shift+tab", "down"], ("Grey_and_black", "colorRight", Skeleton.LOG)),
+}
+
+
+@pytest.mark.quick_cases("letters")
+@pytest.mark.parametrize(("keys", "wanted"), CHOSEN.values(), ids=CHOSEN)
+async def test_a_new_program_is_chosen_by_keys(keys: list[str], wanted: tuple[str, str, Skeleton]) -> None:
+    plain = AppSettings(spec=build_run_spec(Settings()), settings=Settings())
+    async with LabApp(plain).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("ctrl+t")
+        await until(pilot, lambda: isinstance(app.screen, NewProgramDialog))
+        await pilot.press(*keys, "enter")
+        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
+        assert app.query_one(CodeArea).program_text == program_text(*wanted)
+        assert app.run_controller.next_run.spec.world.background == wanted[0]
+
+
+@pytest.mark.parametrize("answer", ["w", "escape"])
+async def test_another_mat_is_written_into_the_file_if_one_agrees(answer: str, tmp_path: Path) -> None:
+    path = tmp_path / "mine.py"
+    path.write_text(before := program_text("Grey_bands", "colorLeft", Skeleton.LOG))
+    source = read_program(path)
+    settings = Settings({"background": "Grey_bands"})
+    async with LabApp(AppSettings(build_run_spec(settings), settings, program=source.program)).run_test() as pilot:
+        app = await ready(pilot)
+        await pilot.press("b")
+        await until(pilot, lambda: isinstance(app.screen, MatPicker) and app.screen.is_ready)
+        await pilot.press("down", "enter")
+        await until(pilot, lambda: isinstance(app.screen, Question) and app.screen.is_ready)
+        await until_shown(pilot, "begins with the mat Grey_bands")
+        await pilot.press(answer)
+        await until(pilot, lambda: len(app.screen_stack) == 1)
+        assert app.run_controller.next_run.spec.world.background == "Grey_and_black"
+        after = before.replace("Grey_bands", "Grey_and_black")
+        assert path.read_text() == (after if answer == "w" else before)
+        assert not app.document.dirty

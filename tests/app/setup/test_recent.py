@@ -1,0 +1,39 @@
+"""What one may go on with: unsaved texts first, then programs that are still there, then runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.running import over
+from tuisim.app.editor.text_file import drop_draft, keep_draft
+from tuisim.app.setup.recent import Kind, recent
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+from tuisim.runs.handle import RunOptions, start_run
+from tuisim.source import Program
+
+pytestmark = pytest.mark.usefixtures("home")
+
+
+def kinds() -> list[tuple[Kind, str]]:
+    return [(one.kind, one.name) for one in recent("new.py")]
+
+
+def test_nothing_at_first() -> None:
+    assert kinds() == []
+
+
+def test_the_likeliest_comes_first(tmp_path: Path) -> None:
+    path = tmp_path / "mine.py"
+    path.write_text("import time\ntime.sleep(0.1)\n")
+    spec = build_run_spec(Settings())
+    over(start_run(Program("mine.py", path.read_text(), "none", str(path)), spec, RunOptions()))
+    assert kinds() == [(Kind.PROGRAM, "mine.py"), (Kind.RUN, "Run 1")]
+    keep_draft("", "x")
+    keep_draft(str(path), "y")
+    assert kinds() == [(Kind.DRAFT, "mine.py"), (Kind.DRAFT, "new.py"), (Kind.RUN, "Run 1")]
+    drop_draft(str(path))
+    path.unlink()
+    assert kinds() == [(Kind.DRAFT, "new.py"), (Kind.RUN, "Run 1")]

@@ -1,0 +1,157 @@
+"""`tuisim mark` in several worlds: what only fits the one that is known gets nothing, and is told nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from tests.conftest import Command
+
+TASK = """\
+title = "Stop on black"
+background = "Grey_bands"
+start = { x_mm = 900, y_mm = 500 }
+
+[[goal]]
+name = "black"
+say = "Stop on the black band."
+points = 3
+reach = { x_mm = 1500, within_mm = 80, at_end = true }
+hint = "Look while you drive."
+
+[[goal]]
+name = "said"
+say = "Say so."
+print = "black"
+after = "near"
+
+[[goal]]
+name = "quick"
+points = 2
+hidden = true
+finish = true
+after = "black"
+before = 15
+
+[[goal]]
+name = "near"
+points = 0
+reach = { x_mm = 1500, within_mm = 80 }
+
+[[also]]
+where = "from farther on"
+start = { x_mm = 1300 }
+
+[[also]]
+where = "in the other direction"
+hidden = true
+start = { x_mm = 1850, heading_deg = 180 }
+[[also.goal]]
+name = "black"
+reach = { x_mm = 1660, within_mm = 80, at_end = true }
+[[also.goal]]
+name = "near"
+points = 0
+reach = { x_mm = 1660, within_mm = 80 }
+"""
+LOOK = """\
+tank_drive.on(30, 30)
+while colorLeft.reflected_light_intensity_pc > 5:
+    pass
+tank_drive.off()
+print("black")
+"""
+CLASS = {
+    "right": LOOK,
+    "learnt": "tank_drive.on_for_rotations(30, 30, 3.5)\nprint('black')\n",
+    "tells": "first = colorLeft.reflected_light_intensity_pc\n"
+    + LOOK
+    + "if 300 < tank_drive.left_motor.position < 400:\n    raise ValueError('secret 4711')\n",
+    "hangs": LOOK.replace("off()", "off()\nwhile 300 < tank_drive.left_motor.position < 400:\n    x = 1"),
+}
+
+
+def _mark(folder: Path, here: Command, *names: str) -> tuple[pd.DataFrame, dict[str, str]]:
+    """Mark a few of the class; return the marks and the feedback by name."""
+    (folder / "class").mkdir()
+    for name in names:
+        (folder / "class" / f"{name}.py").write_text(CLASS[name])
+    (folder / "task.toml").write_text(TASK)
+    words = ("--seeds", "0,1", "--jobs", "1", "--export", "marks.csv", "--export", "marks.html", "--feedback", "told")
+    done = here("mark", "task.toml", "class", *words)
+    assert done.returncode == 0, done.stderr
+    marks = pd.read_csv(folder / "marks.csv").set_index("student")
+    return marks, {path.stem: path.read_text() for path in (folder / "told").iterdir()}
+
+
+def test_what_fits_one_world_only_is_found_by_the_others(tmp_path: Path, here: Command) -> None:
+    marks, _ = _mark(tmp_path, here, "right", "learnt", "tells")
+    points = marks[["points", "robustness", "goal_black", "goal_said", "goal_quick"]]
+    assert points.loc["right"].tolist() == [6, 1, 3, 1, 2]
+    assert points.loc["learnt"].tolist() == [1, 0, 0, 1, 0]
+    assert points.loc["tells"].tolist() == [4, 0, 3, 1, 0]
+    assert marks["reason"]["learnt"].startswith("from farther on: At the end the robot was")
+    assert marks["reason"]["tells"] == "in the other direction: ValueError: secret 4711 (line 8)"
+    reports = sorted(path.name for path in (tmp_path / "marks-runs").iterdir())
+    assert reports == ["learnt-world-2-seed-0.html", "learnt-world-3-seed-0.html", "tells-world-3-seed-0.html"]
+
+
+def test_feedback_gives_nothing_hidden_away(tmp_path: Path, here: Command) -> None:
+    _, told = _mark(tmp_path, here, "right", "tells")
+    assert "Hidden goals: 2 of 2 points" in told["right"] and "Hidden goals: 0 of 2 points" in told["tells"]
+    said = " ".join(told["tells"].split())
+    assert "did not run to its end in each of the other worlds in which it was tried." in said
+    assert not [word for word in ("4711", "ValueError", "quick", "direction", "Line 8") if word in said]
+
+
+@pytest.mark.slow
+def test_a_program_that_does_not_end_in_another_world_loses_what_counts_there(tmp_path: Path, here: Command) -> None:
+    marks, told = _mark(tmp_path, here, "hangs")
+    assert marks["points"]["hangs"] == 3
+    assert marks["reason"]["hangs"].startswith("in the other direction: stopped at the limit of 120 s")
+    assert not [word for word in ("stopped", "direction", "120") if word in told["hangs"]]
+
+
+PRESSED = """\
+background = "Empty_Map"
+press = ["enter@2"]
+inputs = ["300"]
+[[goal]]
+name = "waits"
+keep = "x_mm < 210"
+until = "pressed"
+[[goal]]
+name = "pressed"
+points = 0
+when = "button_enter = 1"
+[[goal]]
+name = "there"
+when = "sample Far > 390"
+[[also]]
+where = "another distance, later"
+inputs = ["400"]
+press = ["enter@3-3.5"]
+"""
+ASKS = """\
+from ev3dev2.button import Button
+from ev3dev2.motor import MoveTank
+far_mm, enter = int(input("mm? ")), Button()
+while not enter.enter:
+    pass
+MoveTank("outB", "outC").on_for_rotations(30, 30, far_mm / 176)
+print("Far:", 95 + far_mm)
+"""
+
+
+def test_a_task_presses_buttons_and_gives_inputs_in_each_world(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "class").mkdir()
+    (tmp_path / "class" / "asks.py").write_text(ASKS)
+    (tmp_path / "class" / "learnt.py").write_text(ASKS.replace("while not enter.enter", "for _ in range(2000)"))
+    (tmp_path / "task.toml").write_text(PRESSED)
+    done = here("mark", "task.toml", "class", "--seeds", "0", "--jobs", "1", "--keep", "none")
+    assert [line.split()[:2] for line in done.stdout.splitlines()[1:3]] == [["asks", "2"], ["learnt", "1"]], done.stdout
+    assert here("run", "task.toml", "class/asks.py").returncode == 0
+    checked = here("goals", "check", "task.toml")
+    assert (checked.returncode, checked.stderr) == (0, ""), checked.stdout

@@ -1,0 +1,148 @@
+"""Lists that are searched by typing, one line an entry: the command palette, and the themes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, ClassVar, NamedTuple
+
+from rich.text import Text
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.widgets import Input, OptionList, Static
+from textual.widgets.option_list import Option
+
+from tuisim import palette
+from tuisim.app.action import Action
+from tuisim.app.dialogs.dialog import Dialog
+from tuisim.terminal.text_runs import cut
+
+_WIDTH, _BESIDE = 74, 10
+"""Cells of the frame, and those of it that no line has: borders, padding, scroll bar."""
+
+
+class Entry(NamedTuple):
+    """One line of a list."""
+
+    id: str
+    title: str
+    group: str = ""
+    key: str = ""
+    works: bool = True
+    """Whether it can be chosen with effect now."""
+
+
+def matching(entries: Iterable[Entry], typed: str) -> list[Entry]:
+    """Return the entries that have every word of a text, those first whose titles begin with it or with its words."""
+    words = typed.lower().split()
+
+    def rank(entry: Entry) -> int:
+        title = entry.title.lower()
+        begins = title.startswith(" ".join(words)), all(f" {word}" in f" {title}" for word in words)
+        return begins.index(True) if True in begins else 2
+
+    found = [one for one in entries if all(word in f"{one.title} {one.group}".lower() for word in words)]
+    return sorted(found, key=rank) if words else found
+
+
+class SearchList(Dialog[str]):
+    """Returns the id of the chosen entry.
+
+    Args:
+        entries: The list, in its order.
+        current: Id of the entry that is selected at first.
+    """
+
+    HINT: str = "type to search · ↑ ↓ and Enter · Escape closes"
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding(key, f"move('{action}')", action, show=False)
+        for key, action in (
+            ("down", "cursor_down"), ("up", "cursor_up"), ("pagedown", "page_down"), ("pageup", "page_up"),
+        )
+    ]  # fmt: skip
+
+    def __init__(self, entries: Sequence[Entry], current: str = "") -> None:
+        super().__init__()
+        self._entries, self._current = entries, current
+
+    def content(self) -> ComposeResult:
+        yield Input(placeholder="Search", compact=True, select_on_focus=False)
+        yield OptionList()
+        yield Static("Nothing found", id="message", markup=False)
+
+    def on_mount(self) -> None:
+        self.app.clear_notifications()
+        self.query_one(Input).focus()
+
+    def on_resize(self) -> None:
+        self._list(self.query_one(Input).value)
+
+    @on(Input.Changed)
+    def _search(self, event: Input.Changed) -> None:
+        self._list(event.value)
+
+    def _list(self, typed: str) -> None:
+        found, listed = matching(self._entries, typed), self.query_one(OptionList)
+        cells = min(_WIDTH, self.size.width) - _BESIDE
+        listed.clear_options()
+        listed.add_options(Option(_line(entry, cells), id=entry.id) for entry in found)
+        names = [entry.id for entry in found]
+        listed.highlighted = None if not found else names.index(self._current) if self._current in names else 0
+        self.query_one("#message").display = not found
+
+    def action_move(self, action: str) -> None:
+        getattr(self.query_one(OptionList), f"action_{action}")()
+
+    @on(Input.Submitted)
+    def _entered(self) -> None:
+        self.query_one(OptionList).action_select()
+
+    @on(OptionList.OptionSelected)
+    def _chosen(self, event: OptionList.OptionSelected) -> None:
+        self.dismiss(event.option.id)
+
+
+def _line(entry: Entry, cells: int) -> Text:
+    """Return a line of so many cells, with the key at its right."""
+    right = f"{entry.group}  {entry.key:>7}" if entry.key else entry.group
+    title = cut(entry.title, cells - len(right) - 1)
+    line = Text(no_wrap=True, overflow="ellipsis")
+    line.append(f"{title:<{cells - len(right)}}", "" if entry.works else palette.SUBTITLE)
+    line.append(right[: len(entry.group)], palette.SUBTITLE)
+    line.append(right[len(entry.group) :], f"bold {palette.YELLOW}" if entry.works else palette.SUBTITLE)
+    return line
+
+
+class Palette(SearchList):
+    """Returns the id of an action: those that work now come first."""
+
+    TITLE_TEXT: str = "Commands"
+
+    def __init__(self, actions: Iterable[Action[Any, Any]], now: object) -> None:
+        entries = (Entry(one.id, one.title, one.group, one.key_label, not one.why_not(now)) for one in actions)
+        super().__init__(sorted(entries, key=lambda entry: not entry.works))
+
+
+class ThemeChooser(SearchList):
+    """Returns the name of a theme; the one that is selected is shown while one looks.
+
+    Args:
+        names: The themes.
+        current: The present one, which returns on Escape.
+        show: Shows a theme.
+    """
+
+    TITLE_TEXT: str = "Themes"
+
+    def __init__(self, names: Iterable[str], current: str, show: Callable[[str], None]) -> None:
+        super().__init__([Entry(name, name) for name in names], current)
+        self._show = show
+
+    @on(OptionList.OptionHighlighted)
+    def _look(self, event: OptionList.OptionHighlighted) -> None:
+        if event.option.id:
+            self._show(event.option.id)
+
+    def action_leave(self) -> None:
+        self._show(self._current)
+        super().action_leave()

@@ -1,0 +1,113 @@
+"""What the user may go on with: unsaved texts, programs that have run, and runs."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from datetime import datetime
+from enum import StrEnum
+from pathlib import Path
+
+from tuisim.app.editor.text_file import drafts, is_protected
+from tuisim.config.folders import home_folder
+from tuisim.data_class import dataclass
+from tuisim.errors import LogError
+from tuisim.runs.catalogue import RunInfo
+from tuisim.runs.run_folder import read_run_file
+from tuisim.runs.store import RunStore
+
+_RUNS_READ = 20
+"""So many of the newest runs are read for their programs."""
+_MOST = 3
+"""Entries of each kind."""
+
+
+class Kind(StrEnum):
+    """What an entry is."""
+
+    DRAFT = "draft"
+    PROGRAM = "program"
+    RUN = "run"
+
+
+@dataclass(frozen=True, slots=True)
+class Recent:
+    """One thing to go on with."""
+
+    kind: Kind
+    word: str
+    """Path of a program, empty for one without a file; id of a run."""
+    name: str
+    title: str
+
+
+def recent(new_name: str) -> list[Recent]:
+    """Return what one may go on with, the likeliest first. Reads files.
+
+    Args:
+        new_name: Name of a program without a file.
+    """
+    kept = [draft for draft in drafts() if not draft.path or _is_own(draft.path)][:_MOST]
+    unsaved = [
+        Recent(Kind.DRAFT, draft.path, Path(draft.path or new_name).name, f"Not saved, edited {_when(draft.written_s)}")
+        for draft in kept
+    ]
+    try:
+        runs = RunStore().runs()[: -_RUNS_READ - 1 : -1]
+    except LogError:
+        return unsaved
+    known = {draft.path for draft in kept}
+    programs = [
+        Recent(Kind.PROGRAM, path, Path(path).name, f"In {_folder(Path(path))}, ran {when}")
+        for path, when in _programs(runs)
+        if path not in known
+    ]
+    replays = [
+        Recent(Kind.RUN, run.id, f"Run {run.number}", f"{run.program} on {Path(run.background).name}, {_made(run)}")
+        for run in runs
+        if run.ticks
+    ]
+    return [*unsaved, *programs[:_MOST], *replays[:_MOST]]
+
+
+def _programs(runs: list[RunInfo]) -> Iterator[tuple[str, str]]:
+    """Yield the path of each program of the user that still is there, and when it ran last."""
+    store, seen = RunStore(), set()
+    for run in runs:
+        try:
+            program = read_run_file(store.folder(run.id)).get("program")
+        except LogError:
+            # It is removed, or damaged; the list of runs tells.
+            continue
+        path = program.get("path") if isinstance(program, dict) else None
+        if isinstance(path, str) and path not in seen and _is_own(path) and not is_protected(Path(path)):
+            seen.add(path)
+            yield path, _made(run)
+
+
+def _is_own(path: str) -> bool:
+    """Return whether a program is still there, and is not that of a lesson."""
+    try:
+        return Path(path).is_file() and not Path(path).is_relative_to(home_folder())
+    except (OSError, ValueError):
+        return False
+
+
+def _folder(path: Path) -> str:
+    folder = str(path.parent)
+    home = str(Path.home())
+    return f"~{folder.removeprefix(home)}" if folder.startswith(home) else folder
+
+
+def _made(run: RunInfo) -> str:
+    try:
+        return _when(datetime.fromisoformat(run.created).timestamp())
+    except ValueError:
+        return run.created[:16]
+
+
+def _when(seconds: float) -> str:
+    """Return a time in seconds since 1970 in words: of today the time only."""
+    then = time.localtime(seconds)
+    is_today = then[:3] == time.localtime()[:3]
+    return time.strftime("at %H:%M" if is_today else "on %d %b %H:%M", then)
