@@ -233,7 +233,7 @@ class TerminalApp(BufferedApp):
     def act_as_asked(self, event: ActionAsked) -> None:
         """Do what a button of the page asks for, also while the user types; a dialog comes first."""
         host = self.screen if isinstance(self.screen, ActionHost) else self
-        if isinstance(self.screen, (Dialog, Palette)):
+        if isinstance(self.screen, Dialog):
             self.notify("A dialog is open: escape closes it", markup=False)
         elif isinstance(host, ActionHost) and event.name in host.ACTIONS:
             host.action_act(event.name)
