@@ -185,7 +185,7 @@ async def test_the_footer_offers_what_is_needed_while_the_code_is_read(home: obj
         assert app.panel_area.focused_panel() == "code"
         shown = str(app.key_footer.render())
         assert "N line back" in shown
-        assert "L to cursor" in shown
+        assert "u out" in shown
 
 
 @pytest.mark.slow

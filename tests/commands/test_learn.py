@@ -16,7 +16,7 @@ from tuisim.lessons.skeleton import SKELETON
 FAULTY = {
     "model answer": (
         ("500 / (3.14159 * 56)", "1"),
-        "line 72: the model answer does not pass “Drive them”: there: At the end the robot was 324 mm left of x = ",
+        "line 73: the model answer does not pass “Drive them”: there: At the end the robot was 324 mm left of x = ",
     ),
     "wrong program": (
         ("SpeedPercent(30), 5)", "SpeedPercent(30), 2.842)"),
@@ -198,7 +198,7 @@ def test_missing_wrong_way_is_a_warning(here: Command, tmp_path: Path) -> None:
         line for line in SKELETON.split("\n") if not line.startswith("excludes")
     ))  # fmt: skip
     done = here("learn", "check", "mine.md", "--no-runs")
-    assert "warning: mine.md, line 71: no wrong way “no sensor” is tried on “Drive them”, nor excluded" in done.stdout
+    assert "warning: mine.md, line 72: no wrong way “no sensor” is tried on “Drive them”, nor excluded" in done.stdout
     assert (done.returncode, here("learn", "check", "mine.md", "--no-runs", "--strict").returncode) == (0, 1)
 
 

@@ -141,8 +141,10 @@ class TerminalApp(BufferedApp):
         await super().on_event(event)
 
     def _waits(self, event: events.Event) -> bool:
-        """Return whether the topmost screen is still being opened, so that it would lose a key."""
+        """Return whether the topmost screen is still being opened, so that it would lose a key, or a text is completed."""
         top = self.screen_stack[-1] if self.screen_stack else None
+        if top is not None and getattr(top.focused, "is_completing", False):
+            return True
         return isinstance(top, ClosesOnce) and not top.is_ready_for(event)
 
     def _ignores(self, event: events.Event) -> bool:

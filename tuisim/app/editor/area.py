@@ -107,6 +107,8 @@ class CodeArea(TextArea):
         self._colouring = Colouring()
         self._breaks: Mapping[int, str] = {}
         self._lit = self._error = 0
+        self.is_completing = False
+        """Whether names are looked up: keys wait for them, however long it takes."""
         self.path = ""
         """Of the program's file, or its name."""
         self.candidates = CandidateList()
@@ -368,7 +370,11 @@ class CodeArea(TextArea):
         place = self.cursor_location
         found: tuple[Candidate, ...] = ()
         if self._word() is not None:
-            found = await asyncio.to_thread(candidates, self.program_text, self.path, *place)
+            self.is_completing = True
+            try:
+                found = await asyncio.to_thread(candidates, self.program_text, self.path, *place)
+            finally:
+                self.is_completing = False
         word = self._word()
         if self.cursor_location != place or not self.selection.is_empty or not self.typing:
             # Something else has moved the cursor, such as the mouse.
