@@ -141,7 +141,7 @@ class TerminalApp(BufferedApp):
         await super().on_event(event)
 
     def _waits(self, event: events.Event) -> bool:
-        """Return whether the topmost screen is still being opened, so that it would lose a key, or a text is completed."""
+        """Return whether the topmost screen is still being opened and would lose a key, or a text is completed."""
         top = self.screen_stack[-1] if self.screen_stack else None
         if top is not None and getattr(top.focused, "is_completing", False):
             return True
