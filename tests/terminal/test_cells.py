@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tuisim.terminal.cells import changed_cells, changed_runs
-from tuisim.terminal.fitted_cells import Cells, all_cells, fit_cells
+from tuisim.terminal.fitted_cells import Cells, all_cells, fit_cells, is_flat
 from tuisim.terminal.glyphs import GLYPHS, glyph_set, half_block_of
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import Pixels
@@ -60,20 +60,10 @@ def test_an_even_cell_needs_no_glyph(cells: CellSet) -> None:
     assert cell >> 24 == cell & 0xFFFFFF
 
 
-@pytest.mark.parametrize(
-    ("contrast", "stays"), [pytest.param(5, True, id="as good"), pytest.param(30, False, id="much worse")]
-)
-def test_a_glyph_stays_while_it_is_as_good(contrast: int, stays: bool) -> None:
-    """Noise in the picture must not make cells shimmer."""
-    glyphs, one = glyph_set(CellSet.OCTANT), all_cells(1, 1)
-    before = fit_cells(picture_of(CellSet.OCTANT, 0x0F), glyphs, one)
-    picture = np.full((4, 2, 3), 200, np.uint8)
-    picture[:, 0] += contrast
-
-    now = fit_cells(picture, glyphs, one, before)
-
-    assert glyph(int(fit_cells(picture, glyphs, one)[0])) == "▌"
-    assert (glyph(int(now[0])) == "▀") is stays
+def test_cells_of_one_color_are_flat() -> None:
+    glyphs = glyph_set(CellSet.OCTANT)
+    picture = np.concatenate([picture_of(CellSet.OCTANT, pattern) for pattern in (0x00, 0x0F, 0xFF)], axis=1)
+    assert is_flat(picture, glyphs, all_cells(1, 3)).tolist() == [True, False, True]
 
 
 @pytest.mark.parametrize("cells", FINE)

@@ -97,7 +97,6 @@ async def test_another_robot_has_other_discs() -> None:
         app.panel.show(moment(POSE, field=FIELD))
         await pilot.pause()
         app.panel.show(moment(POSE, field=FIELD, spec=one))
-        app.panel._throttle.now()
         await pilot.pause()
         assert len(app.panel.query(PixelView)) == 1
 
@@ -108,7 +107,6 @@ async def test_without_a_mat_it_is_blank() -> None:
         app.panel.show(moment(POSE, field=FIELD))
         await pilot.pause()
         app.panel.show(moment(POSE))
-        app.panel._throttle.now()
 
         assert all(view._cells.size == 0 for view in app.panel.query(PixelView))
 
@@ -122,6 +120,5 @@ async def test_the_same_pose_is_not_drawn_again(monkeypatch: pytest.MonkeyPatch)
         monkeypatch.setattr(PixelView, "set_fine_picture", lambda *given: drawn.append(given))
 
         app.panel.show(moment(POSE, field=FIELD, time_s=99.0))
-        app.panel._throttle.now()
 
         assert not drawn

@@ -140,7 +140,6 @@ async def test_what_is_left_of_last_time_is_wiped() -> None:
         app.panel.show(EXTREME)
         await pilot.pause()
         app.panel.show(BARE)
-        app.panel._throttle.now()
         await pilot.pause()
 
         assert [row.rstrip() for row in screen_text(app)] == [row.rstrip() for row in text(BARE, 40, 11)]

@@ -13,11 +13,7 @@ from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.sensors.color import ColorReading
 from tuisim.logs.units import unit_of
 from tuisim.terminal.cell_view import LinesPanel
-from tuisim.terminal.pacer import Throttle
 from tuisim.terminal.text_runs import Line, Run, cut
-
-_PERIOD_S = 0.1
-"""Values that change faster cannot be read."""
 
 _LABEL = Style(color=palette.LABEL)
 _VALUE = Style(color=palette.WHITE, bold=True)
@@ -39,13 +35,11 @@ class Instrumentation(LinesPanel):
     def __init__(self) -> None:
         super().__init__()
         self._snapshot: Snapshot | None = None
-        self._throttle = Throttle(self, _PERIOD_S, self._redraw)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment; at most a few updates per second, and the last one with the world."""
-        has_stopped = snapshot.has_stopped_since(self._snapshot)
+        """Show a moment."""
         self._snapshot = snapshot
-        self._throttle.ask(at_once=has_stopped)
+        self._redraw()
 
     def _redraw(self) -> None:
         if self._snapshot is not None and self._text.size:

@@ -97,6 +97,7 @@ class World(Widget, can_focus=True):
         self._mat = ""
         """Name of the mat."""
         self.time_bar = TimeBar()
+        """Shows the instant of the readings."""
 
     def compose(self) -> ComposeResult:
         yield self._view
@@ -165,7 +166,6 @@ class World(Widget, can_focus=True):
             self._mat = mat
             self._say()
         self._view.show(snapshot)
-        self.time_bar.show(snapshot)
 
 
 def _pointers(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:
