@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tuisim.terminal.cells import changed_cells, changed_runs
-from tuisim.terminal.fitted_cells import Cells, all_cells, fit_cells, is_flat
+from tuisim.terminal.fitted_cells import Cells, all_cells, fit_cells
 from tuisim.terminal.glyphs import GLYPHS, glyph_set, half_block_of
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import Pixels
@@ -58,12 +58,6 @@ def test_an_even_cell_needs_no_glyph(cells: CellSet) -> None:
     cell = int(fit_cells(picture, glyphs, all_cells(1, 1))[0])
 
     assert cell >> 24 == cell & 0xFFFFFF
-
-
-def test_cells_of_one_color_are_flat() -> None:
-    glyphs = glyph_set(CellSet.OCTANT)
-    picture = np.concatenate([picture_of(CellSet.OCTANT, pattern) for pattern in (0x00, 0x0F, 0xFF)], axis=1)
-    assert is_flat(picture, glyphs, all_cells(1, 3)).tolist() == [True, False, True]
 
 
 @pytest.mark.parametrize("cells", FINE)

@@ -51,13 +51,13 @@ async def test_both_discs_are_whole_with_what_the_program_gets(size: tuple[int, 
 
     assert (left.y == right.y) is across
     assert left.size == right.size and left.height >= 4
-    assert text.count("128 ") == 2
+    assert text.count("50.2") == 2
 
 
 async def test_a_threshold_is_on_the_scale_and_in_words() -> None:
     _, text = await shown((60, 14), PROGRAM)
 
-    assert "50.2 %" in text and "> 5: yes" in text and "┃" in text and "rings" in text
+    assert "50.2 %" in text and "> 5: yes" in text and "┃" in text and "line 1 asks" in text and "from centre" in text
 
 
 @pytest.mark.parametrize("cells", [CellSet.HALF, CellSet.SEXTANT, CellSet.OCTANT, CellSet.BRAILLE, CellSet.ASCII])
