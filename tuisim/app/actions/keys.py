@@ -30,7 +30,7 @@ LabAction: TypeAlias = Action[ActionContext, Situation]
 def _can_run(now: Situation) -> str:
     if not now.has_program:
         return "No program yet: {open} opens one"
-    if now.in_past:
+    if now.in_past or now.state is RunPhase.PAUSED:
         return ""
     return "The program is already running: {stop} stops it" if now.state in IN_RUN else ""
 
