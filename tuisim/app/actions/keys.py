@@ -281,7 +281,9 @@ def footer_actions(
         word = "" if playing else "play"
     elif now.state == RunPhase.PAUSED:
         word = "go on"
-    return [replace(table[name], footer=word) if word and name == "pause" else table[name] for name in names]
+    # A paused program needs the room for its steps.
+    steps = [name for name in names if name != "run" or now.state != RunPhase.PAUSED or now.in_past]
+    return [replace(table[name], footer=word) if word and name == "pause" else table[name] for name in steps]
 
 
 @lru_cache(maxsize=16)
