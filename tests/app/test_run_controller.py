@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -243,14 +242,3 @@ async def test_what_stands_still_is_drawn_finely_at_once_on_a_slow_link() -> Non
             await pilot.press(key)
             await until(pilot, lambda word=word: app.key_footer._status.startswith(word))  # type: ignore[misc]
             assert not world.is_coarse
-
-
-async def test_readings_are_of_one_instant_while_the_program_runs() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: " s┃" in screen_text(app) and app.run_controller.pose.x_mm > 200)
-        for _ in range(20):
-            await pilot.pause()
-            clock = re.search(r"Clock +([\d.]+) s", text := screen_text(app))
-            assert clock is not None
-            assert f"{clock[1]} s┃" in text

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Generic, TypeVar, cast
 
@@ -29,7 +28,6 @@ from tuisim.app.layout.arrangement import (
 )
 from tuisim.app.layout.tree import PanelLayout
 from tuisim.app.panels import PANELS, NextRunPanel, Panel, TerminalSize
-from tuisim.app.snapshot import RunPhase
 from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
@@ -47,9 +45,6 @@ if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot
 
 PanelWidget = TypeVar("PanelWidget", bound=Widget)
-_READINGS = frozenset({"instrumentation", "arrays", "positioning"})
-_READINGS_GAP_S = 0.2
-"""Seconds between two instants whose readings are shown while a program runs: faster ones could not be read."""
 _STACKED_ROWS = 18
 """In a lower area there is no room for a lesson below a panel that needs the whole width."""
 
@@ -101,8 +96,6 @@ class PanelArea(Container):
         """Id of the maximized panel, empty for none."""
         self.front = "world"
         """The panel shown where there is room for one only."""
-        self._read_at_s = 0.0
-        """When readings were last shown."""
         self._is_loaded = False
         """Whether what was kept has been taken up."""
         self.is_stacked = False
@@ -133,6 +126,10 @@ class PanelArea(Container):
             self.output.clear()
         if self.chart:
             self.chart.clear()
+
+    def on_screen(self) -> list[Panel]:
+        """Return the panels on the screen."""
+        return [cast(Panel, widget) for widget in self.panels.values() if widget.display]
 
     @property
     def is_single(self) -> bool:
@@ -378,12 +375,7 @@ class PanelArea(Container):
         self.front = self.focused_panel() or self.front
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment in every panel on the screen; during a run, all readings at one instant now and then."""
-        runs, now_s = snapshot.state is RunPhase.RUNNING and not snapshot.past, time.monotonic()
-        if reads := not runs or now_s - self._read_at_s >= _READINGS_GAP_S:
-            self._read_at_s = now_s
-        for name, widget in self.panels.items():
-            if widget.display and widget.is_attached and (reads or name not in _READINGS):
-                cast(Panel, widget).show(snapshot)
-        if self.world is not None and reads and self.shown("world") and self.world.is_attached:
-            self.world.time_bar.show(snapshot)
+        """Show a moment in every panel on the screen."""
+        for panel in self.on_screen():
+            if cast(Widget, panel).is_attached:
+                panel.show(snapshot)

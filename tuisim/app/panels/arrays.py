@@ -16,7 +16,7 @@ from tuisim.terminal.text_runs import Line
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot
 
-_PERIOD_S = 0.2
+_PERIOD_S = 0.25
 """All pixels of both discs may change at once: a shorter period would saturate a slow link."""
 
 

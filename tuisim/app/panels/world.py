@@ -165,6 +165,7 @@ class World(Widget, can_focus=True):
             self._mat = mat
             self._say()
         self._view.show(snapshot)
+        self.time_bar.show(snapshot)
 
 
 def _pointers(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:
