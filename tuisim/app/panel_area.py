@@ -68,12 +68,6 @@ class _Mounted(Generic[PanelWidget]):
         return cast("PanelWidget | None", area.panels.get(self._panel) if area is not None else None)
 
 
-_NOTICE_COLUMNS = 24
-"""Columns that are enough for a notice."""
-_AXIS_ROWS = 3
-"""Rows of a chart from its time axis to its lower edge."""
-
-
 class PanelArea(Container):
     """The area of all panels.
 
@@ -310,23 +304,7 @@ class PanelArea(Container):
                 styles = self._panel(panel).styles
                 styles.width, styles.height = box.width, box.height
                 styles.offset = (box.x, box.y)
-        self._place_notices()
         self.post_message(self.Rearranged())
-
-    def _place_notices(self) -> None:
-        """Show notices beside a chart at the bottom if there is room, else above its time axis; beside readings."""
-        box, left, below = self.arrangement.boxes.get("chart"), 0, 1
-        if box is not None and box.x == 0 and box.y + box.height == self.size.height:
-            if self.size.width - box.width >= _NOTICE_COLUMNS:
-                left = box.width
-            else:
-                below += _AXIS_ROWS
-        readings, right = self.arrangement.boxes.get("instrumentation"), self.size.width
-        if readings is not None and 0 < readings.y == self.size.height - readings.height and readings.x > left:
-            right = readings.x
-        for rack in self.screen.query("ToastRack"):
-            rack.styles.margin = (0, 0, below, left)
-            rack.styles.width = right - left
 
     def _panel(self, panel: str) -> Widget:
         if panel not in self.panels:

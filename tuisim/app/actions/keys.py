@@ -30,7 +30,7 @@ LabAction: TypeAlias = Action[ActionContext, Situation]
 def _can_run(now: Situation) -> str:
     if not now.has_program:
         return "No program yet: {open} opens one"
-    if now.in_past:
+    if now.in_past or now.state is RunPhase.PAUSED:
         return ""
     return "The program is already running: {stop} stops it" if now.state in IN_RUN else ""
 
@@ -343,7 +343,9 @@ def footer_actions(
         word = "" if playing else "play"
     elif now.state == RunPhase.PAUSED:
         word = "go on"
-    return [replace(table[name], footer=word) if word and name == "pause" else table[name] for name in names]
+    # A paused program needs the room for its steps.
+    steps = [name for name in names if name != "run" or now.state != RunPhase.PAUSED or now.in_past]
+    return [replace(table[name], footer=word) if word and name == "pause" else table[name] for name in steps]
 
 
 @lru_cache(maxsize=16)

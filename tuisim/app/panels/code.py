@@ -219,7 +219,6 @@ class Code(Vertical):
     def go_to_error(self) -> None:
         """Move the cursor, and the view, to the line that is marked as an error, if there is one."""
         if self.error_line:
-            self._area.focus()
             self._area.move_to_code(self.error_line)
 
     def show(self, snapshot: Snapshot) -> None:
