@@ -515,6 +515,13 @@ READINGS = {
         reason="The program read the colour sensor 1 time; 2 are needed.",
         text="import time\nx = colorLeft.reflected_light_intensity_pc; time.sleep(1)\n",
     ),
+    "read in a line that pauses a little": Case(
+        "read = { reading = 'color', times = 9 }",
+        (wait(0.25, 2),),
+        "missed",
+        reason="The program read the colour sensor 5 times; 9 are needed.",
+        text="import time\nwhile True: time.sleep(0.05); x = colorLeft.reflected_light_intensity_pc\n",
+    ),
     "read too rarely": Case(
         "read = { reading = 'color', times = 9 }",
         (wait(0.05, 2),),
