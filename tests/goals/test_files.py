@@ -168,6 +168,15 @@ BAD = {
     "world missing": (f"\nworld = 'none.toml'\n{GOOD}", "line 2: world: there is no such file: {folder}/none.toml"),
     "world is itself": (f"world = 'it.toml'\n{GOOD}", "line 1: world: {folder}/it.toml is based on itself"),
     "syntax": ("[[goal]]\nname = \n", "is not TOML: Invalid value (at line 2"),
+    "column that the robot lacks": (
+        "background = 'Empty_Map'\n[[goal]]\nname = 'a'\nwhen = 'ultrasonc_mm < 40'\n",
+        "line 4: goal[1].when: the robot has no column 'ultrasonc_mm' (did you mean ultrasonic_mm?)",
+    ),
+    "column that the robot lacks in another world": (
+        f"background = 'Empty_Map'\n{GOOD}[[also]]\nwhere = 'x'\nstart = {{ x_mm = 5 }}\n"
+        "[[also.goal]]\nname = 'b'\ncount = { of = 'gyr_deg > 5', at_least = 1 }\n",
+        "also[1].goal[1].count: the robot has no column 'gyr_deg' (did you mean gyro_deg",
+    ),
     "another world without words": (f"{GOOD}[[also]]\nstart = {{ x_mm = 5 }}", "line 5: also[1].where: is missing"),
     "another world that is the same": (f"{GOOD}[[also]]\nwhere = 'x'", "line 5: also[1]: is the same world"),
     "another world's goal that there is not": (

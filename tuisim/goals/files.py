@@ -20,6 +20,7 @@ from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest, see_page
 from tuisim.goals.condition import WINDOWED, Condition, ConditionKind, Points, Seconds
 from tuisim.goals.key_lines import line_of_key
+from tuisim.goals.known_columns import check_columns, robots_of
 from tuisim.goals.picture import PictureTable, draw_from_table
 from tuisim.goals.spec import CONDITIONS, MAX_GOALS, Combination, DrawCondition, Goal, Together
 from tuisim.goals.trial_world import TrialWorld, check_names, others_of
@@ -175,7 +176,14 @@ def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
     title = files.convert(data["title"], str, at.at("title")) if "title" in data else base.title if base else ""
     others = _others(data["also"], goals, at.at("also"), path) if "also" in data else ()
     known = base.others if base else ()
-    return GoalsFile(path, title, goals, world.settings, world.program, (*known, *others), world.presses, world.inputs)
+    task = GoalsFile(path, title, goals, world.settings, world.program, (*known, *others), world.presses, world.inputs)
+    # Without a world, programs choose the robot.
+    if world.settings:
+        robots = robots_of(task.worlds)
+        check_columns(own, robots, at.at("goal"))
+        for number, other in enumerate(others, start=1):
+            check_columns(other.own_goals, robots, at.at(f"also[{number}].goal"))
+    return task
 
 
 def _others(data: object, goals: tuple[Goal, ...], at: Location, path: Path) -> tuple[TrialWorld, ...]:
