@@ -245,6 +245,7 @@ def _condition(kind: type[Condition], data: object, at: Location, folder: Path) 
     if isinstance(data, dict) and isinstance(data.get(kind.SHORT), str):
         # A single one needs no list.
         data = {**data, kind.SHORT: [data[kind.SHORT]]}
+    _check_lists(kind, data, at)
     if kind is DrawCondition:
         table = files.convert(data, PictureTable, at)
         try:
@@ -252,6 +253,22 @@ def _condition(kind: type[Condition], data: object, at: Location, folder: Path) 
         except ConfigError as error:
             raise at.at("image").wrong(f"{error}") from None
     return files.convert(data, kind, at)
+
+
+def _check_lists(kind: type[Condition], data: object, at: Location) -> None:
+    """Raise ConfigError for what is no list of texts, or of ranges, with what can be written for it."""
+    for key, value in data.items() if isinstance(data, dict) else ():
+        field = kind.__dataclass_fields__.get(key)
+        if field is None:
+            continue
+        if key == kind.SHORT and field.type == "tuple[str, ...]" and not isinstance(value, list):
+            raise at.at(key).wrong(f"must be text, or a list of texts, got {shown(value)}")
+        if field.type == "tuple[Range, ...]" and not (isinstance(value, list) and all(map(_is_list, value))):
+            raise at.at(key).wrong(f"must be [[from, to]], or one such pair for each, got {shown(value)}")
+
+
+def _is_list(value: object) -> bool:
+    return isinstance(value, list)
 
 
 def _limit(data: object, at: Location) -> str | float:
