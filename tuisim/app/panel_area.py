@@ -29,6 +29,7 @@ from tuisim.app.layout.arrangement import (
 from tuisim.app.layout.tree import PanelLayout
 from tuisim.app.panels import PANELS, NextRunPanel, Panel, TerminalSize
 from tuisim.data_class import dataclass
+from tuisim.terminal.pacer import Throttle
 
 if TYPE_CHECKING:
     from tuisim.app.panels.brick import Brick
@@ -47,6 +48,14 @@ if TYPE_CHECKING:
 PanelWidget = TypeVar("PanelWidget", bound=Widget)
 _STACKED_ROWS = 18
 """In a lower area there is no room for a lesson below a panel that needs the whole width."""
+
+
+_READINGS = ("instrumentation", "arrays", "positioning")
+"""The panels with numbers of an instant, which is the same in all of them and in the time bar."""
+_READINGS_PERIOD_S = 0.1
+"""Values that change faster cannot be read."""
+_ARRAYS_PERIOD_S = 0.25
+"""All pixels of the discs may change at once: with them, a shorter period would saturate a slow link."""
 
 
 class _Mounted(Generic[PanelWidget]):
@@ -106,6 +115,8 @@ class PanelArea(Container):
         """Whether what was kept has been taken up."""
         self.is_stacked = False
         """Whether a roomy panel stands above the lesson, and nothing else is shown."""
+        self._snapshot: Snapshot | None = None
+        self._throttle = Throttle(self, _READINGS_PERIOD_S, self._show_readings)
         self._roomy: tuple[str, int, int] | None = None
         """The panel that needs a number of columns and rows."""
 
@@ -397,7 +408,19 @@ class PanelArea(Container):
         self.front = self.focused_panel() or self.front
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment in every panel on the screen."""
-        for panel in self.on_screen():
-            if cast(Widget, panel).is_attached:
-                panel.show(snapshot)
+        """Show a moment in every panel on the screen; the readings follow a few times per second, all together."""
+        before, self._snapshot = self._snapshot, snapshot
+        for panel, widget in self.panels.items():
+            if widget.display and widget.is_attached and panel not in _READINGS:
+                cast(Panel, widget).show(snapshot)
+        self._throttle.period_s = _ARRAYS_PERIOD_S if self.shown("arrays") else _READINGS_PERIOD_S
+        self._throttle.ask(at_once=snapshot.has_stopped_since(before))
+
+    def _show_readings(self) -> None:
+        if (now := self._snapshot) is None:
+            return
+        for panel in _READINGS:
+            if self.shown(panel) and self.panels[panel].is_attached:
+                cast(Panel, self.panels[panel]).show(now)
+        if self.world is not None:
+            self.world.time_bar.show(now)

@@ -75,15 +75,22 @@ def _can_draw_pixels(now: Situation) -> str:
     return "" if now.has_pixels else "This terminal draws no pixels, as far as it tells"
 
 
+def _can_nudge(now: Situation) -> str:
+    # A program that waits may ask the user to place the robot.
+    if now.looks_back or now.state not in (RunPhase.STARTING, RunPhase.RUNNING):
+        return ""
+    return "{pause} pauses the program, then keys move the robot; the mouse does at any time"
+
+
 def _nudge(key: str, words: str, forward: tuple[float, float]) -> LabAction:
     do = partial(robot.nudge, right_mm=forward[0], up_mm=forward[1], turn_deg=0.0)
-    return Action(f"nudge-{key.replace('+', '-')}", key, f"Move the robot {words}", ROBOT, do)
+    return Action(f"nudge-{key.replace('+', '-')}", key, f"Move the robot {words}", ROBOT, do, _can_nudge)
 
 
 def _turn(letter: str, arrow: str, words: str, turn_deg: float) -> LabAction:
     # Some terminals send ctrl and an arrow as the arrow alone.
     do = partial(robot.nudge, right_mm=0.0, up_mm=0.0, turn_deg=turn_deg)
-    return Action(f"nudge-ctrl-{arrow}", f"{letter},ctrl+{arrow}", f"Turn the robot {words}", ROBOT, do)
+    return Action(f"nudge-ctrl-{arrow}", f"{letter},ctrl+{arrow}", f"Turn the robot {words}", ROBOT, do, _can_nudge)
 
 
 def _nudges() -> list[LabAction]:
