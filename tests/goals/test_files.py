@@ -127,7 +127,10 @@ BAD = {
         goal("print = { lines = ['x', 'y', 'z'], x_mm = [[1, 5], [2, 6]] }"),
         "line 7: goal[2].print.x_mm: must have one entry, or 3, has 2",
     ),
-    "unknown reading": (goal("read = { reading = 'colour' }"), "read.reading: no such value 'colour' (one of color"),
+    "reading that is misspelt in a log": (
+        goal("read = { reading = 'colour' }"),
+        "read.reading: no such value 'colour' (one of color",
+    ),
     "as read of the wheels": (
         goal("log = { name = 'x', levels = [1], reading = 'motor', as_read = true }"),
         "log.as_read: is only for readings of colour sensors",
@@ -168,6 +171,31 @@ BAD = {
     "world missing": (f"\nworld = 'none.toml'\n{GOOD}", "line 2: world: there is no such file: {folder}/none.toml"),
     "world is itself": (f"world = 'it.toml'\n{GOOD}", "line 1: world: {folder}/it.toml is based on itself"),
     "syntax": ("[[goal]]\nname = \n", "is not TOML: Invalid value (at line 2"),
+    "unknown reading": (
+        "[[goal]]\nname = 'a'\nlog = { name = 'a', levels = [1], reading = 'colour' }\n",
+        "line 3: goal[1].log.reading: no such value 'colour' (one of color, ultrasonic, gyro, motor)",
+    ),
+    "range without pairs": (
+        "[[goal]]\nname = 'a'\nread = { reading = 'color', x_mm = [1, 2] }\n",
+        "line 3: goal[1].read.x_mm: must be [[from, to]], or one such pair for each, got [1, 2]",
+    ),
+    "lines that are a number": (
+        "[[goal]]\nname = 'a'\nprint = 5\n",
+        "line 3: goal[1].print.lines: must be text, or a list of texts, got 5",
+    ),
+    "another world's mat that is missing": (
+        f"{GOOD}[[also]]\nwhere = 'x'\nbackground = 'nope.png'\n",
+        "line 7: also[1].background: {folder}/nope.png: cannot be read: No such file",
+    ),
+    "column that the robot lacks": (
+        "background = 'Empty_Map'\n[[goal]]\nname = 'a'\nwhen = 'ultrasonc_mm < 40'\n",
+        "line 4: goal[1].when: the robot has no column 'ultrasonc_mm' (did you mean ultrasonic_mm?)",
+    ),
+    "column that the robot lacks in another world": (
+        f"background = 'Empty_Map'\n{GOOD}[[also]]\nwhere = 'x'\nstart = {{ x_mm = 5 }}\n"
+        "[[also.goal]]\nname = 'b'\ncount = { of = 'gyr_deg > 5', at_least = 1 }\n",
+        "also[1].goal[1].count: the robot has no column 'gyr_deg' (did you mean gyro_deg",
+    ),
     "another world without words": (f"{GOOD}[[also]]\nstart = {{ x_mm = 5 }}", "line 5: also[1].where: is missing"),
     "another world that is the same": (f"{GOOD}[[also]]\nwhere = 'x'", "line 5: also[1]: is the same world"),
     "another world's goal that there is not": (

@@ -33,10 +33,15 @@ class Case:
     world: WorldSpec = EMPTY
     text: str = ""
     end: End = End.FINISHED
+    more: str = ""
+    """Further goals."""
 
 
 ALONG = (ahead(400, line=3), wait(0.5, line=4))
 """From x 500 to x 900, in 2.27 s."""
+
+LAST_TICK = "[[goal]]\nname = 'last'\nreach = { x_mm = 900, for_s = 0.61 }\n"
+"""Is met in the last tick of that."""
 
 BOX = Obstacle(800, 400, 100, 200)
 
@@ -76,6 +81,12 @@ PLACES = {
         "inside = { x_mm = 0, y_mm = 0, width_mm = 50, height_mm = 50 }", ALONG, "missed", 0.0, "was not in the area", 0
     ),
     "reach at the end": Case("reach = { x_mm = 900, at_end = true }", ALONG, "met", 2.77, line=4),
+    "reach at the end after the last tick": Case(
+        "reach = { x_mm = 900, at_end = true }\nafter = 'last'", ALONG, "met", 2.77, more=LAST_TICK
+    ),
+    "reach not at the end after the last tick": Case(
+        "reach = { x_mm = 800, at_end = true }\nafter = 'last'", ALONG, "missed", reason="99 mm right", more=LAST_TICK
+    ),
     "reach and stay": Case("reach = { x_mm = 900, for_s = 0.3 }", ALONG, "met", 2.46, line=4),
     "reach and not stay": Case("reach = { x_mm = 700, for_s = 0.3 }", ALONG, "missed", 2.77, "at most 0.22 s", 3),
     "pass": Case("pass = [[600, 500], [800, 500]]", ALONG, "met", 1.60, line=3),
@@ -504,6 +515,13 @@ READINGS = {
         reason="The program read the colour sensor 1 time; 2 are needed.",
         text="import time\nx = colorLeft.reflected_light_intensity_pc; time.sleep(1)\n",
     ),
+    "read in a line that pauses a little": Case(
+        "read = { reading = 'color', times = 9 }",
+        (wait(0.25, 2),),
+        "missed",
+        reason="The program read the colour sensor 5 times; 9 are needed.",
+        text="import time\nwhile True: time.sleep(0.05); x = colorLeft.reflected_light_intensity_pc\n",
+    ),
     "read too rarely": Case(
         "read = { reading = 'color', times = 9 }",
         (wait(0.05, 2),),
@@ -540,10 +558,10 @@ CASES = PLACES | OUTPUT | READINGS
 
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES)
 def test_condition(case: Case, home: Path, tmp_path: Path) -> None:
-    (goal,) = goals_of(tmp_path, f"[[goal]]\nname = 'it'\n{case.condition}\n")
+    goals = goals_of(tmp_path, f"[[goal]]\nname = 'it'\n{case.condition}\n{case.more}")
     run = Run(RunStore(), case.world, case.text)
     run.do(case.steps)
-    (found,) = judge([goal], run.end(case.end))
+    found, *_ = judge(goals, run.end(case.end))
     assert found.state == case.state, found
     assert case.reason in found.reason
     assert (found.reason == "") == (found.state == "met")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from tuisim.goals.provenance import Provenance, provenance_of
@@ -76,7 +78,7 @@ PAUSES = {
 
 @pytest.mark.parametrize(("text", "pauses"), PAUSES.items(), ids=PAUSES)
 def test_a_move_of_pybricks_that_blocks_also_lets_time_pass(text: str, pauses: bool) -> None:
-    assert Provenance(text, Reading.GYRO).pausing_lines() == ({1} if pauses else set())
+    assert Provenance(text, Reading.GYRO).pauses_s() == ({1: math.inf} if pauses else {})
 
 
 @pytest.mark.parametrize("text", ["print(robot.state()[0])", "print(arm.run_until_stalled(-100))"])
@@ -92,3 +94,64 @@ def test_text_that_is_no_python() -> None:
 def test_line_that_prints_twice_is_about_what_has_the_name(name: str, given: bool) -> None:
     found = Provenance("print('L: 5'); print(f'G: {colorLeft.color:.0f}')", Reading.COLOR)
     assert found.gives(1, name) is given
+
+
+def test_print_that_goes_on_is_one_with_the_next() -> None:
+    found = Provenance("print('G: ', end=''); print(colorLeft.color)", Reading.COLOR)
+    assert found.gives(1, "G")
+
+
+PAUSE_S = {
+    "sleep(0.05); x = colorLeft.color": {1: 0.05},
+    "wait(50); x = eye.color(); time.sleep(1)": {1: 1.05},
+    "sleep(t); x = colorLeft.color": {1: math.inf},
+    "sleep(0.05)\nx = colorLeft.color": {},
+}
+
+
+@pytest.mark.parametrize(("text", "pauses_s"), PAUSE_S.items(), ids=PAUSE_S)
+def test_how_long_a_line_that_reads_pauses(text: str, pauses_s: dict[int, float]) -> None:
+    assert Provenance(text, Reading.COLOR).pauses_s() == pytest.approx(pauses_s)
+
+
+MODULE = """\
+def light(sensor):
+    return sensor.rgb[0]
+def twice(sensor):
+    return 2 * light(sensor)
+def greys(sensor):
+    while True:
+        yield sensor.rgb[0]
+def show(sensor):
+    print(sensor.rgb[0])
+def tell(sensor):
+    if sensor.color == 5:
+        print('Red')
+def lie(sensor):
+    sensor.color
+    print('Grey: 50.2')
+def drive(color):
+    return 50.2
+class Eye:
+    @property
+    def level(self):
+        return self.sensor.rgb[0]
+"""
+USES = {
+    "value": ("print(helper.light(colorLeft))", 1, VALUE, {1}),
+    "of another function": ("x = helper.twice(colorLeft)\nprint(x)", 2, VALUE, {1}),
+    "imported": ("from helper import light\nx = light(colorLeft)\nprint(x)", 3, VALUE, {2}),
+    "generator": ("for x in helper.greys(colorLeft):\n    print(x)", 2, VALUE, {1}),
+    "kept generator": ("g = helper.greys(colorLeft)\nx = next(g)\nfor y in g:\n    print(y)", 4, VALUE, {1, 2, 3}),
+    "property": ("print(eye.level)", 1, VALUE, {1}),
+    "printed there": ("helper.show(colorLeft)", 1, VALUE, {1}),
+    "decided there": ("helper.tell(colorLeft)", 1, DECIDED, {1}),
+    "not computed there": ("helper.lie(colorLeft)", 1, FREE, {1}),
+    "nothing read there": ("print(helper.drive(5))", 1, FREE, set()),
+}
+
+
+@pytest.mark.parametrize(("text", "line", "depends", "lines"), USES.values(), ids=USES)
+def test_what_a_module_reads(text: str, line: int, depends: tuple[bool, bool], lines: set[int]) -> None:
+    found = Provenance(text, Reading.COLOR, [MODULE, "def broken("])
+    assert (found.gives(line), found.decides(line), set(found.lines())) == (*depends, lines)

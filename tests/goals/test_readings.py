@@ -45,3 +45,26 @@ def test_each_reading_of_a_pybricks_program_counts(tmp_path: Path, here: Command
     lines = here("goals", "check", "goals.toml").stdout.splitlines()
     marks = [line.split()[:2] for line in lines if line.lstrip()[:1] in "✓✗" and line.strip()]
     assert marks == [["✓", "log"], ["✓", "print"], ["✓", "read"], ["✗", "read_more"]], lines
+
+
+HELPER = """\
+def light(sensor):
+    return sensor.reflected_light_intensity_pc
+"""
+MAIN = """\
+import helper
+from time import sleep
+for _ in range(5):
+    sleep(0.05); light = helper.light(colorLeft)
+    print("Light: ", end=""); print(light)
+"""
+
+
+def test_readings_of_an_own_module_count(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "reads.py").write_text(MAIN)
+    (tmp_path / "helper.py").write_text(HELPER)
+    (tmp_path / "goals.toml").write_text(GOALS)
+    assert here("run", "goals.toml").returncode == 0
+    lines = here("goals", "check", "goals.toml").stdout.splitlines()
+    marks = [line.split()[:2] for line in lines if line.lstrip()[:1] in "✓✗" and line.strip()]
+    assert marks == [["✓", "log"], ["✓", "print"], ["✓", "read"], ["✗", "read_more"]], lines

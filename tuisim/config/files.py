@@ -396,6 +396,9 @@ def _walk(data: object, info: types.Type, at: Location) -> Iterator[tuple[str, t
 def _mismatch(value: object, info: types.Type, at: Location) -> ConfigError:
     from msgspec import inspect as types
 
+    if isinstance(info, types.UnionType):
+        kinds = [member for member in info.types if not isinstance(member, types.NoneType)]
+        info = kinds[0] if len(kinds) == 1 else info
     if isinstance(info, types.EnumType):
         return at.wrong(f"no such value {shown(value)}", f"one of {', '.join(each.value for each in info.cls)}")
     return at.wrong(f"must be {_expected(info)}, got {shown(value)}")

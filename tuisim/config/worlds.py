@@ -254,7 +254,13 @@ def _mat(world: Mapping[str, Any], at: Location, resolve: Resolver, mats: str | 
         word = world["background"]
         found["background"] = resolve(word) if os.sep in word or Path(word).suffix else word
         with files.errors_at(at.file, "background"):
-            find_mat(found["background"], found.get("mats", mats))
+            try:
+                find_mat(found["background"], found.get("mats", mats))
+            except ConfigError as error:
+                if not error.file:
+                    raise
+                # What is wrong is an image that this file names.
+                raise at.at("background", type(error)).wrong(f"{error}") from error.__cause__
     return found
 
 

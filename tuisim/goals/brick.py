@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from tuisim.core.conditions import Operator, ValueCondition, run_condition_in
-from tuisim.core.spec import BUTTONS
+from tuisim.core.conditions import Operator, ValueCondition, ValueSource, run_condition_in
+from tuisim.core.sensors import named_column
+from tuisim.core.spec import BUTTONS, RobotSpec
 from tuisim.protocol import SetButtons, UserAction
 from tuisim.runs.brick_state import LED_NAMES, BrickState, face_after
 from tuisim.runs.records import OutputRow, Stream
@@ -28,6 +30,17 @@ BRICK_COLUMNS = (*_LEDS, *_BUTTONS, _DARK)
 BRICK_STREAMS = (Stream.LED, Stream.DISPLAY, *BRICK_TEXTS.values())
 _GREEN = 255
 """Until the program sets a LED, all are green."""
+
+
+def with_column(wanted: ValueCondition, robot: RobotSpec) -> ValueCondition:
+    """Return a condition with the name of its column.
+
+    Raises:
+        ConfigError: the robot has no such column.
+    """
+    if wanted.source is not ValueSource.COLUMN or wanted.is_momentary or wanted.name in (*BRICK_COLUMNS, *BRICK_TEXTS):
+        return wanted
+    return replace(wanted, name=named_column(wanted.name, robot))
 
 
 def goal_condition_in(text: str) -> ValueCondition | None:

@@ -150,7 +150,7 @@ def find_used(condition: UseCondition, evidence: Evidence, span: EvidenceSpan) -
     missing = [call for call, lines in found.items() if not lines]
     if missing:
         return Occurrence(None, f"The program does not call {' and '.join(missing)}.")
-    known = provenance_of(evidence.program.text, condition.reading) if condition.reading else None
+    known = provenance_of(evidence.program.text, condition.reading, evidence.modules) if condition.reading else None
     if condition.reading is not None and known is not None:
         for call, lines in found.items():
             if not any(map(known.decides, lines)):

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.core.collision import Solids
 from tuisim.core.conditions import Operator, ValueCondition, ValueSource
-from tuisim.core.sensors import named_column
 from tuisim.core.spec import WorldSpec
 from tuisim.errors import ConfigError, counted
-from tuisim.goals.brick import BRICK_COLUMNS
+from tuisim.goals.brick import with_column
 from tuisim.goals.comparisons import CountCondition, KeepCondition, WhenCondition
 from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.goals.found import Occurrence, share_words
@@ -23,17 +22,6 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, Any]
 
 
-def _named(wanted: ValueCondition, evidence: Evidence) -> ValueCondition:
-    """Return a condition with the name of its column.
-
-    Raises:
-        ConfigError: the robot has no such column.
-    """
-    if wanted.source is not ValueSource.COLUMN or wanted.is_momentary or wanted.name in BRICK_COLUMNS:
-        return wanted
-    return replace(wanted, name=named_column(wanted.name, evidence.spec.robot))
-
-
 def find_when(condition: WhenCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find the first tick at which all conditions are true."""
     import numpy as np
@@ -43,7 +31,7 @@ def find_when(condition: WhenCondition, evidence: Evidence, span: EvidenceSpan) 
     never: list[str] = []
     for text, wanted in zip(condition.comparisons, condition.conditions, strict=True):
         try:
-            named = _named(wanted, evidence)
+            named = with_column(wanted, evidence.spec.robot)
             here = evidence.held(named)[ticks]
         except (ConfigError, ValueError) as error:
             return _unfit(text, wanted, error)
@@ -82,7 +70,7 @@ def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan)
     parts: list[tuple[Array, str]] = []
     for text, wanted in zip(condition.comparisons, condition.conditions, strict=True):
         try:
-            named = _named(wanted, evidence)
+            named = with_column(wanted, evidence.spec.robot)
             true = evidence.held(named)
             if named.source is ValueSource.SAMPLE:
                 # Between two samples there is nothing to look at.
@@ -137,7 +125,7 @@ def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceS
     """Find when something had happened too often, or at the end of a span that it had not often enough."""
     wanted = condition.condition
     try:
-        named = _named(wanted, evidence)
+        named = with_column(wanted, evidence.spec.robot)
         moments = _moments(named, evidence, span)
     except (ConfigError, ValueError) as error:
         unfit = _unfit(condition.of, wanted, error)

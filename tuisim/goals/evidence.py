@@ -18,7 +18,7 @@ from tuisim.runs.frames import column_values, held, tick_times_s
 from tuisim.runs.records import SAMPLE_STREAMS, OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun, open_mat
 from tuisim.runs.samples import Sample, rows_when, samples_of
-from tuisim.runs.side_files import read_actions
+from tuisim.runs.side_files import read_actions, read_modules
 
 if TYPE_CHECKING:
     import numpy as np
@@ -105,6 +105,15 @@ class Evidence:
         """The rows that the program printed or read, in order, up to `MAX_ROWS`."""
         kept = (Stream.STDOUT, Stream.STDERR, Stream.INPUT, Stream.DATA)
         return list(islice((row for row in self._run.output.rows() if row.stream in kept), MAX_ROWS))
+
+    @cached_property
+    def modules(self) -> tuple[str, ...]:
+        """The texts of the program's own modules that it has imported.
+
+        Raises:
+            LogError: the recording is damaged.
+        """
+        return tuple(module.text for module in read_modules(self._run.folder) if module.text)
 
     @cached_property
     def samples(self) -> list[tuple[int, Sample]]:

@@ -20,6 +20,7 @@ from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest, see_page
 from tuisim.goals.condition import WINDOWED, Condition, ConditionKind, Points, Seconds
 from tuisim.goals.key_lines import line_of_key
+from tuisim.goals.known_columns import check_columns, robots_of
 from tuisim.goals.picture import PictureTable, draw_from_table
 from tuisim.goals.spec import CONDITIONS, MAX_GOALS, Combination, DrawCondition, Goal, Together
 from tuisim.goals.trial_world import TrialWorld, check_names, others_of
@@ -175,7 +176,14 @@ def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
     title = files.convert(data["title"], str, at.at("title")) if "title" in data else base.title if base else ""
     others = _others(data["also"], goals, at.at("also"), path) if "also" in data else ()
     known = base.others if base else ()
-    return GoalsFile(path, title, goals, world.settings, world.program, (*known, *others), world.presses, world.inputs)
+    task = GoalsFile(path, title, goals, world.settings, world.program, (*known, *others), world.presses, world.inputs)
+    # Without a world, programs choose the robot.
+    if world.settings:
+        robots = robots_of(task.worlds)
+        check_columns(own, robots, at.at("goal"))
+        for number, other in enumerate(others, start=1):
+            check_columns(other.own_goals, robots, at.at(f"also[{number}].goal"))
+    return task
 
 
 def _others(data: object, goals: tuple[Goal, ...], at: Location, path: Path) -> tuple[TrialWorld, ...]:
@@ -237,6 +245,7 @@ def _condition(kind: type[Condition], data: object, at: Location, folder: Path) 
     if isinstance(data, dict) and isinstance(data.get(kind.SHORT), str):
         # A single one needs no list.
         data = {**data, kind.SHORT: [data[kind.SHORT]]}
+    _check_lists(kind, data, at)
     if kind is DrawCondition:
         table = files.convert(data, PictureTable, at)
         try:
@@ -244,6 +253,22 @@ def _condition(kind: type[Condition], data: object, at: Location, folder: Path) 
         except ConfigError as error:
             raise at.at("image").wrong(f"{error}") from None
     return files.convert(data, kind, at)
+
+
+def _check_lists(kind: type[Condition], data: object, at: Location) -> None:
+    """Raise ConfigError for what is no list of texts, or of ranges, with what can be written for it."""
+    for key, value in data.items() if isinstance(data, dict) else ():
+        field = kind.__dataclass_fields__.get(key)
+        if field is None:
+            continue
+        if key == kind.SHORT and field.type == "tuple[str, ...]" and not isinstance(value, list):
+            raise at.at(key).wrong(f"must be text, or a list of texts, got {shown(value)}")
+        if field.type == "tuple[Range, ...]" and not (isinstance(value, list) and all(map(_is_list, value))):
+            raise at.at(key).wrong(f"must be [[from, to]], or one such pair for each, got {shown(value)}")
+
+
+def _is_list(value: object) -> bool:
+    return isinstance(value, list)
 
 
 def _limit(data: object, at: Location) -> str | float:

@@ -126,7 +126,7 @@ def _fault(condition: PrintCondition, count: int, row: OutputRow, since: int, ev
     if condition.reading is None:
         return ""
     noun = NOUNS[condition.reading]
-    known = provenance_of(evidence.program.text, condition.reading)
+    known = provenance_of(evidence.program.text, condition.reading, evidence.modules)
     if known is not None and not known.decides(row.line):
         return f"{when}, but nothing that the {noun} read decides that: line {row.line} prints it in any case."
     if not _read_between(condition.reading, since, row.tick, evidence):
@@ -232,7 +232,7 @@ def _not_measured(condition: LogCondition, count: int, sample: Sample, evidence:
     if condition.counts and printed != sample.value:
         return f"{value}, but the program had printed {counted(printed, 'sample')} {condition.counts}."
     reading, place = condition.reading, place_of(condition, count)
-    known = provenance_of(evidence.program.text, reading) if reading else None
+    known = provenance_of(evidence.program.text, reading, evidence.modules) if reading else None
     if reading is not None and known is not None and not known.gives(sample.line, sample.name):
         return f"{value}, but line {sample.line} does not compute it from what the {NOUNS[reading]} read."
     if reading is None or reading is Reading.MOTOR:

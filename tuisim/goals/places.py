@@ -35,6 +35,9 @@ def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan
     import numpy as np
 
     records, first = evidence.records[span.ticks], span.first_tick
+    if condition.at_end and span.over and not len(records):
+        # The goal before it was met in the last tick: the robot is now where it is at the end.
+        records = evidence.records[-1:]
     if not len(records):
         return Occurrence(None, "The robot was not simulated at that time.")
     away_mm, turned_deg = _away_mm(condition, records), _turned_deg(condition, records)

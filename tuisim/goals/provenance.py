@@ -8,6 +8,7 @@ literal 0 depends on nothing.
 from __future__ import annotations
 
 import ast
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
 from functools import lru_cache
@@ -35,6 +36,7 @@ _PAUSES = (
 )
 """How the names begin of functions and methods that let time pass."""
 _LEAVES = (ast.Break, ast.Continue, ast.Return, ast.Raise, ast.While)
+_GIVES = (ast.Return, ast.Yield, ast.YieldFrom)
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
@@ -49,41 +51,93 @@ class _By(IntEnum):
 
 
 class Provenance:
-    """What depends on a kind of reading in the text of a program.
+    """What depends on a kind of reading in the text of a program, whose lines stand for what they call in its modules.
 
     Args:
         text: The program.
         reading: The kind.
+        modules: The texts of its own modules.
 
     Raises:
         SyntaxError, ValueError, RecursionError: the program is not Python.
     """
 
-    def __init__(self, text: str, reading: Reading) -> None:
+    def __init__(self, text: str, reading: Reading, modules: Sequence[str] = ()) -> None:
         self._wanted = READING_NAMES[reading]
         self._tree = ast.parse(text)
-        self._functions = {node.name: node for node in ast.walk(self._tree) if isinstance(node, _Function)}
+        self._modules = [tree for module in modules if (tree := _parsed(module))]
+        functions = [node for tree in (*self._modules, self._tree) for node in ast.walk(tree)
+                     if isinstance(node, _Function)]  # fmt: skip
+        self._functions = {node.name: [one for one in functions if one.name == node.name] for node in functions}
         self._derived: set[str] = set()
         """Variables, attributes and functions whose value depends on a reading."""
         self._decided: set[str] = set()
         """Functions that are called where a reading decides."""
+        self._deciding: set[str] = set()
+        """Functions of modules in which a reading decides that something is printed."""
         self._found: list[tuple[ast.AST, bool, bool]] = []
         """Each simple statement, or head of another: does a reading give its value, does one decide that it comes?"""
-        known = (-1, -1)
-        while known != (len(self._derived), len(self._decided)):
-            known = (len(self._derived), len(self._decided))
+        sets = (self._derived, self._decided, self._deciding)
+        known: list[int] = []
+        while known != (now := [len(one) for one in sets]):
+            known = now
+            for module in self._modules:
+                self._found.clear()
+                self._block(module.body, _By.NOTHING)
+                self._note_prints(module)
             self._found.clear()
             self._block(self._tree.body, _By.NOTHING)
 
-    def lines(self) -> frozenset[int]:
-        """Return the lines of the program that take such a reading."""
-        nodes = (node for node in ast.walk(self._tree) if isinstance(node, ast.Attribute) and node.attr in self._wanted)
-        return frozenset(line for node in nodes for line in range(node.lineno, (node.end_lineno or node.lineno) + 1))
+    def _note_prints(self, module: ast.Module) -> None:
+        """Let the calls of a module's functions that print stand for what these print."""
+        inside = [(one, set(map(id, ast.walk(one)))) for one in ast.walk(module) if isinstance(one, _Function)]
+        for node, value, decided in self._found:
+            called = {_called(call) for call in _calls(node)}
+            names = {one.name for one, nodes in inside if id(node) in nodes}
+            if value and called & (_PRINTS | self._derived):
+                self._derived |= names
+            if (decided and called & _PRINTS) or called & self._deciding:
+                self._deciding |= names
 
-    def pausing_lines(self) -> frozenset[int]:
-        """Return those of `lines` that also pause or drive: the time that passes in them is not that of readings."""
-        pauses = [node.lineno for node in ast.walk(self._tree) if isinstance(node, ast.Call) and _pauses(node)]
-        return self.lines() & frozenset(pauses)
+    def lines(self) -> frozenset[int]:
+        """Return the lines of the program that take such a reading, or call a function of a module that does."""
+        takers = self._takers()
+        nodes: list[ast.AST] = []
+        for node in ast.walk(self._tree):
+            match node:
+                case ast.Attribute(attr=name) if name in self._wanted or name in takers:
+                    nodes.append(node)
+                case ast.Call() if _called(node) in takers:
+                    nodes.append(node)
+                # A generator goes on when its next value is asked for.
+                case ast.For(iter=ast.Name() as part) | ast.Call(func=ast.Name(id="next"), args=[part, *_]):
+                    if takers and self._is_derived(part):
+                        nodes.append(part)
+        return frozenset(line for node in nodes for line in _lines(node))
+
+    def _takers(self) -> frozenset[str]:
+        """Return the names of the functions of modules that take such a reading."""
+        inside = []
+        for one in (node for module in self._modules for node in ast.walk(module) if isinstance(node, _Function)):
+            attributes = {part.attr for part in ast.walk(one) if isinstance(part, ast.Attribute)}
+            inside.append((one.name, attributes & self._wanted, attributes | _names(one)))
+        found: frozenset[str] = frozenset()
+        while more := {name for name, reads, used in inside if reads or used & found} - found:
+            found |= more
+        return found
+
+    def pauses_s(self) -> dict[int, float]:
+        """Return those of `lines` that also pause or drive: the time that passes in them is not that of readings.
+
+        Returns:
+            For each line for how long it pauses; infinity if the text does not say that in a number.
+        """
+        found: dict[int, float] = {}
+        for node in ast.walk(self._tree):
+            if isinstance(node, ast.Call) and _pauses(node):
+                found[node.lineno] = found.get(node.lineno, 0.0) + _pause_s(node)
+        lines = self.lines()
+        return {line: pause_s for line, pause_s in found.items() if line in lines}
 
     def gives(self, line: int, name: str = "") -> bool:
         """Return whether what a line prints is computed from a reading; also if the line is not known.
@@ -101,8 +155,10 @@ class Provenance:
     def _printed_at(self, line: int, name: str = "") -> list[tuple[bool, bool]]:
         found = [each for each in self._found if each[0].lineno <= line <= (each[0].end_lineno or 0)]  # type: ignore[attr-defined]
         prints = [each for each in found if _PRINTS & {_called(call) for call in _calls(each[0])}]
-        named = [each for each in prints if name and _says(each[0], name)]
-        return [(value, decided) for _, value, decided in named or prints or found]
+        groups = _printed_together(prints)
+        named = [group for group in groups if name and any(_says(node, name) for node, _, _ in group)]
+        return [(any(value for _, value, _ in group), any(decided for *_, decided in group))
+                for group in named or groups or [[each] for each in found]]  # fmt: skip
 
     # Walking
 
@@ -160,13 +216,15 @@ class Provenance:
                 self._assign(target)
             case ast.AnnAssign(target=target) if value:
                 self._assign(target)
-            case ast.Return() if value or by is _By.LOOP:
-                self._derived |= {name for name, one in self._functions.items() if node in ast.walk(one)}
+        if (value or by is _By.LOOP) and any(isinstance(part, _GIVES) for part in ast.walk(node)):
+            functions = (one for same in self._functions.values() for one in same)
+            self._derived |= {one.name for one in functions if node in ast.walk(one)}
 
     def _take(self, node: ast.AST, by: _By) -> bool:
         """Note a piece of the program, and what its calls pass on. Return whether its value depends on a reading."""
         value = any(map(self._is_derived, _parts_that_count(node)))
-        self._found.append((node, value, by is not _By.NOTHING))
+        decides = any(_called(call) in self._deciding for call in _calls(node))
+        self._found.append((node, value, decides or by is not _By.NOTHING))
         for part in ast.walk(node):
             if isinstance(part, ast.NamedExpr) and any(map(self._is_derived, ast.walk(part.value))):
                 self._assign(part.target)
@@ -181,8 +239,8 @@ class Provenance:
         if by is not _By.NOTHING:
             self._decided |= ({name} | {one.id for one in given if isinstance(one, ast.Name)}) & set(self._functions)
         if derived and name in self._functions:
-            arguments = self._functions[name].args
-            self._derived |= {one.arg for one in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)}
+            for arguments in (one.args for one in self._functions[name]):
+                self._derived |= {one.arg for one in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)}
         if derived and name in _KEEPS and isinstance(call.func, ast.Attribute):
             self._assign(call.func.value)
 
@@ -237,6 +295,43 @@ def _says(node: ast.AST, name: str) -> bool:
     return any(isinstance(text, str) and name in text for text in texts)
 
 
+_Found = tuple[ast.AST, bool, bool]
+
+
+def _printed_together(prints: Sequence[_Found]) -> list[list[_Found]]:
+    """Return statements that print in groups, each of which ends its line."""
+    groups: list[list[_Found]] = []
+    goes_on = False
+    for each in prints:
+        if goes_on:
+            groups[-1].append(each)
+        else:
+            groups.append([each])
+        goes_on = any(keyword.arg == "end" for call in _calls(each[0]) for keyword in call.keywords)
+    return groups
+
+
+def _lines(node: ast.AST) -> range:
+    """Return the lines of a statement or an expression."""
+    return range(node.lineno, (node.end_lineno or node.lineno) + 1)  # type: ignore[attr-defined]
+
+
+def _parsed(text: str) -> ast.Module | None:
+    """Return the tree of a module; None if it is not Python: nothing of it can run."""
+    try:
+        return ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+
+
+def _pause_s(call: ast.Call) -> float:
+    """Return for how long a call pauses, infinity if it is not `sleep` or `wait` of a number."""
+    match call.args:
+        case [ast.Constant(value=int() | float() as number)] if number >= 0:
+            return {"sleep": number, "wait": number / 1000}.get(_called(call), math.inf)
+    return math.inf
+
+
 def _pauses(call: ast.Call) -> bool:
     """Return whether a call lets time pass besides readings, by its name."""
     # As functions, these may be a program's own; `say` of the course does not wait.
@@ -254,9 +349,9 @@ def _called(call: ast.Call) -> str:
 
 
 @lru_cache(maxsize=16)
-def provenance_of(text: str, reading: Reading) -> Provenance | None:
+def provenance_of(text: str, reading: Reading, modules: tuple[str, ...] = ()) -> Provenance | None:
     """Return what depends on a kind of reading in a program; None if the text is not Python."""
     try:
-        return Provenance(text, reading)
+        return Provenance(text, reading, modules)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +27,8 @@ NOUNS: Mapping[Reading, str] = {
 }
 _ABOVE, _BELOW = 0.5, 1.0
 """How far a printed level may be off the reading: programs round it, or cut off what is behind the point."""
+_SHORT_S = 0.1
+"""A pause that hardly changes where the robot is."""
 _NOISE_SHARE = 0.1
 """The same for each percent of the light's noise."""
 
@@ -41,19 +44,27 @@ def read_ticks(reading: Reading, evidence: Evidence) -> Array:
 
     name = f"{reading} is read"
     if name not in evidence.memo:
-        known = provenance_of(evidence.program.text, reading)
+        known = provenance_of(evidence.program.text, reading, evidence.modules)
         evidence.memo[name] = np.flatnonzero(_reads(known, evidence) if known else [])
     found: Array = evidence.memo[name]
     return found
 
 
 def _reads(known: Provenance, evidence: Evidence) -> Array:
-    """Return whether a reading was taken in each tick; where a line also pauses, in the first of its ticks."""
+    """Return whether a reading was taken in each tick.
+
+    Where a line also pauses, it was in the first of its ticks, and again after each pause, if that is short.
+    """
     import numpy as np
 
-    lines = evidence.records["line"]
+    lines, ticks = evidence.records["line"], np.arange(len(evidence.records))
+    found: Array = np.isin(lines, sorted(known.lines()))
     came = np.concatenate(([True], lines[1:] != lines[:-1]))
-    found: Array = np.isin(lines, sorted(known.lines())) & (came | ~np.isin(lines, sorted(known.pausing_lines())))
+    since = ticks - np.maximum.accumulate(np.where(came, ticks, 0))
+    for line, pause_s in known.pauses_s().items():
+        # A loop in one line does not show when it comes again.
+        step = max(1, math.ceil(pause_s * evidence.spec.profile.tick_hz)) if pause_s <= _SHORT_S else len(ticks)
+        found &= (lines != line) | (since % step == 0)
     return found
 
 

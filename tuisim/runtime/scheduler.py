@@ -270,7 +270,8 @@ class Scheduler:
         try:
             wallclock.start_new_thread(run, ())
         except RuntimeError as error:
-            raise RuntimeError(f"{error}: there are {count} already, and this machine allows no more") from None
+            # Not how many there are: what this machine allows depends on what else runs on it.
+            raise RuntimeError(f"{error}: this machine allows no more") from None
         self._alive.append(task)
         self._ready.append(task)
         return task
