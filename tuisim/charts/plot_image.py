@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tuisim.charts.canvas import BRAILLE, Curve
-from tuisim.charts.traces import min_max
+from tuisim.charts import axes
+from tuisim.charts.canvas import BRAILLE, Curve, in_turns
+from tuisim.charts.traces import min_max, within
 from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
@@ -59,9 +60,7 @@ class Plot:
 
     def down(self, values: FloatArray, height: int) -> _Points:
         """Return how far from the top of the canvas values are, for cells of that height."""
-        # As `axes.row_labels`.
-        low, high = self.y_limits
-        return (high - values) / (high - low) * (self.rows - 0.25) * height + 1
+        return axes.row_of(values, self.y_limits, self.rows) * height
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +82,8 @@ _LETTER = 0.602
 """Width of a letter of the font, of its size."""
 _LEVELS = 4
 """Shades of a smooth edge: each shade more is another colour to be sent."""
+_TURN = 4
+"""Cells across that a curve has at a time where it lies on others."""
 _LINE_SHARE, _MARK_SHARE = 1 / 9, 1 / 5
 """Width of a line and radius of a mark, of the height of a cell."""
 
@@ -105,8 +106,9 @@ def plot_image(plot: Plot, cell: tuple[int, int], inks: PlotInks) -> Pixels:
     _draw_axes(image, inside, plot, cell, inks)
     covered = [_coverage(plot, curve, cell) for curve in plot.curves]
     _draw_names(inside, covered, plot, cell, inks)
-    for curve, coverage in zip(plot.curves, covered, strict=True):
-        _lay(inside, coverage, curve.rgb)
+    seen = in_turns(np.array(covered, np.bool_), _TURN * width) if covered else ()
+    for curve, coverage, is_seen in zip(plot.curves, covered, seen, strict=True):
+        _lay(inside, coverage * is_seen, curve.rgb)
     for at in _places(plot.across(np.array(plot.cursors), width), inside.shape[1]):
         inside[:, at] = inks.cursor
     return image
@@ -183,7 +185,7 @@ def _coverage(plot: Plot, curve: Curve, cell: tuple[int, int]) -> npt.NDArray[np
     size = plot.columns * width, plot.rows * height
     mask = Image.new("L", (size[0] * _FINE, size[1] * _FINE))
     draw = ImageDraw.Draw(mask)
-    times_s, values = _within(*min_max(curve.times_s, curve.values, plot.x_limits, size[0]), plot.x_limits)
+    times_s, values = within(*min_max(curve.times_s, curve.values, plot.x_limits, size[0]), plot.x_limits)
     points = np.stack((plot.across(times_s, width), plot.down(values, height)), axis=1) * _FINE
     if curve.marker != BRAILLE or len(points) == 1:
         radius = max(height * _MARK_SHARE, 1.5) * _FINE
@@ -193,14 +195,6 @@ def _coverage(plot: Plot, curve: Curve, cell: tuple[int, int]) -> npt.NDArray[np
         draw.line(points.ravel().tolist(), fill=255, width=max(round(height * _LINE_SHARE * _FINE), _FINE))
     covered: npt.NDArray[np.uint8] = (np.asarray(mask.reduce(_FINE)) // (256 // (_LEVELS + 1))).clip(max=_LEVELS)
     return covered
-
-
-def _within(times_s: FloatArray, values: FloatArray, x_limits: Limits) -> tuple[FloatArray, FloatArray]:
-    """Return points whose first and last one are at most at the limits, where their lines cross these."""
-    if len(times_s) < 2:
-        return times_s, values
-    within = np.clip(times_s, *x_limits)
-    return within, np.where(within == times_s, values, np.interp(within, times_s, values))
 
 
 def _lay(image: Pixels, covered: npt.NDArray[np.uint8], rgb: Rgb) -> None:
