@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tuisim.charts import axes
+from tuisim.charts.bands import columns_of, placed_names
 from tuisim.charts.canvas import BRAILLE, Curve, in_turns
 from tuisim.charts.traces import min_max, within
 from tuisim.data_class import dataclass
@@ -128,17 +129,16 @@ def _draw_names(
     from PIL import Image, ImageDraw
 
     width, height = cell
-    for span in plot.spans:
-        start, stop = _cells_of(span, plot, width)
-        text = next((text for text in span.texts if (len(text) + 1) * width <= stop - start), "")
-        left = (start + stop - len(text) * width) // 2
-        place = slice(left, left + len(text) * width)
-        rows = range((plot.rows - 1) * height, -1, -height)
-        row = next((row for row in rows if not any(one[row : row + height, place].any() for one in covered)), None)
-        if text and row is not None:
-            mask = Image.new("L", (len(text) * width, height))
-            ImageDraw.Draw(mask).text((0, height // 2), text, 255, _font(width), anchor="lm")
-            _lay(inside[row : row + height, place], np.asarray(mask) // (256 // (_LEVELS + 1)), inks.axis)
+    places = [columns_of(span, plot.x_limits, plot.columns) for span in plot.spans]
+
+    def is_free(row: int, first: int, stop: int) -> bool:
+        return not any(one[row * height : (row + 1) * height, first * width : stop * width].any() for one in covered)
+
+    for row, first, text in placed_names(plot.spans, places, plot.rows, plot.columns, is_free):
+        mask = Image.new("L", (len(text) * width, height))
+        ImageDraw.Draw(mask).text((0, height // 2), text, 255, _font(width), anchor="lm")
+        place = inside[row * height : (row + 1) * height, first * width : (first + len(text)) * width]
+        _lay(place, np.asarray(mask) // (256 // (_LEVELS + 1)), inks.axis)
 
 
 @cache
