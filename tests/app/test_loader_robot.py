@@ -43,7 +43,7 @@ async def test_it_is_told_and_the_dialog_lists_its_ports(claw: Path) -> None:
         await until(pilot, lambda: any("built from it: medium motor on outA" in notice for notice in notices(app)))
         await pilot.press("r")
         await until(pilot, lambda: "Robot of claw.py" in screen_text(app))
-        for part in ("in1 ultrasonic, in2 left", "in4 gyro, outA medium", "outB left wheel, outC right wheel"):
+        for part in ("B C wheels", "A   medium motor", "1   ultrasonic", "2   left", "4   gyro"):
             assert part in screen_text(app)
         entries = app.screen.query_one(OptionList)
         assert entries.highlighted_option is not None

@@ -16,6 +16,7 @@ STYLE = """\
   text-align: center; font-size: .75rem; color: var(--soft); }
 .bars i { display: block; background: var(--soft); min-height: 1px; opacity: .55; }
 meter { width: 7rem; }
+.goals tbody th { white-space: normal; overflow-wrap: anywhere; max-width: 10rem; }
 """
 
 
