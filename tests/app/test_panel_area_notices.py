@@ -28,52 +28,36 @@ NOTICES = {
 }
 
 
-async def test_a_notice_is_shown_whole_above_the_axis_of_the_chart() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24), notifications=True) as pilot:
+async def test_a_notice_leaves_the_axis_of_a_chart_free() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(100, 30), notifications=True) as pilot:
         app = await ready(pilot)
         await pilot.press("c")
         await until(pilot, lambda: app.panel_area.shown("chart") and bool(app.panel_area.panels["chart"].region))
         app.say(NOTICES["long"][0])
         await until(
-            pilot, lambda: any(NOTICES["long"][0] == toast._notification.message for toast in app.screen.query(Toast))
+            pilot,
+            lambda: any(t.region and NOTICES["long"][0] == t._notification.message for t in app.screen.query(Toast)),
         )
-        toasts = app.screen.query(Toast)
-        await until(pilot, lambda: all(toast.region for toast in toasts))
         chart = app.panel_area.panels["chart"].region
-        axis = Region(chart.x, chart.bottom - 3, chart.width, 3)
-        for toast in toasts:
-            assert not toast.region.overlaps(axis)
+        for toast in app.screen.query(Toast):
+            assert not toast.region.overlaps(chart.shrink((1, 1, 1, 1)))
             assert app.screen.region.contains_region(toast.region)
-
-
-async def test_notices_leave_the_axis_of_an_enlarged_chart_free() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(100, 30), notifications=True) as pilot:
-        app = await ready(pilot)
-        await pilot.press("c")
-        await until(pilot, lambda: app.panel_area.shown("chart") and bool(app.panel_area.panels["chart"].region))
-        await pilot.press("plus")
-        await until(pilot, lambda: app.panel_area.panels["chart"].region.width == 100)
-        for text in NOTICES["two"]:
-            app.say(text)
-        await until(pilot, lambda: len([t for t in app.screen.query(Toast) if t.region]) >= 2)
-        chart = app.panel_area.panels["chart"].region
-        # Its time axis, the times, and the border.
-        axis = Region(chart.x, chart.bottom - 3, chart.width, 3)
-        assert [toast for toast in app.screen.query(Toast) if toast.region.overlaps(axis)] == []
 
 
 @pytest.mark.quick_cases("two")
 @pytest.mark.parametrize("texts", NOTICES.values(), ids=list(NOTICES))
-async def test_notices_cover_neither_mat_nor_readings_nor_keys(texts: list[str]) -> None:
+async def test_the_newest_notice_covers_neither_mat_nor_readings_nor_output(texts: list[str]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24), notifications=True) as pilot:
         app = await ready(pilot)
         world, readings = app.query_one(World).region, app.panel_area.panels["instrumentation"].region
         read = rows_with_text(app, readings)
         for text in texts:
             app.say(text)
-        await until(pilot, lambda: len([t for t in app.screen.query(Toast) if t.region]) == len(texts))
-        for toast in app.screen.query(Toast):
-            assert app.screen.region.contains_region(toast.region)
-            assert not toast.region.overlaps(world)
-            assert not toast.region.overlaps(read)
-            assert not toast.region.overlaps(app.key_footer.region)
+        await until(pilot, lambda: [t._notification.message for t in app.screen.query(Toast) if t.region] == texts[-1:])
+        (toast,) = (one for one in app.screen.query(Toast) if one.region)
+        assert app.screen.region.contains_region(toast.region)
+        assert not toast.region.overlaps(world)
+        assert not toast.region.overlaps(read)
+        assert not toast.region.overlaps(app.panel_area.panels["output"].region.shrink((1, 1, 1, 1)))
+        # One row leaves the keys free.
+        assert toast.region.height > 1 or not toast.region.overlaps(app.key_footer.region)

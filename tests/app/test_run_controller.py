@@ -11,6 +11,7 @@ from textual.widgets import Input
 
 from tests.app.app_help import ENDLESS, LOGS, lab, notices, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
+from tuisim.app.panels.code import Code
 from tuisim.app.panels.output import Answer
 from tuisim.app.panels.world import WorldView
 from tuisim.app.snapshot import RunPhase
@@ -44,9 +45,9 @@ async def test_the_end_says_that_the_robot_stood_at_a_wall() -> None:
     async with LabApp(setup).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         stood = "stood at the wall from 0.77 s on, its wheels pushed for 1.2 s"
-        await until(pilot, lambda: f"finished, {stood}" in notices(app))
         # The output panel breaks the line.
         await until(pilot, lambda: "— finished at 2.00 s, stood" in screen_text(app))
+        assert f"finished, {stood}" not in notices(app)
 
 
 @pytest.mark.slow
@@ -129,7 +130,16 @@ async def test_an_error_is_shown_with_its_line() -> None:
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await until(pilot, lambda: all(words in screen_text(app) for words in ("NameError", "✗ 2")))
         assert screen_text(app).count("Traceback") == 1
-        await until(pilot, lambda: any("NameError" in notice for notice in notices(app)))
+        await until(pilot, lambda: "NameError" in str(app.query_one(Code).border_subtitle))
+        assert not any("NameError" in notice for notice in notices(app))
+
+
+async def test_an_error_opens_the_code_at_its_line() -> None:
+    text = "\n" * 40 + "print(nothing)\n"
+    async with LabApp(settings(text, autorun=True)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: "✗41 print(nothing)" in screen_text(app))
+        assert app.panel_area.shown("output")
 
 
 async def test_an_error_is_readable_in_a_small_terminal_until_the_next_run() -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from tests.app.panel_help import moment
-from tuisim.app.snapshot import AppState, RunPhase, Situation
+from tuisim.app.snapshot import AppState, RunPhase, Situation, short_value
 from tuisim.protocol import End, Unended
 
 
@@ -35,3 +35,18 @@ def test_the_status_tells_phase_speed_and_past(
 ) -> None:
     state = app_state(looks_back, playing, **run)
     assert (state.status, state.failed) == (status, failed)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("16.0784313725", "16.08"),
+        ("100.0", "100.0"),
+        ("[1.23456789, 2]", "[1.235, 2]"),
+        ("12345.678901", "12345.7"),
+        ("1.2345678e-07", "1.235e-07"),
+        ("'v 1.23456789'", "'v 1.23456789'"),
+    ],
+)
+def test_numbers_of_many_decimals_get_four_digits(text: str, expected: str) -> None:
+    assert short_value(text) == expected

@@ -70,7 +70,7 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
             RunPhase.ENDED, End.FINISHED, recording.spec, mat.field, then, record.line, speed=0.0, pen_down=False
         )
         shown = app.run_controller.snapshot()
-        plain = replace(shown, next_spec=None, past=False, now_tick=0, now_pose=None)
+        plain = replace(shown, next_spec=None, past=False, now_tick=0, now_pose=None, program=None)
         assert plain == expected
         last = recording.telemetry.last()
         assert last is not None

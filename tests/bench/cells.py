@@ -140,7 +140,7 @@ def errors_of(mat: Pixels, cell_set: CellSet, headings: tuple[int, ...]) -> tupl
         draw_robot(real, true_view, pose, outline_of(ROBOT), COLORED, detail_cols=min(glyphs.cols, 2))
         at = changed_cells(picture, now, glyphs)
         flat = at[0] * COLS + at[1]
-        with_robot = _compared(fit_cells(now, glyphs, at, cells[flat]), cell_set, in_cells(real.astype(float))[flat])
+        with_robot = _compared(fit_cells(now, glyphs, at), cell_set, in_cells(real.astype(float))[flat])
         for which, (without, among) in enumerate(zip((drawn, best), with_robot, strict=True)):
             totals[which] += without.sum() - without[flat].sum() + among.sum()
     drawn_mean, best_mean = totals / len(headings) / (ROWS * COLS)
@@ -170,7 +170,7 @@ def frame_cpu_s(mat: Pixels, cell_set: CellSet, frames: int) -> float:
         before, picture = picture, painter.paint(view, _driving(frame))
         at = changed_cells(before, picture, glyphs)
         now = cells.copy()
-        now[at] = fit_cells(picture, glyphs, at, cells[at])
+        now[at] = fit_cells(picture, glyphs, at)
         changed_runs(cells, now)
         cells = now
     return (time.process_time() - began) / frames
@@ -187,7 +187,7 @@ def frame_bytes(mat: Pixels, cell_set: CellSet, frames: int) -> float:
     for frame in range(1, frames + 1):
         before, picture = picture, painter.paint(view, _driving(frame))
         at = changed_cells(before, picture, glyphs)
-        cells[at] = fit_cells(picture, glyphs, at, cells[at])
+        cells[at] = fit_cells(picture, glyphs, at)
         sent.append(_sent(buffer, cells))
     return sum(sent[1:]) / frames
 

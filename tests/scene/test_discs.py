@@ -97,7 +97,9 @@ def test_thresholds_say_what_they_give_now() -> None:
 
     face = replace(FACE, thresholds=thresholds)
 
-    assert face.limit_words(99) == "> 90: no, line 15; == White: yes, line 16; aim 50, line 17; < 300: yes, line 18"
+    assert face.limit_words(99) == (
+        "line 15 asks > 90: no; line 16 asks == White: yes; line 17: aim 50; line 18 asks < 300: yes"
+    )
     assert face.limit_words(50) == "> 90: no; == White: yes; aim 50; < 300: yes"
     assert face.limit_words(13) == "> 90: no"
     assert face.limit_shares == (0.9, 0.5)

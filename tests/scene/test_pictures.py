@@ -53,7 +53,7 @@ def test_it_is_what_a_screen_shows_in_a_frame() -> None:
     view = world_view(SPEC.robot)
     trace = PenTrace()
     trace.add(TRACE)
-    screen = ScenePainter(WHITE, RIM_RGB, trace).paint(view, scene_of(SPEC, HERE))
+    screen = ScenePainter(WHITE, (0, 0, 0), trace).paint(view, scene_of(SPEC, HERE))
 
     picture = np.asarray(world_picture(SPEC, WHITE, HERE, (TRACE,)))
 

@@ -12,13 +12,14 @@ import pytest
 from textual.geometry import Region
 
 from tests.app.app_help import lab, settings, until
+from tests.app.panel_help import PanelApp
 from tests.app.wires import on_wire, until_quiet, wire_of
 from tests.terminal.pixel_help import ANSWERS, answered, drawn_by, part_of, seen_on, sharp
 from tuisim.app.app import LabApp
 from tuisim.app.panels.arrays import Arrays
 from tuisim.app.panels.world import WorldView
 from tuisim.terminal.cell_view import PixelView
-from tuisim.terminal.picture_mode import Sharpness
+from tuisim.terminal.picture_mode import PictureMode, Sharpness
 from tuisim.terminal.picture_options import AUTO, CellSet, Protocol
 from tuisim.terminal.queries import ATTRIBUTES_QUERY, CELL_SIZE_QUERY, KITTY_QUESTIONS
 
@@ -187,3 +188,20 @@ async def test_pictures_that_have_gone_take_no_memory() -> None:
         await until_quiet(pilot)
         gc.collect()
         assert gone() is None
+
+
+async def test_what_has_passed_leaves_nothing_behind() -> None:
+    """A pale edge looks the same after the robot has been on it."""
+    view = PixelView()
+    async with PanelApp(view).run_test(size=(4, 2)) as pilot:
+        view.picture_mode = PictureMode(CellSet.OCTANT)
+        edge = np.full((8, 8, 3), 220, np.uint8)
+        edge[:, 0] = 237
+        view.set_fine_picture(edge)
+        before = view._cells.copy()
+        passing = edge.copy()
+        passing[2:6, :3] = (0, 95, 215)
+        view.set_fine_picture(passing)
+        view.set_fine_picture(edge)
+        await pilot.pause()
+        assert np.array_equal(view._cells, before)

@@ -60,22 +60,6 @@ def test_an_even_cell_needs_no_glyph(cells: CellSet) -> None:
     assert cell >> 24 == cell & 0xFFFFFF
 
 
-@pytest.mark.parametrize(
-    ("contrast", "stays"), [pytest.param(5, True, id="as good"), pytest.param(30, False, id="much worse")]
-)
-def test_a_glyph_stays_while_it_is_as_good(contrast: int, stays: bool) -> None:
-    """Noise in the picture must not make cells shimmer."""
-    glyphs, one = glyph_set(CellSet.OCTANT), all_cells(1, 1)
-    before = fit_cells(picture_of(CellSet.OCTANT, 0x0F), glyphs, one)
-    picture = np.full((4, 2, 3), 200, np.uint8)
-    picture[:, 0] += contrast
-
-    now = fit_cells(picture, glyphs, one, before)
-
-    assert glyph(int(fit_cells(picture, glyphs, one)[0])) == "▌"
-    assert (glyph(int(now[0])) == "▀") is stays
-
-
 @pytest.mark.parametrize("cells", FINE)
 def test_only_cells_that_differ_are_fitted(cells: CellSet) -> None:
     glyphs = glyph_set(cells)

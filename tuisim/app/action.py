@@ -63,6 +63,8 @@ class Action(Generic[Host, Now]):
     """Display name of the key, if it differs from that of `key`."""
     footer_key: str = ""
     """Display name in the footer, if that entry represents two keys."""
+    words: str = ""
+    """Further words by which the command palette finds it."""
     comes_first: bool = False
     """Whether the key comes before those of the widget with the focus; `check_action` of the app leaves it to them."""
 
@@ -263,6 +265,13 @@ class KeyFooter(ActionWords):
         self._status = ""
         self._failed = False
         self._typing: tuple[KeyWord, ...] = ()
+        self._of_dialog: tuple[KeyWord, ...] = ()
+
+    def show_dialog(self, keys: tuple[KeyWord, ...]) -> None:
+        """Show the keys of the dialog above in place of all others; none if the others work."""
+        if keys != self._of_dialog:
+            self._of_dialog = keys
+            self.refresh()
 
     def show(
         self,
@@ -290,11 +299,12 @@ class KeyFooter(ActionWords):
         key_style = self.get_component_rich_style("footer--key", partial=True)
         line = Text(no_wrap=True, end="")
         most = most_entries(width)
-        for key, word in self._typing[:most]:
+        for key, word in (self._of_dialog or self._typing)[:most]:
             if len(line) + len(key) + len(word) + 2 <= width - len(status):
                 line.append(f" {key}", key_style)
                 line.append(f" {word}")
-        shown = fitting(self._actions, width - len(status) - len(line), most - len(self._typing))
+        actions = () if self._of_dialog else self._actions
+        shown = fitting(actions, width - len(status) - len(line), most - len(self._typing))
         for before, action in zip([None, *shown], shown, strict=False):
             if before and before.group != action.group:
                 line.append(BETWEEN_GROUPS, Style(color=palette.LINE))

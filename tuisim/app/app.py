@@ -417,9 +417,11 @@ class LabApp(PanelMessages):
         if not good:
             self.panel_area.bring("output")
         notice, self._last_words = end_words(ended, stood)
-        self.notify(notice, severity="information" if good else "error", markup=False)
+        self.document.run_ended_at(ended.error_line, "" if good else notice)
+        # The output ends with the same words.
+        if not self.panel_area.shown("output"):
+            self.notify(notice, severity="information" if good else "error", markup=False)
         self.debugger.ended()
-        self.document.run_ended_at(ended.error_line)
         self.situation_changed()
         self.check_files()
 

@@ -14,6 +14,7 @@ from textual.message import Message
 from textual.reactive import reactive
 from textual.widget import Widget
 from textual.widgets import Input, Label, Static
+from textual.widgets.input import Selection
 
 from tuisim.app.action import ActionHost
 from tuisim.data_class import dataclass
@@ -181,6 +182,12 @@ class Row(Vertical):
     def _submitted(self, event: Input.Submitted) -> None:
         event.stop()
         self._enter()
+
+    def on_descendant_focus(self) -> None:
+        # The cursor at the end of the selection would scroll the beginning of a long value out of sight.
+        whole = Selection(0, len(self.entry.value))
+        if isinstance(self.entry, Input) and self.entry.selection == whole:
+            self.entry.selection = Selection(whole.end, whole.start)
 
     def on_descendant_blur(self) -> None:
         if isinstance(self.entry, Input) and self.entry.value != self._shown:

@@ -16,6 +16,7 @@ from tuisim.app.setup.next_run import NextRun, plan_of_run, with_arguments
 from tuisim.app.snapshot import end_label
 from tuisim.config.files import means_file
 from tuisim.config.folders import user_path
+from tuisim.config.magic_mat import without_wrong_mat
 from tuisim.config.options import START, Settings
 from tuisim.config.program_settings import Decided, free_paths
 from tuisim.errors import LogError, TuisimError
@@ -111,8 +112,7 @@ class Loader:
         self.is_preparing = False
         self._app.complain(error)
         run_controller = self._run_controller
-        is_wanted = mat_key(run_controller.next_run.spec) == mat_key(spec)
-        if self._good is not None and is_wanted and not run_controller.in_run:
+        if self._good and mat_key(run_controller.next_run.spec) == mat_key(spec) and not run_controller.in_run:
             plan, run_controller.mat = self._good
             self._load(plan, run_controller.program)
 
@@ -192,7 +192,8 @@ class Loader:
     def _open_source(self, source: ProgramSource) -> Decided:
         """Open a program with what its magic line asks for; return what its source decides."""
         program, said = _parts(source)
-        plan, before = plans.with_choices(self._run_controller.next_run, said), self._run_controller.program
+        source = without_wrong_mat(source, self._run_controller.next_run.settings["mats"])
+        plan, before = plans.with_choices(self._run_controller.next_run, source.options), self._run_controller.program
         plan, decided = plans.following(plan, source)
         if before is not None and before.path != program.path:
             plan = plans.with_arguments(plan, ())
@@ -509,9 +510,7 @@ def _program_path(word: str) -> str:
     from tuisim.config.program_file import programs
 
     examples = {name: path for name, path, _ in programs()}
-    if os.path.exists(word):
-        return word
-    return str(examples.get(word) or examples.get(f"{word}.py") or word)
+    return word if os.path.exists(word) else str(examples.get(word) or examples.get(f"{word}.py") or word)
 
 
 def _panels_in(said: Mapping[str, Any]) -> dict[str, bool]:

@@ -29,6 +29,7 @@ from tuisim.app.layout.arrangement import (
 from tuisim.app.layout.tree import PanelLayout
 from tuisim.app.panels import PANELS, NextRunPanel, Panel, TerminalSize
 from tuisim.data_class import dataclass
+from tuisim.terminal.pacer import Throttle
 
 if TYPE_CHECKING:
     from tuisim.app.panels.brick import Brick
@@ -49,6 +50,14 @@ _STACKED_ROWS = 18
 """In a lower area there is no room for a lesson below a panel that needs the whole width."""
 
 
+_READINGS = ("instrumentation", "arrays", "positioning")
+"""The panels with numbers of an instant, which is the same in all of them and in the time bar."""
+_READINGS_PERIOD_S = 0.1
+"""Values that change faster cannot be read."""
+_ARRAYS_PERIOD_S = 0.25
+"""All pixels of the discs may change at once: with them, a shorter period would saturate a slow link."""
+
+
 class _Mounted(Generic[PanelWidget]):
     """An attribute that is a panel, or None until that is mounted."""
 
@@ -57,12 +66,6 @@ class _Mounted(Generic[PanelWidget]):
 
     def __get__(self, area: PanelArea | None, owner: type[PanelArea]) -> PanelWidget | None:
         return cast("PanelWidget | None", area.panels.get(self._panel) if area is not None else None)
-
-
-_NOTICE_COLUMNS = 24
-"""Columns that are enough for a notice."""
-_AXIS_ROWS = 3
-"""Rows of a chart from its time axis to its lower edge."""
 
 
 class PanelArea(Container):
@@ -106,6 +109,8 @@ class PanelArea(Container):
         """Whether what was kept has been taken up."""
         self.is_stacked = False
         """Whether a roomy panel stands above the lesson, and nothing else is shown."""
+        self._snapshot: Snapshot | None = None
+        self._throttle = Throttle(self, _READINGS_PERIOD_S, self._show_readings)
         self._roomy: tuple[str, int, int] | None = None
         """The panel that needs a number of columns and rows."""
 
@@ -299,23 +304,7 @@ class PanelArea(Container):
                 styles = self._panel(panel).styles
                 styles.width, styles.height = box.width, box.height
                 styles.offset = (box.x, box.y)
-        self._place_notices()
         self.post_message(self.Rearranged())
-
-    def _place_notices(self) -> None:
-        """Show notices beside a chart at the bottom if there is room, else above its time axis; beside readings."""
-        box, left, below = self.arrangement.boxes.get("chart"), 0, 1
-        if box is not None and box.x == 0 and box.y + box.height == self.size.height:
-            if self.size.width - box.width >= _NOTICE_COLUMNS:
-                left = box.width
-            else:
-                below += _AXIS_ROWS
-        readings, right = self.arrangement.boxes.get("instrumentation"), self.size.width
-        if readings is not None and 0 < readings.y == self.size.height - readings.height and readings.x > left:
-            right = readings.x
-        for rack in self.screen.query("ToastRack"):
-            rack.styles.margin = (0, 0, below, left)
-            rack.styles.width = right - left
 
     def _panel(self, panel: str) -> Widget:
         if panel not in self.panels:
@@ -397,7 +386,19 @@ class PanelArea(Container):
         self.front = self.focused_panel() or self.front
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment in every panel on the screen."""
-        for panel in self.on_screen():
-            if cast(Widget, panel).is_attached:
-                panel.show(snapshot)
+        """Show a moment in every panel on the screen; the readings follow a few times per second, all together."""
+        before, self._snapshot = self._snapshot, snapshot
+        for panel, widget in self.panels.items():
+            if widget.display and widget.is_attached and panel not in _READINGS:
+                cast(Panel, widget).show(snapshot)
+        self._throttle.period_s = _ARRAYS_PERIOD_S if self.shown("arrays") else _READINGS_PERIOD_S
+        self._throttle.ask(at_once=snapshot.has_stopped_since(before))
+
+    def _show_readings(self) -> None:
+        if (now := self._snapshot) is None:
+            return
+        for panel in _READINGS:
+            if self.shown(panel) and self.panels[panel].is_attached:
+                cast(Panel, self.panels[panel]).show(now)
+        if self.world is not None:
+            self.world.time_bar.show(now)

@@ -87,8 +87,8 @@ class PanelMessages(LabHost):
                 area = self.context.panels
                 if area.alone and not (area.code and area.code.error_line):
                     area.maximize("")
-                # In a lesson, the next keys are for the lesson.
-                if self.context.lesson.step and area.code and not area.code.error_line:
+                # The next keys are for the run, or for the mistake that prevents it.
+                if area.code and (self.context.runs.in_run or self.context.loader.is_preparing):
                     area.code.stop_typing()
             case ProgramCommand.NEW | ProgramCommand.OPEN:
                 self.action_act(message.command.value)

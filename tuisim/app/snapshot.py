@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from enum import StrEnum
 from functools import cached_property
@@ -213,6 +214,25 @@ def end_words(ended: Ended, stood: str) -> tuple[str, str]:
     known = ended.end in (End.FINISHED, End.RAISED) and not caught
     last = f"— {end_label(ended.end) if known else words} at {ended.time_ns / 1e9:.2f} s"
     return ", ".join(filter(None, (words, stood))), ", ".join(filter(None, (last, stood)))
+
+
+_NUMBERS = re.compile(r"""'[^']*'|"[^"]*"|(?<![\w.])-?\d+\.\d+(?:e[+-]?\d+)?(?![\w.])""")
+
+_SHORT = 6
+"""Characters of a number that stays as it is."""
+
+
+def short_value(text: str) -> str:
+    """Return the text of a value with numbers of many decimals to four digits, those in strings as they are."""
+
+    def short(found: re.Match[str]) -> str:
+        word = found[0]
+        if word[0] in "'\"" or len(word) <= _SHORT:
+            return word
+        number = float(word)
+        return min(word, f"{number:.1f}" if 1000 <= abs(number) < 1e9 else f"{number:.4g}", key=len)
+
+    return _NUMBERS.sub(short, text)
 
 
 def end_label(state: RunState | None) -> str:

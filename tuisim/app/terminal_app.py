@@ -17,7 +17,7 @@ from textual.theme import Theme
 
 from tuisim import palette
 from tuisim.app import background
-from tuisim.app.action import ActionHost, with_keys_of
+from tuisim.app.action import ActionHost, KeyFooter, with_keys_of
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
 from tuisim.app.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors, theme_names
 from tuisim.charts.traces import TRACE_COLORS
@@ -167,6 +167,15 @@ class TerminalApp(BufferedApp):
     async def give_waiting_keys(self) -> None:
         """Pass the keys that were pressed while a screen was being opened to the topmost screen."""
         await self._input.go_on()
+
+    @on(ClosesOnce.Changed)
+    @on(events.DescendantFocus)
+    @on(events.DescendantBlur)
+    def show_keys_of_dialog(self) -> None:
+        """Show in the footers below a dialog the keys that work in it."""
+        top = self.screen_stack[-1] if self.screen_stack else None
+        for footer in (one for screen in self.screen_stack for one in screen.query(KeyFooter)):
+            footer.show_dialog(top.keys if isinstance(top, Dialog) else ())
 
     @property
     def _is_opening(self) -> bool:

@@ -33,7 +33,7 @@ HIGH_CONTRAST = Theme(
 )  # fmt: skip
 LIGHT = Theme(
     "light", primary="#0050a0", secondary="#0050a0", accent="#8a5a00", warning="#8a5a00", error="#b00020",
-    success="#006a3a", foreground="#101418", background="#f0f3f6", surface="#e6eaee", panel="#dde3e9", dark=False,
+    success="#006a3a", foreground="#101418", background="#d6dce2", surface="#ccd3da", panel="#c2cad2", dark=False,
 )  # fmt: skip
 
 

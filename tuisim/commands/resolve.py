@@ -18,6 +18,7 @@ from tuisim.commands.echo import echo_error
 from tuisim.commands.notebooks import NotRun, check_folder, known_programs, without_unknown
 from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import ARGUMENTS_FOLLOW, Arguments
+from tuisim.config.magic_mat import without_wrong_mat, wrong_mat
 from tuisim.config.notebook_file import is_notebook, notebook_programs
 from tuisim.config.options import OF_THE_APP, Settings, settings_of
 from tuisim.config.program_file import ProgramSource, find_program, read_program
@@ -118,7 +119,12 @@ def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Argument
     layers = [*([world.settings] if world else []), arguments.settings]
     said = partial(program_settings, file, *layers, in_world=world is not None, of_task=_decides_robot(world))
     found = said(below=_defaults(world, config))
-    program, spec = found.applied_to(file.program), _spec(found.settings)
+    try:
+        program, spec = found.applied_to(file.program), _spec(found.settings)
+    except ConfigError as error:
+        wrong = wrong_mat(file.program.text, file.program.name, found.settings["mats"])
+        is_it = wrong is not None and found.settings["background"] == file.options["background"]
+        raise (wrong.error if wrong and is_it and not error.file else error) from None
     changed = _from_config(spec, world, config, said().decided.layer, file.options, arguments.settings)
     return Prepared(program, found.settings, spec, world, from_config=changed, decided=found.decided)
 
@@ -157,7 +163,11 @@ def prepare_app(words: Sequence[str], arguments: Arguments, config: UserConfig) 
     word = programs[0] if programs else world.program if world else None
     if word is not None and is_notebook(word):
         return _of_cell(known_programs(word)[0].source, world, arguments, config)
-    return _prepared(word, world, arguments, config)
+    if word is None:
+        return _prepared(word, world, arguments, config)
+    source = read_program(find_program(word))
+    mats = settings_of(_defaults(world, config), source.options, arguments.settings)["mats"]
+    return _of_source(without_wrong_mat(source, mats), world, arguments, config)
 
 
 def prepare_replay(

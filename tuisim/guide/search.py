@@ -35,6 +35,8 @@ _SHORTEST = 3
 _FIELDS = "name UNINDEXED, heading UNINDEXED, passage, titles, words"
 _TITLES, _WORDS = 2.0, 2.0
 """How much a word counts in title and heading, and among the page's further words; 1 in the text."""
+_MOST = 10
+"""So many pages are read through; further ones share common words only."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +82,7 @@ def _found(table: str, query: str) -> Mapping[str, tuple[float, SearchResult]]:
 
 
 def search(question: str) -> list[SearchResult]:
-    """Return the pages that have words of a question, the best one first.
+    """Return the pages that answer words of a question best, the best one first, ten at most.
 
     Args:
         question: Words; one that no page has may be the beginning of another.
@@ -93,4 +95,4 @@ def search(question: str) -> list[SearchResult]:
     query = " OR ".join(whole)
     best, of_pages = _found("passages", query), _found("whole", query)
     order = sorted(best, key=lambda name: -best[name][0] - of_pages[name][0])
-    return [best[name][1] for name in order]
+    return [best[name][1] for name in order[:_MOST]]

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.config.program_robot.thresholds import Threshold, read_in, thresholds_in
+from tuisim.config.program_robot.thresholds import AIM, Threshold, read_in, thresholds_in
 from tuisim.core.css_colors import Rgb
 from tuisim.core.field import Field, disc_mask
 from tuisim.core.sensors.color import ColorReading, LightRead, pixel_array, reading
@@ -73,7 +73,7 @@ class DiscFace:
         return tuple(share for share in dict.fromkeys(shares) if 0 <= share <= 1)
 
     def limit_words(self, width: int) -> str:
-        """Return the comparisons of the program and what they give now, such as `> 90: no, line 15`.
+        """Return the comparisons of the program and what they give now, such as `line 15 asks > 90: no`.
 
         Args:
             width: Letters; the lines are left out to fit, then all but the first comparison.
@@ -82,7 +82,10 @@ class DiscFace:
         for one in self.thresholds:
             holds = one.holds(one.read.measured(self.seen, self.reflected_max))
             said.append(one.words + ("" if holds is None else ": yes" if holds else ": no"))
-        with_lines = (f"{words}, line {one.line}" for words, one in zip(said, self.thresholds, strict=True))
+        with_lines = (
+            f"line {one.line}{':' if one.sign == AIM else ' asks'} {words}"
+            for words, one in zip(said, self.thresholds, strict=True)
+        )
         variants = ("; ".join(with_lines), "; ".join(said), *said[:1])
         return next((words for words in variants if len(words) <= width), variants[-1])
 

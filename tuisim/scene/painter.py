@@ -15,8 +15,20 @@ from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, BeaconSpec, Obstac
 from tuisim.data_class import dataclass
 from tuisim.scene.mat import MatPictures
 from tuisim.scene.mono_robot import draw_mono_robot
+from tuisim.scene.off_field import draw_arrow_to
 from tuisim.scene.pen import PenTrace, trace_pixels, visible_on
-from tuisim.scene.robot import CLEARED, COLORED, EARLIER, GHOST, GREY, GREY_GHOST, MONO, draw_robot
+from tuisim.scene.robot import (
+    CLEARED,
+    COLORED,
+    EARLIER,
+    GHOST,
+    GREY,
+    GREY_GHOST,
+    MONO,
+    draw_robot,
+    drawn_reach_mm,
+    drawn_scale,
+)
 from tuisim.scene.view import Viewport
 from tuisim.terminal.pixels import Pixels
 
@@ -82,7 +94,8 @@ class ScenePainter:
     ) -> None:
         self.trace = trace
         self._mat = MatPictures(mat, outside_rgb, whole_cells, exact=for_file)
-        self._has_frame = for_file
+        self._is_for_file = for_file
+        self._has_frame = for_file or (not mono and min(outside_rgb) >= _LIGHT)
         without_colors = CLEARED if coarse else MONO
         self._robot_colors = without_colors if mono else GREY if grey else COLORED
         self._grey = grey or mono
@@ -108,7 +121,7 @@ class ScenePainter:
         if scene.rays and scene.robot.ultrasonic is not None:
             ultrasonic = scene.robot.ultrasonic
             x_mm, y_mm = world_point(scene.rays_from or scene.pose, ultrasonic.x_mm, ultrasonic.y_mm)
-            draw_rays(picture, view, x_mm, y_mm, scene.rays, self._grey, is_solid=self._has_frame)
+            draw_rays(picture, view, x_mm, y_mm, scene.rays, self._grey, is_solid=self._is_for_file)
         for kind, pose in scene.faint:
             colors, opacity = self._faint[kind]
             draw_robot(picture, view, pose, outline, colors, opacity, detail_cols=self._detail_cols)
@@ -118,6 +131,8 @@ class ScenePainter:
                 picture, view, scene.pose, outline, self._robot_colors, pressed=scene.pressed,
                 detail_cols=self._detail_cols,
             )  # fmt: skip
+            reach_px = drawn_reach_mm(outline) * drawn_scale(outline, view) / view.mm_per_px
+            draw_arrow_to(picture, view, scene.pose, reach_px, (0, 0, 0) if self._mono else self._robot_colors.body)
         return picture
 
     def _ground_picture(self, view: Viewport, scene: SceneState) -> Pixels:
@@ -125,7 +140,7 @@ class ScenePainter:
         if self._ground is None or self._ground_key != key:
             self._ground = self._mat.picture(view).copy()
             if self._has_frame:
-                draw_frame(self._ground, view)
+                draw_frame(self._ground, view, FRAME_PX if self._is_for_file else 1)
             draw_obstacles(self._ground, view, scene.obstacles, scene.marked)
             if scene.beacon is not None:
                 draw_beacon(self._ground, view, scene.beacon.x_mm, scene.beacon.y_mm)
@@ -155,14 +170,16 @@ _BEACON_MM = 25.0
 """Radius of a beacon."""
 
 FRAME_PX = 2
+_LIGHT = 180
+"""On a ground at least so light the edge of a white mat would not be seen without a frame."""
 _FRAME_RGB = (70, 74, 82)
 
 
-def draw_frame(picture: Pixels, view: Viewport) -> None:
+def draw_frame(picture: Pixels, view: Viewport, width_px: int = FRAME_PX) -> None:
     """Paint a frame around the field."""
-    left, top = (round(edge) for edge in view.to_px(0.0, FIELD_HEIGHT_MM))
-    right, low = (int(edge) for edge in view.to_px(FIELD_WIDTH_MM, 0.0))
-    rows, cols = slice(max(top - FRAME_PX, 0), low + FRAME_PX), slice(max(left - FRAME_PX, 0), right + FRAME_PX)
+    left, top = (max(round(edge), 0) for edge in view.to_px(0.0, FIELD_HEIGHT_MM))
+    right, low = (max(int(edge), 0) for edge in view.to_px(FIELD_WIDTH_MM, 0.0))
+    rows, cols = slice(max(top - width_px, 0), low + width_px), slice(max(left - width_px, 0), right + width_px)
     inside = picture[top:low, left:right].copy()
     picture[rows, cols] = _FRAME_RGB
     picture[top:low, left:right] = inside

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -63,6 +64,8 @@ class RobotColors:
     has_marker: bool = True
     has_small_edge: bool = False
     """Whether a robot of few pixels has an edge too: one without colours would not be seen without."""
+    is_outline: bool = False
+    """Whether only edge and marker are drawn, so that what is below is seen."""
 
 
 COLORED = RobotColors()
@@ -78,9 +81,11 @@ MONO = RobotColors(
 """For a terminal of two colours: a black arrow on white within a black edge."""
 CLEARED = RobotColors((255,) * 3, (255,) * 3, (255,) * 3, (255,) * 3, has_marker=False)
 """For a terminal of two colours and of signs only: a white place for the signs of the robot."""
-GHOST = RobotColors(edge=(255, 255, 255), body=(175, 0, 175), wheel=(95, 0, 95), marker=(255, 215, 255))
-"""For a robot at an earlier pose."""
-GREY_GHOST = RobotColors(body=(158, 158, 158), wheel=(88, 88, 88), sensor=(88, 88, 88), marker=(0, 0, 0))
+GHOST = RobotColors(
+    edge=(175, 0, 175), marker=(175, 0, 175), edge_cells=0.5, edge_mm=30.0, has_small_edge=True, is_outline=True
+)
+"""For the robot now, while an earlier instant is in view."""
+GREY_GHOST = replace(GHOST, edge=(88, 88, 88), marker=(88, 88, 88))
 
 EARLIER = RobotColors(body=(108, 108, 108), wheel=(68, 68, 68), sensor=(148, 148, 148), marker=(218, 218, 218))
 """For the robot of an earlier run."""
@@ -141,7 +146,10 @@ def draw_robot(
     if is_crisp and not colors.has_small_edge:
         edge_mm = 0.0
     parts = _parts(outline, side, ahead, detail_mm, detail_cols, edge_mm, has_marker=colors.has_marker)
-    _mount(parts, outline, side, ahead, detail_mm, pressed)
+    if colors.is_outline:
+        parts[(parts != _EDGE) & (parts != _MARKER)] = _NONE
+    else:
+        _mount(parts, outline, side, ahead, detail_mm, pressed)
     blocks = parts.reshape(bottom - top, down, right - left, across)
     _blend(picture[top:bottom, left:right], _strongest(blocks) if is_crisp else blocks, colors, opacity)
 

@@ -29,7 +29,7 @@ from tuisim.terminal.cells import (
     reduce_cells,
     reduce_pixels,
 )
-from tuisim.terminal.fitted_cells import CellIndex, Cells, all_cells, fit_cells
+from tuisim.terminal.fitted_cells import CellIndex, Cells, all_cells, fit_cells, is_flat
 from tuisim.terminal.glyphs import GLYPHS, GlyphSet, glyph_set, half_block_of
 from tuisim.terminal.picture import Graphics, PictureCell, TilePicture
 from tuisim.terminal.picture_mode import BLOCKS, PictureMode, Sharpness, color_depth, picture_mode_of
@@ -178,17 +178,17 @@ class PixelView(RowsView):
         is_coarse = has_finer and not stands and self.picture_mode.is_slow()
         if not as_before:
             self._coarse = np.zeros(shape, bool)
-        self._coarse[at] = is_coarse
+        self._coarse[at] = is_coarse and ~is_flat(self._shown, fine, at)
         cells = was.copy() if as_before else np.empty(shape, np.int64)
         glyphs = half_block_of(cell_set) if is_coarse else fine
-        cells[at] = self._fitted(glyphs, mode, at, was[at] if as_before else None)
+        cells[at] = self._fitted(glyphs, mode, at)
         self._put(cells)
         self._sharpness.changed(is_coarse=self.is_coarse)
 
-    def _fitted(self, glyphs: GlyphSet, mode: ColorMode, at: CellIndex, before: Cells | None) -> Cells:
+    def _fitted(self, glyphs: GlyphSet, mode: ColorMode, at: CellIndex) -> Cells:
         if mode.depth == MONO:
             return mono_cells(self._shown, glyphs, at, self.cell_set)
-        return reduce_cells(fit_cells(self._shown, glyphs, at, before), mode)
+        return reduce_cells(fit_cells(self._shown, glyphs, at), mode)
 
     def _put(self, cells: Cells) -> None:
         if cells.shape != self._cells.shape:
@@ -213,7 +213,7 @@ class PixelView(RowsView):
         at = rows[:count], cols[:count]
         self._coarse[at] = False
         cells = self._cells.copy()
-        cells[at] = self._fitted(self._glyphs, self.color_mode, at, None)
+        cells[at] = self._fitted(self._glyphs, self.color_mode, at)
         self._put(cells)
 
     def redraw(self) -> None:

@@ -16,9 +16,6 @@ bits 24 to 47, that of the others in bits 0 to 23, each 0xRRGGBB."""
 
 _FLAT = 3
 """Points whose channels differ by no more than this are one colour."""
-_KEPT_LAB = 2.0
-"""A cell keeps its glyph if that is further from its points, as the square of a colour difference, by no more than
-this for each of them."""
 _OTHER = 1e9
 """Added to the distance of a point of the other group; more than any distance."""
 _AT_ONCE = 1024
@@ -35,30 +32,51 @@ def all_cells(rows: int, cols: int) -> CellIndex:
     return at_rows, at_cols
 
 
-def fit_cells(picture: Pixels, glyphs: GlyphSet, at: CellIndex, before: Cells | None = None) -> Cells:
-    """Return the glyphs and colours that show some cells of a picture best.
+def fit_cells(picture: Pixels, glyphs: GlyphSet, at: CellIndex) -> Cells:
+    """Return the glyphs and colours that show some cells of a picture best, whatever was there before.
 
     Args:
         picture: A whole number of cells, each with the points of the glyphs.
         glyphs: The glyphs to choose from.
         at: Which cells.
-        before: What they show now, shape (n,): a glyph that is as good as the best one stays.
 
     Returns:
         Shape (n,).
     """
-    rows, cols = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
-    points = picture.reshape(rows, glyphs.rows, cols, glyphs.cols, 3).transpose(4, 1, 3, 0, 2)
     cells: Cells = np.empty(len(at[0]), np.int64)
     for first in range(0, len(cells), _AT_ONCE):
         some = slice(first, first + _AT_ONCE)
-        chosen = points[..., at[0][some], at[1][some]].reshape(3, glyphs.rows * glyphs.cols, -1)
-        cells[some] = _fitted(chosen, glyphs, None if before is None else before[some] >> 48)
+        chosen = _points(picture, glyphs, (at[0][some], at[1][some]))
+        cells[some] = _fitted(chosen, glyphs)
     return cells
 
 
-def _fitted(points: npt.NDArray[np.uint8], glyphs: GlyphSet, before: npt.NDArray[np.int64] | None) -> Cells:
-    """Return the cells for points of shape (3, points of a cell, n); `before` are the numbers of their glyphs."""
+def is_flat(picture: Pixels, glyphs: GlyphSet, at: CellIndex) -> npt.NDArray[np.bool_]:
+    """Return whether some cells are of one colour, so that no glyph shows more of them than another.
+
+    Args:
+        picture, glyphs, at: As for `fit_cells`.
+
+    Returns:
+        Shape (n,).
+    """
+    return _is_one_color(_points(picture, glyphs, at))
+
+
+def _points(picture: Pixels, glyphs: GlyphSet, at: CellIndex) -> npt.NDArray[np.uint8]:
+    """Return the points of some cells, shape (3, points of a cell, n)."""
+    rows, cols = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
+    points = picture.reshape(rows, glyphs.rows, cols, glyphs.cols, 3).transpose(4, 1, 3, 0, 2)
+    return points[..., at[0], at[1]].reshape(3, glyphs.rows * glyphs.cols, -1)
+
+
+def _is_one_color(points: npt.NDArray[np.uint8]) -> npt.NDArray[np.bool_]:
+    is_one: npt.NDArray[np.bool_] = (points.max(axis=1) - points.min(axis=1)).max(axis=0) <= _FLAT
+    return is_one
+
+
+def _fitted(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
+    """Return the cells for points of shape (3, points of a cell, n)."""
     packed = packed_rgb(points.astype(np.int64))
     if len(packed) == 2:
         # The two points are the two colours.
@@ -67,9 +85,9 @@ def _fitted(points: npt.NDArray[np.uint8], glyphs: GlyphSet, before: npt.NDArray
     if len(glyphs.numbers) == 1:
         return _half_blocks(points, glyphs)
     cells: Cells = packed[0] << 24 | packed[0]
-    uneven = np.flatnonzero((points.max(axis=1) - points.min(axis=1)).max(axis=0) > _FLAT)
+    uneven = np.flatnonzero(~_is_one_color(points))
     lab = _lab(points[..., uneven])
-    chosen = _best_glyphs(lab, glyphs, None if before is None else before[uneven])
+    chosen = _best_glyphs(lab, glyphs)
     fore, back = _typical(lab, glyphs.covered[chosen].T)
     cells[uneven] = glyphs.numbers[chosen] << 48 | packed[fore, uneven] << 24 | packed[back, uneven]
     return cells
@@ -100,9 +118,7 @@ def _typical(lab: npt.NDArray[np.float32], covered: npt.NDArray[np.float32]) -> 
     return found
 
 
-def _best_glyphs(
-    lab: npt.NDArray[np.float32], glyphs: GlyphSet, before: npt.NDArray[np.int64] | None
-) -> npt.NDArray[np.intp]:
+def _best_glyphs(lab: npt.NDArray[np.float32], glyphs: GlyphSet) -> npt.NDArray[np.intp]:
     """Return which glyph splits the points of each cell into the two most even groups.
 
     The search is exhaustive: with the points relative to their mean, the sum of those that a glyph covers gives the
@@ -114,13 +130,7 @@ def _best_glyphs(
     count = glyphs.covered.sum(axis=1)[:, None]
     explained = np.square(sums, out=sums).sum(axis=0) * (1 / count + 1 / (size - count))
     best: npt.NDArray[np.intp] = explained.argmax(axis=0)
-    if before is None:
-        return best
-    at = np.arange(len(best))
-    kept = np.searchsorted(glyphs.numbers, before).clip(max=len(glyphs.numbers) - 1)
-    was_here = glyphs.numbers[kept] == before
-    as_good = explained[kept, at] >= explained[best, at] - _KEPT_LAB * size
-    return np.where(was_here & as_good, kept, best)
+    return best
 
 
 @lru_cache(maxsize=1)

@@ -22,7 +22,7 @@ class Throttle:
 
     def __init__(self, widget: Widget, period_s: float, do: Callable[[], None]) -> None:
         self._widget = widget
-        self._period_s = period_s
+        self.period_s = period_s
         self._do = do
         self._last_s = 0.0
         self._timer: Timer | None = None
@@ -34,7 +34,7 @@ class Throttle:
             return
         if self._timer is not None or not self._widget.is_attached:
             return
-        left_s = self._last_s + self._period_s - time.monotonic()
+        left_s = self._last_s + self.period_s - time.monotonic()
         if left_s > 0:
             self._timer = self._widget.set_timer(left_s, self.now)
         else:

@@ -191,3 +191,13 @@ def test_in_the_past_the_footer_begins_with_the_ways_out() -> None:
         [ACTIONS[one] for one in working(Situation(RunPhase.PAUSED, True, True, in_past=True, looks_back=True))], 80, 9
     )
     assert [action.id for action in shown[:2]] == ["now", "branch"]
+
+
+@pytest.mark.parametrize("state", RunPhase)
+@pytest.mark.parametrize("looks_back", [False, True])
+def test_keys_move_the_robot_unless_a_program_drives_it(state: RunPhase, looks_back: bool) -> None:
+    now = Situation(state, has_program=True, has_run=True, looks_back=looks_back)
+    drives = state in (RunPhase.STARTING, RunPhase.RUNNING) and not looks_back
+    moves = [action for action in ACTIONS.values() if action.id.startswith("nudge-")]
+    assert moves
+    assert all(bool(action.why_not(now)) is drives for action in moves)

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 from textual.pilot import Pilot
+from textual.widgets import Input, OptionList
 
 from tests.app.analyser.test_screen import text_of
 from tests.app.app_help import LOGS, program, ready, settings, until
@@ -109,3 +110,26 @@ async def test_a_field_for_numbers_names_the_letters_that_are_keys() -> None:
         await until(pilot, lambda: isinstance(pilot.app.focused, NumberInput))
         await until(pilot, lambda: "esc leave" in last_line(pilot) and "R run" in last_line(pilot))
         assert last_line(pilot).rstrip().split("q quit")[0].endswith("? help ")
+
+
+@pytest.mark.parametrize("key", ["r", "b", "h", "o", "ctrl+p"])
+async def test_under_a_dialog_the_footer_names_only_keys_that_work_in_it(key: str) -> None:
+    async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        await until(pilot, lambda: "R run" in last_line(pilot))
+        await pilot.press(key)
+        await until(pilot, lambda: "esc close" in last_line(pilot))
+        assert not [word for word in ("run", "mats", "quit", "help", "apply") if f" {word} " in last_line(pilot)]
+        await pilot.press("escape")
+        await until(pilot, lambda: "R run" in last_line(pilot))
+
+
+async def test_letters_are_no_keys_of_a_dialog_while_its_field_has_the_focus() -> None:
+    async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        await pilot.press("T")
+        await until(pilot, lambda: "esc close" in last_line(pilot))
+        assert isinstance(pilot.app.focused, Input)
+        assert "e edit" not in last_line(pilot)
+        pilot.app.screen.query_one(OptionList).focus()
+        await until(pilot, lambda: "e edit" in last_line(pilot))

@@ -20,10 +20,10 @@ from tuisim.config.program_file import read_program
 pytestmark = pytest.mark.usefixtures("home")
 
 CHOSEN = {
-    "as it is": ([], ("Empty_Map", "colorLeft", Skeleton.LOG)),
+    "as it is": ([], ("Grey_bands", "colorLeft", Skeleton.LOG)),
     "letters": ([*"grey_b", "right", *"gy", "right", "u"], ("Grey_bands", "gyro", Skeleton.UNTIL)),
     "letters in their order": ([*"gb"], ("Grey_bands", "colorLeft", Skeleton.LOG)),
-    "arrows": (["down", "tab", "down", "shift+tab", "down"], ("Grey_and_black", "colorRight", Skeleton.LOG)),
+    "arrows": (["up", "tab", "down", "shift+tab", *["down"] * 2], ("Grey_and_black", "colorRight", Skeleton.LOG)),
 }
 
 

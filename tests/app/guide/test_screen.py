@@ -67,7 +67,7 @@ async def test_a_long_page_scrolls_and_starts_at_its_top_again() -> None:
         await opened(pilot)
         await until_shown(pilot, "Run the program")
         await pilot.press("end")
-        await until_shown(pilot, "Command palette")
+        await until_shown(pilot, "Leave a field")
         await pilot.press("tab", *DOWN_TO_PAGE, "enter")
         await until_shown(pilot, "First steps")
 

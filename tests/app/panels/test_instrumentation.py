@@ -122,6 +122,13 @@ def test_how_the_run_ended_is_said() -> None:
     assert "output limit" in text(EXTREME, 40, 11)[-1]
 
 
+@pytest.mark.parametrize("height", [4, 5])
+def test_names_of_colors_take_a_row_that_is_free(height: int) -> None:
+    rows = text(moment(), 40, height)
+    assert rows[3].split() == ["S1", "White", "S2", "Blue"]
+    assert not any("White" in row for row in text(moment(), 40, 3))
+
+
 @pytest.mark.parametrize("size", [(20, 6), (26, 9), (44, 14)], ids=str)
 async def test_the_panel_shows_the_words(size: tuple[int, int]) -> None:
     app = PanelApp(Instrumentation())
@@ -140,7 +147,6 @@ async def test_what_is_left_of_last_time_is_wiped() -> None:
         app.panel.show(EXTREME)
         await pilot.pause()
         app.panel.show(BARE)
-        app.panel._throttle.now()
         await pilot.pause()
 
         assert [row.rstrip() for row in screen_text(app)] == [row.rstrip() for row in text(BARE, 40, 11)]

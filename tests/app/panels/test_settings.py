@@ -204,3 +204,13 @@ async def test_what_a_robots_file_has_that_means_nothing_here_is_said(tmp_path: 
         app = await ready(pilot)
         app.loader.attempt(lambda plan: with_robot(plan, str(tmp_path / "mine.json")))
         await until(pilot, lambda: sum("ignored unknown keys: owner" in notice for notice in notices(app)) == 1)
+
+
+async def test_a_long_value_is_seen_from_its_beginning_and_escape_closes_the_panel() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
+        app = await opened(pilot)
+        await pilot.press("down")
+        await until(pilot, lambda: app.focused is row(app, "name").entry)
+        await until(pilot, lambda: "Name        Default_" in screen_text(app))
+        await pilot.press("escape")
+        await until(pilot, lambda: not app.panel_area.shown("settings"))

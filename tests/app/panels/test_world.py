@@ -56,7 +56,7 @@ async def test_the_world_keeps_its_size_when_a_run_starts() -> None:
         app.panel.show(moment(state=RunPhase.IDLE))
         await pilot.pause()
         before = view(app.panel).size
-        app.panel.show(moment(now_tick=321))
+        app.panel.time_bar.show(moment(now_tick=321))
         await pilot.pause()
         assert (view(app.panel).size, len(app.panel.time_bar._lines)) == (before, 1)
 

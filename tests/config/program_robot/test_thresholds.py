@@ -77,7 +77,7 @@ def test_of_pybricks() -> None:
         ("print(eye.reflection())", LightRead.REFLECTION),
         ("colorLeft.reflected_light_intensity_pc", LightRead.PERCENT),
         ("colorLeft.reflected_light_intensity", LightRead.REFLECTED),
-        ("print(1)", LightRead.REFLECTED),
+        ("print(1)", LightRead.PERCENT),
     ],
 )
 def test_what_a_program_reads(text: str, read: LightRead) -> None:

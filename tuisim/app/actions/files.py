@@ -18,10 +18,14 @@ from tuisim.app.editor.text_file import find_draft
 from tuisim.app.setup import next_run as plans
 from tuisim.config.folders import programs_folder
 from tuisim.config.obstacles import save_obstacles as write
+from tuisim.config.options import Settings
 from tuisim.config.preferences import keep, preference
 from tuisim.errors import TuisimError
 from tuisim.runs.recorded_run import Recording
 from tuisim.runs.store import RunStore
+
+_LOGGED = "Grey_bands"
+"""What a new program is offered in place of the empty mat, on which there is nothing to log."""
 
 if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext
@@ -226,6 +230,8 @@ def _ask_for_new(context: ActionContext) -> None:
     # A mat that is laid out from a file of its own can be kept, too.
     own = {} if current else {plan.spec.world.background: Path(plan.spec.world.background).name}
     laid = current or plan.spec.world.background
+    if laid == Settings()["background"] and _LOGGED in known:
+        laid = _LOGGED
 
     def chosen(text: str | None) -> None:
         if text is not None:

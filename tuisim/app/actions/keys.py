@@ -30,7 +30,7 @@ LabAction: TypeAlias = Action[ActionContext, Situation]
 def _can_run(now: Situation) -> str:
     if not now.has_program:
         return "No program yet: {open} opens one"
-    if now.in_past:
+    if now.in_past or now.state is RunPhase.PAUSED:
         return ""
     return "The program is already running: {stop} stops it" if now.state in IN_RUN else ""
 
@@ -75,15 +75,22 @@ def _can_draw_pixels(now: Situation) -> str:
     return "" if now.has_pixels else "This terminal draws no pixels, as far as it tells"
 
 
+def _can_nudge(now: Situation) -> str:
+    # A program that waits may ask the user to place the robot.
+    if now.looks_back or now.state not in (RunPhase.STARTING, RunPhase.RUNNING):
+        return ""
+    return "{pause} pauses the program, then keys move the robot; the mouse does at any time"
+
+
 def _nudge(key: str, words: str, forward: tuple[float, float]) -> LabAction:
     do = partial(robot.nudge, right_mm=forward[0], up_mm=forward[1], turn_deg=0.0)
-    return Action(f"nudge-{key.replace('+', '-')}", key, f"Move the robot {words}", ROBOT, do)
+    return Action(f"nudge-{key.replace('+', '-')}", key, f"Move the robot {words}", ROBOT, do, _can_nudge)
 
 
 def _turn(letter: str, arrow: str, words: str, turn_deg: float) -> LabAction:
     # Some terminals send ctrl and an arrow as the arrow alone.
     do = partial(robot.nudge, right_mm=0.0, up_mm=0.0, turn_deg=turn_deg)
-    return Action(f"nudge-ctrl-{arrow}", f"{letter},ctrl+{arrow}", f"Turn the robot {words}", ROBOT, do)
+    return Action(f"nudge-ctrl-{arrow}", f"{letter},ctrl+{arrow}", f"Turn the robot {words}", ROBOT, do, _can_nudge)
 
 
 def _nudges() -> list[LabAction]:
@@ -132,7 +139,7 @@ def _can_debug(now: Situation) -> str:
     return "" if now.has_program or now.has_run else "No program yet: {open} opens one"
 
 
-_BREAK = "Breakpoint on the current line, or the cursor's"
+_BREAK = "Breakpoint on this line, or the cursor's"
 
 
 def _debugs() -> list[LabAction]:
@@ -144,9 +151,7 @@ def _debugs() -> list[LabAction]:
         Action("step-into", "s", "Step into a function call", DEBUG, lambda lab: lab.debugger.step(into), can, "into"),
         Action("step-out", "u", "Step out of this function", DEBUG, lambda lab: lab.debugger.step(out), can, "out"),
         Action("line-back", *line_back, lambda lab: lab.debugger.lines_back(1), _can_look_back, "line back"),
-        Action(
-            "break", "t", "Breakpoint on the current line, or the cursor's", DEBUG, program.toggle_break, can, "break"
-        ),
+        Action("break", "t", _BREAK, DEBUG, program.toggle_break, can, "break"),
         Action("breaks", "T", "Breakpoints: add, edit, disable, delete", DEBUG, program.list_breaks, can),
         Action("watches", "w", "Watches: expressions to evaluate", DEBUG, program.list_watches, can),
         Action("to-cursor", "L", "Run to the cursor's line", DEBUG, program.to_cursor, can, "to cursor"),
@@ -181,9 +186,66 @@ _SCREENSHOT = "Save a screenshot: SVG and PNG (also F12)"
 _TICK_BACK = partial(time_travel.by_ticks, ticks=-1)
 _SLOWER, _FASTER = (partial(program.change_speed, by=by) for by in (-1, 1))
 
+_WORDS: Mapping[str, str] = {
+    "rays": "ultrasound beam distance sonar",
+    "zoom": "larger smaller magnify view mat",
+    "cells": "cells blocks half quadrant sextant octant braille characters font resolution",
+    "pixels": "graphics sixel kitty image",
+    "clear": "path drawing line erase delete",
+    "pen": "draw path trace line",
+    "slower": "speed pace slow down simulation time",
+    "faster": "speed pace speed up simulation time",
+    "save-world": "write mat pose scene",
+    "mats": "map background field floor world",
+    "edit": "write change save the program text code editor",
+    "own-editor": "vim nano emacs external editor",
+    "open": "load file",
+    "run": "start play go execute",
+    "stop": "end abort kill cancel",
+    "obstacles": "walls boxes objects",
+    "robot": "wheels sensors model",
+    "profile": "rules noise drift realism",
+    "export": "save data csv excel table",
+    "analyse": "graph plot data statistics",
+    "theme": "colours colors dark appearance",
+    "settings": "options preferences configuration",
+    "quit": "exit close leave end",
+    "help": "help manual documentation shortcuts",
+    "clear-log": "erase delete graph",
+    "runs": "history earlier old load log",
+    "compare": "difference earlier",
+    "home": "reset place position home",
+    "random": "place position anywhere",
+    "poses": "mark a position place",
+    "lesson-menu": "learn tutorial course",
+    "panel-world": "mat map path robot picture",
+    "panel-lesson": "learn tutorial",
+    "panel-instrumentation": "sensors values readings motors gyro",
+    "panel-output": "print console log text",
+    "panel-arrays": "light discs pixels threshold",
+    "panel-code": "program source editor text",
+    "panel-chart": "graph plot curve diagram",
+    "panel-controls": "speed faster slower time clock",
+    "panel-positioning": "pose place move coordinates start",
+    "panel-noise": "random error drift seed",
+    "panel-debug": "variables values watches",
+    "panel-brick": "buttons screen lights display",
+    "panel-obstacles": "walls boxes objects",
+    "panel-goals": "tasks marks points",
+    "panel-settings": "robot wheels sensors pen options",
+    "palette": "search find commands",
+    "break": "pause halt stop at line",
+    "next-line": "step debug",
+    "go-to": "jump search find time",
+    "enlarge": "maximise full screen zoom",
+    "screenshot": "picture image capture",
+    "new": "create template skeleton",
+}
+"""Further words by which the command palette finds actions, by id."""
+
 # The footer shows the actions in this order, as far as they fit; `help` and `quit` always.
 ACTIONS: Mapping[str, LabAction] = {
-    action.id: action
+    action.id: replace(action, words=_WORDS.get(action.id, ""))
     for action in (
         Action("run", "R", "Run the program", PROGRAM, program.run, _can_run, "run"),
         Action("stop", "S", "Stop the program", PROGRAM, lambda lab: lab.runs.stop(), _can_stop, "stop"),
@@ -281,7 +343,9 @@ def footer_actions(
         word = "" if playing else "play"
     elif now.state == RunPhase.PAUSED:
         word = "go on"
-    return [replace(table[name], footer=word) if word and name == "pause" else table[name] for name in names]
+    # A paused program needs the room for its steps.
+    steps = [name for name in names if name != "run" or now.state != RunPhase.PAUSED or now.in_past]
+    return [replace(table[name], footer=word) if word and name == "pause" else table[name] for name in steps]
 
 
 @lru_cache(maxsize=16)

@@ -17,9 +17,14 @@ SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 0.0)
 
 
 def run(context: ActionContext) -> None:
-    """Start the program; in the past, ask whether to start from that instant."""
+    """Start the program, a paused one from its start again; in the past, ask whether to start from that instant."""
     if context.runs.in_past:
         propose_branch(context, None, restart=True)
+    elif context.runs.state is RunPhase.PAUSED:
+        if context.document.apply():
+            context.runs.close()
+            context.app.run_changed()
+            context.app.start_run()
     else:
         context.app.start_run()
 

@@ -135,12 +135,13 @@ class Chooser(ListDialog):
     def listed(self) -> OptionList:
         """Return the list."""
         options: list[Option | None] = []
+        titled = [name for group in self._groups for _, name, title in group.entries if title]
+        wide = max(map(len, titled), default=0)
         for group in self._groups:
             if options:
                 options.append(None)
             if group.title:
                 options.append(Option(Text(group.title, "italic"), disabled=True))
-            wide = max(len(name) for _, name, _ in group.entries)
             options += [
                 Option(name_and_title(name, title, wide) if title else Text(name, "bold"), id=chosen)
                 for chosen, name, title in group.entries[:MAX_FILES]
@@ -170,8 +171,8 @@ def program_chooser() -> Chooser:
     groups = [
         own,
         ChoiceGroup("Worlds and goals" if own.entries else f"{here.title}: worlds and goals", worlds),
-        ChoiceGroup("Examples of goals", [(str(path), path.name, title_of(path)) for path in goals]),
         ChoiceGroup("Examples", [(str(path), name, title) for name, path, title in examples]),
+        ChoiceGroup("Examples of goals", [(str(path), path.name, title_of(path)) for path in goals]),
     ]
     hint = "Path of a program, world or goals file, or choose below"
     return Chooser("Programs, worlds and goals", groups, path_hint=hint)

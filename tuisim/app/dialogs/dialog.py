@@ -15,16 +15,18 @@ from textual.color import Color
 from textual.containers import Vertical
 from textual.events import Event, Key
 from textual.geometry import Region
+from textual.keys import key_to_character
 from textual.message import Message
 from textual.renderables.background_screen import BackgroundScreen
 from textual.strip import Strip
-from textual.widgets import Static
+from textual.widgets import Input, Static
 
 from tuisim.app import background
+from tuisim.app.action import KeyWord, label_of_key
 from tuisim.app.background import Made
 from tuisim.errors import TuisimError
 from tuisim.terminal.cell_view import JoinedStrip, LazyStrip
-from tuisim.terminal.textual_internals import HookedScreen
+from tuisim.terminal.textual_internals import HookedScreen, bindings_of
 
 Result = TypeVar("Result")
 
@@ -50,6 +52,10 @@ def _without_links(strip: Strip) -> Strip:
     if isinstance(strip, LazyStrip):
         return strip
     return Strip(BackgroundScreen.process_segments(strip, _TRANSPARENT), strip.cell_length)
+
+
+def _short_label(key: str) -> str:
+    return label_of_key(key).replace("ctrl+", "^").replace("escape", "esc")
 
 
 class ClosesOnce(HookedScreen[Result], Generic[Result]):
@@ -157,6 +163,22 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
         frame.border_subtitle = self.HINT
         with frame:
             yield from self.content()
+
+    @property
+    def keys(self) -> tuple[KeyWord, ...]:
+        """Its own keys that work where the focus is, then those of every dialog; none if the keys of the app work."""
+        kinds = [kind for kind in type(self).__mro__ if issubclass(kind, ClosesOnce)]
+        bound = [one for kind in kinds for one in kind.__dict__.get("BINDINGS", ()) if isinstance(one, Binding)]
+        words = ((one.key.split(","), one.description.lower()) for one in bound if one.description)
+        working = ((next((key for key in keys if self._gets(key)), ""), word) for keys, word in words)
+        return tuple((_short_label(key), word) for key, word in working if key)
+
+    def _gets(self, key: str) -> bool:
+        """Return whether a field with the focus leaves a key to the dialog."""
+        field = self.focused
+        if not isinstance(field, Input):
+            return True
+        return not field.check_consume_key(key, key_to_character(key)) and key not in bindings_of(field).key_to_bindings
 
     def content(self) -> ComposeResult:
         """Return the widgets in the frame."""

@@ -19,6 +19,9 @@ from tuisim.terminal.text_runs import cut
 
 _WIDTH, _BESIDE = 74, 10
 """Cells of the frame, and those of it that no line has: borders, padding, scroll bar."""
+_SHOW = "show or hide "
+_MOST_ROWS, _OTHER_ROWS = 16, 5
+"""Rows of the list at most, and those of the frame beside it."""
 
 
 class Entry(NamedTuple):
@@ -28,20 +31,32 @@ class Entry(NamedTuple):
     title: str
     group: str = ""
     key: str = ""
+    words: str = ""
+    """Further words by which it is found."""
     works: bool = True
     """Whether it can be chosen with effect now."""
 
 
 def matching(entries: Iterable[Entry], typed: str) -> list[Entry]:
-    """Return the entries that have every word of a text, those first whose titles begin with it or with its words."""
+    """Return the entries that have every word of a text.
+
+    Those come first whose titles begin with it, or name it as what they show or hide; then those with words of the
+    title that begin so, with such letters in title or group, and with such further words. Of equals, those that show or
+    hide something come first.
+    """
     words = typed.lower().split()
 
-    def rank(entry: Entry) -> int:
-        title = entry.title.lower()
-        begins = title.startswith(" ".join(words)), all(f" {word}" in f" {title}" for word in words)
-        return begins.index(True) if True in begins else 2
+    def rank(entry: Entry) -> tuple[int, bool]:
+        title, shown = entry.title.lower(), f"{entry.title} {entry.group}".lower()
+        fits = (
+            title.removeprefix(_SHOW).startswith(" ".join(words)),
+            all(f" {word}" in f" {title}" for word in words),
+            all(word in shown for word in words),
+            set(words) <= {*entry.words.split()},
+        )
+        return fits.index(True) if True in fits else len(fits), not title.startswith(_SHOW)
 
-    found = [one for one in entries if all(word in f"{one.title} {one.group}".lower() for word in words)]
+    found = [one for one in entries if all(word in " ".join(one[1:5]).lower() for word in words)]
     return sorted(found, key=rank) if words else found
 
 
@@ -55,7 +70,7 @@ class SearchList(Dialog[str]):
 
     HINT: str = "type to search · ↑ ↓ and Enter · Escape closes"
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(key, f"move('{action}')", action, show=False)
+        Binding(key, f"move('{action}')", show=False)
         for key, action in (
             ("down", "cursor_down"), ("up", "cursor_up"), ("pagedown", "page_down"), ("pageup", "page_up"),
         )
@@ -71,6 +86,8 @@ class SearchList(Dialog[str]):
         yield Static("Nothing found", id="message", markup=False)
 
     def on_mount(self) -> None:
+        # It keeps its place while the list becomes shorter.
+        self.query_one(".dialog").styles.height = min(len(self._entries), _MOST_ROWS) + _OTHER_ROWS
         self.app.clear_notifications()
         self.query_one(Input).focus()
 
@@ -88,6 +105,7 @@ class SearchList(Dialog[str]):
         listed.add_options(Option(_line(entry, cells), id=entry.id) for entry in found)
         names = [entry.id for entry in found]
         listed.highlighted = None if not found else names.index(self._current) if self._current in names else 0
+        listed.display = bool(found)
         self.query_one("#message").display = not found
 
     def action_move(self, action: str) -> None:
@@ -119,7 +137,9 @@ class Palette(SearchList):
     TITLE_TEXT: str = "Commands"
 
     def __init__(self, actions: Iterable[Action[Any, Any]], now: object) -> None:
-        entries = (Entry(one.id, one.title, one.group, one.key_label, not one.why_not(now)) for one in actions)
+        entries = (
+            Entry(one.id, one.title, one.group, one.key_label, one.words, not one.why_not(now)) for one in actions
+        )
         super().__init__(sorted(entries, key=lambda entry: not entry.works))
 
 
@@ -135,7 +155,7 @@ class ThemeChooser(SearchList):
     TITLE_TEXT: str = "Themes"
 
     def __init__(self, names: Iterable[str], current: str, show: Callable[[str], None]) -> None:
-        super().__init__([Entry(name, name) for name in names], current)
+        super().__init__([Entry(name, name, "current" if name == current else "") for name in names], current)
         self._show = show
 
     @on(OptionList.OptionHighlighted)

@@ -57,6 +57,8 @@ class Welcome(Dialog[Begin | Recent]):
         Binding(str(number), f"take({number})", "Begin", show=False) for number in range(1, _MOST_NUMBERED + 1)
     ]
 
+    keys = ()
+
     def __init__(self, is_first: bool, find: Callable[[], list[Recent]]) -> None:
         super().__init__()
         self._is_first, self._find = is_first, find

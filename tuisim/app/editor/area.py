@@ -27,6 +27,7 @@ from tuisim.app.editor.candidate_list import CandidateList
 from tuisim.app.editor.completion import Candidate, candidates, word_before
 from tuisim.app.editor.names import UnknownName
 from tuisim.app.editor.syntax import KINDS, Colouring
+from tuisim.app.snapshot import short_value
 from tuisim.data_class import dataclass
 from tuisim.protocol import Variable
 from tuisim.terminal.text_runs import Line, cut_line
@@ -295,7 +296,9 @@ class CodeArea(TextArea):
         pieces: Line = []
         for one in values:
             style = self._component("changed" if one.changed else "value")
-            pieces.append((f"{', ' if pieces else ''}{one.name} = {' '.join(one.value.split())}", style + ground))
+            pieces.append(
+                (f"{', ' if pieces else ''}{one.name} = {short_value(' '.join(one.value.split()))}", style + ground)
+            )
         shown = [Segment(piece, style) for piece, style in cut_line(pieces, left)]
         return Strip.join([text.crop(0, used), Strip(shown), text.crop(used + sum(one.cell_length for one in shown))])
 

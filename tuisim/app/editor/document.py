@@ -62,7 +62,7 @@ class Document:
         self._error_line = 0
         """Line of the current run's text at which it ended with an error; 0 for none, or once the text has changed."""
         self._error_words = ""
-        """The syntax error at that line; empty for an error of a run."""
+        """What is wrong at that line, as far as it is known."""
         self._ran: tuple[Recording, str] | None = None
         """A recording, and the text that it ran, as it was in the editor."""
 
@@ -86,14 +86,13 @@ class Document:
             self._offer(draft)
 
     def open_at_mistake(self) -> None:
-        """Show the line of a syntax error in the program that has been opened, if there is one."""
+        """Show the line of the mistake in the program that has been opened, if there is one."""
         if self._program is None or not (mistake := self._mistake()):
             return
         self._error_line, self._error_words = mistake.line, mistake.message
         self._seeks_error = True
         self._panel_area.open("code")
         self.show()
-        self._app.complain(TuisimError(f"{self._name}: {mistake.message}", "d edits the program there"))
 
     def introduce(self) -> None:
         """Show the open program, which may have changed."""
@@ -145,12 +144,15 @@ class Document:
             self.run_changed()
             if self._error_line and not code.error_line:
                 code.mark_run_error(self._error_line, self._error_words)
-            if self._seeks_error:
-                self._seeks_error = False
-                # A new panel has no size yet.
-                self._app.call_after_refresh(code.go_to_error)
+            self._go_to_error()
         if controls := self._panel_area.controls:
             controls.program = self._name
+
+    def _go_to_error(self) -> None:
+        if self._seeks_error and self._panel_area.code:
+            self._seeks_error = False
+            # A new panel has no size yet.
+            self._app.call_after_refresh(self._panel_area.code.go_to_error)
 
     def run_changed(self) -> None:
         """Pass the text of the run in view to the code panel."""
@@ -165,11 +167,21 @@ class Document:
         elif code is not None:
             code.set_running(None)
 
-    def run_ended_at(self, line: int) -> None:
-        """Mark the line of the current run's text at which it ended with an error; 0 for none."""
-        self._error_line, self._error_words = line, ""
-        if code := self._panel_area.code:
-            code.mark_run_error(line)
+    def run_ended_at(self, line: int, words: str = "") -> None:
+        """Mark the line of the current run's text at which it ended with an error; 0 for none.
+
+        Args:
+            line: From 1.
+            words: What went wrong; with them, the code is opened there.
+        """
+        self._error_line, self._error_words = line, words
+        self._seeks_error = bool(line and words)
+        code = self._panel_area.code
+        if self._seeks_error and not self._panel_area.is_single:
+            self._panel_area.open("code")
+        if code:
+            code.mark_run_error(line, words)
+            self._go_to_error()
 
     def lines(self) -> LineMap:
         """Return the map between the lines of the current run and those of the edited text."""
@@ -262,6 +274,9 @@ class Document:
             Whether the program can run.
         """
         self.introduce()
+        if self._name == NEW_NAME and not self._path:
+            # What has run is worth saving.
+            self._saved = ""
         if self._is_applied:
             return True
         # A typing error in the magic line must not change the mat.
@@ -275,10 +290,10 @@ class Document:
         return self._program is None or (self._text, self._path) == (self._applied, self._program.path)
 
     def _mistake(self) -> Mistake | None:
-        """Return the syntax error of the text, and mark its line."""
+        """Return the mistake in the text, and mark its line."""
         from tuisim.app.editor.syntax import mistake_in
 
-        mistake = mistake_in(self._text, self._name)
+        mistake = mistake_in(self._text, self._name, self._run_controller.next_run.settings["mats"])
         if code := self._panel_area.code:
             code.mark_error(mistake.line if mistake else 0, mistake.message if mistake else "")
         return mistake

@@ -12,6 +12,7 @@ import re
 import warnings
 from collections.abc import Sequence
 
+from tuisim.config.magic_mat import wrong_mat
 from tuisim.config.program_file import parse_program
 from tuisim.data_class import dataclass
 from tuisim.errors import TuisimError
@@ -94,19 +95,20 @@ class Colouring:
 
 @dataclass(frozen=True, slots=True)
 class Mistake:
-    """A syntax error."""
+    """Why a program cannot run."""
 
     line: int
     """From 1; 0 if unknown."""
     message: str
 
 
-def mistake_in(text: str, name: str) -> Mistake | None:
-    """Return the syntax error of a program, None if it can be compiled.
+def mistake_in(text: str, name: str, mats: str | None = None) -> Mistake | None:
+    """Return the syntax error of a program, or the wrong mat in its magic line; None if it can run.
 
     Args:
         text: The text of the file; a magic line is allowed.
         name: Name of the file, for the message.
+        mats: The folder of the user's own mats.
     """
     try:
         source = parse_program(text, name)
@@ -120,4 +122,5 @@ def mistake_in(text: str, name: str) -> Mistake | None:
         return Mistake(error.lineno or 0, f"line {error.lineno}: {error.msg}")
     except (ValueError, RecursionError, MemoryError) as error:
         return Mistake(0, str(error) or "too deeply nested")
-    return None
+    wrong = wrong_mat(text, name, mats)
+    return Mistake(wrong.line, f"line {wrong.line}: {wrong.words}") if wrong else None

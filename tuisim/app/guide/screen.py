@@ -70,6 +70,8 @@ TOPICS: Mapping[str, Topic] = {
 _SIDE_BY_SIDE, _PREVIEW = 100, 66
 """Columns from which the contents stay beside a page that is being read, and from which a page is shown beside them."""
 _SEARCH_AGAIN_S = 0.15
+_CONTENTS_CELLS = 40
+"""Width of the contents before they are laid out."""
 
 _ROWS_OF_PASSAGE = 6
 """Of a passage, so many rows at least are in sight."""
@@ -121,10 +123,16 @@ class _Contents(Tree[Place | None]):
         self.clear()
         for one in found:
             title = pages()[one.name].title
-            label = Text.assemble(one.heading, (f" · {title}", "dim")) if one.heading else Text(title)
-            self.root.add_leaf(label, (one.name, one.heading))
+            whole = Text.assemble(one.heading, (f" · {title}", "dim")) if one.heading else Text(title)
+            whole.truncate(self._label_cells, overflow="ellipsis")
+            self.root.add_leaf(whole, (one.name, one.heading))
         if not found:
             self.root.add_leaf(NO_WORDS, None)
+
+    @property
+    def _label_cells(self) -> int:
+        """The cells of a label at the first level."""
+        return (self.size.width or _CONTENTS_CELLS) - self.guide_depth
 
     def go_to(self, place: Place) -> None:
         """Move the cursor to a page, without opening it."""
@@ -203,7 +211,7 @@ class GuideScreen(Dialog[None]):
     """
 
     TITLE_TEXT = "Guide"
-    HINT = "/ search · tab switch · esc closes"
+    HINT = "/ search · Enter opens · tab switch · esc closes"
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("question_mark,q", "leave", "Close", show=False),
         Binding("slash", "search", "Search", show=False),
@@ -312,8 +320,12 @@ class GuideScreen(Dialog[None]):
         self.app.post_message(self.Changed())
 
     @on(Input.Submitted)
-    def _to_results(self) -> None:
-        self.action_contents()
+    def _open_first(self) -> None:
+        """Read the best answer, which is shown already; `down` goes to the others."""
+        if self._found:
+            self.action_page()
+        else:
+            self.action_contents()
 
     def action_search(self) -> None:
         self._search.focus()

@@ -10,14 +10,10 @@ from textual.widget import Widget
 from tuisim.app.render.arrays import Arrangement, arranged, face_lines, names_in_border
 from tuisim.scene.discs import RIM_16_RGB, RIM_RGB, DiscFace, disc_faces, draw_disc
 from tuisim.terminal.cell_view import LinesView, PixelView
-from tuisim.terminal.pacer import Throttle
 from tuisim.terminal.text_runs import Line
 
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot
-
-_PERIOD_S = 0.25
-"""All pixels of both discs may change at once: a shorter period would saturate a slow link."""
 
 
 class _DiscPicture(PixelView):
@@ -91,18 +87,20 @@ class Arrays(Widget):
         self._where: Arrangement | None = None
         self._snapshot: Snapshot | None = None
         self._drawn: object = None
-        self._throttle = Throttle(self, _PERIOD_S, self._draw)
 
     def on_resize(self) -> None:
         """Arrange the discs for the new size."""
         self._drawn = None
         self.call_after_refresh(self._draw)
 
+    def render(self) -> str:
+        """Return what stands there before the first disc."""
+        return "" if self._discs else "Preparing the mat"
+
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment; at most a few updates per second, and the last one with the world."""
-        has_stopped = snapshot.has_stopped_since(self._snapshot)
+        """Show a moment."""
         self._snapshot = snapshot
-        self._throttle.ask(at_once=has_stopped)
+        self._draw()
 
     def _draw(self) -> None:
         now = self._snapshot

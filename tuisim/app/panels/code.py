@@ -16,7 +16,7 @@ from textual.message import Message
 from textual.widgets import TextArea
 from textual.widgets.text_area import Selection
 
-from tuisim.app.action import TYPING_KEYS, with_keys_of
+from tuisim.app.action import with_keys_of
 from tuisim.app.editor.area import FIND, LINE, CodeArea, EditorCommand, FindBar
 from tuisim.app.editor.assistant import Assistant
 from tuisim.app.editor.candidate_list import CandidateList
@@ -35,8 +35,6 @@ _INFO = PANELS["code"]
 NOTHING_OPEN = "No program: {open} opens one, {new} creates one"
 _FRAME = 4
 """Cells of the frame beside what it says."""
-_HINT_KEYS = 4
-"""So many keys fit the frame."""
 
 
 class ProgramCommand(StrEnum):
@@ -170,9 +168,8 @@ class Code(Vertical):
     def _say(self) -> None:
         title, edited = self._said
         self.border_title = title + edited
-        keys = "  ".join(f"{key} {does}" for key, does in TYPING_KEYS[:_HINT_KEYS]) if self.typing else ""
         words = self._error_words if self.error_line else ""
-        told = words or "  ".join(filter(None, ["running text differs" if self.differs else "", keys]))
+        told = words or ("running text differs" if self.differs else "")
         helped = Text() if words else self._assistant.said(self.size.width - _FRAME)
         self.border_subtitle = helped if helped else as_markup(told)
 
@@ -222,7 +219,6 @@ class Code(Vertical):
     def go_to_error(self) -> None:
         """Move the cursor, and the view, to the line that is marked as an error, if there is one."""
         if self.error_line:
-            self._area.focus()
             self._area.move_to_code(self.error_line)
 
     def show(self, snapshot: Snapshot) -> None:

@@ -4,20 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rich.color import Color
 from rich.style import Style
 
 from tuisim import palette
+from tuisim.app.render.arrays import swatch_of
 from tuisim.app.snapshot import RunPhase, Snapshot, end_label
 from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.sensors.color import ColorReading
 from tuisim.logs.units import unit_of
 from tuisim.terminal.cell_view import LinesPanel
-from tuisim.terminal.pacer import Throttle
 from tuisim.terminal.text_runs import Line, Run, cut
-
-_PERIOD_S = 0.1
-"""Values that change faster cannot be read."""
 
 _LABEL = Style(color=palette.LABEL)
 _VALUE = Style(color=palette.WHITE, bold=True)
@@ -39,13 +35,11 @@ class Instrumentation(LinesPanel):
     def __init__(self) -> None:
         super().__init__()
         self._snapshot: Snapshot | None = None
-        self._throttle = Throttle(self, _PERIOD_S, self._redraw)
 
     def show(self, snapshot: Snapshot) -> None:
-        """Show a moment; at most a few updates per second, and the last one with the world."""
-        has_stopped = snapshot.has_stopped_since(self._snapshot)
+        """Show a moment."""
         self._snapshot = snapshot
-        self._throttle.ask(at_once=has_stopped)
+        self._redraw()
 
     def _redraw(self) -> None:
         if self._snapshot is not None and self._text.size:
@@ -122,7 +116,20 @@ def _side_by_side(now: Snapshot, width: int, height: int) -> list[Line]:
             cell = cells[row] if row < len(cells) else []
             line += [_unit(" " * _GAP * bool(used)), *cell, _unit(" " * (column - _length(cell)))]
         used += column + _GAP * bool(used)
+    if detail < 2 and (below := max(map(len, columns))) < height:
+        lines[below] = _names_of_colors(now, width)
     return lines
+
+
+def _names_of_colors(now: Snapshot, width: int) -> Line:
+    """Return the names of colours in a line, as many as fit."""
+    line: Line = []
+    for at, sensor in enumerate(now.spec.robot.color_sensors, 1):
+        seen = now.colors.get(sensor.name)
+        more = [_label(f"S{at}", 3), _value(f"{seen.name if seen else '–':<{_LONGEST_NAME}}"), _unit(" " * _GAP)]
+        if _length(line) + _length(more) - _GAP <= width:
+            line += more
+    return line
 
 
 def _columns(now: Snapshot, height: int, detail: int) -> tuple[list[list[Line]], int]:
@@ -168,7 +175,7 @@ def _motor_cell(name: str, counts: float, dps: float, has_stalled: bool, with_sp
 def _color_cell(name: str, seen: ColorReading | None, with_name: bool) -> Line:
     if seen is None:
         return [_label(name, 3), _unit("–")]
-    cell: Line = [_label(name, 3), *_values(f"{seen.red_percent:5.1f}", "% "), _swatch(seen)]
+    cell: Line = [_label(name, 3), *_values(f"{seen.red_percent:5.1f}", "% "), swatch_of(seen)]
     return [*cell, _value(f" {seen.name:<{_LONGEST_NAME}}")] if with_name else cell
 
 
@@ -228,10 +235,6 @@ def _right(run: Run, width: int) -> Run:
     return run[0].rjust(width), run[1]
 
 
-def _swatch(seen: ColorReading) -> Run:
-    return "  ", Style(bgcolor=Color.from_rgb(*seen.rgb))
-
-
 def _sensor(name: str, seen: ColorReading | None, width: int) -> tuple[Line, Line]:
     if seen is None:
         return [_label(name), _unit("–")], []
@@ -249,9 +252,9 @@ def _sensor(name: str, seen: ColorReading | None, width: int) -> tuple[Line, Lin
     wide, narrow = f"({', '.join(channels)})", f"({','.join(channels)})"
     second = _fit(
         width,
-        (_label(""), _value(wide.ljust(16)), _swatch(seen), _value(f" {seen.name}")),
-        (_label("", 2), _value(narrow.ljust(14)), _swatch(seen), _value(f" {seen.name}")),
-        (_swatch(seen), _value(f" {narrow}")),
+        (_label(""), _value(wide.ljust(16)), swatch_of(seen), _value(f" {seen.name}")),
+        (_label("", 2), _value(narrow.ljust(14)), swatch_of(seen), _value(f" {seen.name}")),
+        (swatch_of(seen), _value(f" {narrow}")),
     )
     return first, second
 
@@ -263,9 +266,9 @@ def _sensor_in_one(name: str, seen: ColorReading | None, width: int) -> Line:
     red = f"{seen.red_percent:5.1f}"
     return _fit(
         width,
-        (_label(name), _unit("red "), _value(red), _unit(" %  "), _swatch(seen), _value(f" {seen.name}")),
-        (_label(name, 9), _value(red), _unit("% "), _swatch(seen), _value(f" {seen.name}")),
-        (_label(short, 3), _value(red), _unit("% "), _swatch(seen), _value(f" {seen.name}")),
+        (_label(name), _unit("red "), _value(red), _unit(" %  "), swatch_of(seen), _value(f" {seen.name}")),
+        (_label(name, 9), _value(red), _unit("% "), swatch_of(seen), _value(f" {seen.name}")),
+        (_label(short, 3), _value(red), _unit("% "), swatch_of(seen), _value(f" {seen.name}")),
     )
 
 

@@ -31,6 +31,7 @@ class Settings(VerticalScroll, can_focus=False):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("down", "app.focus_next", "Next field", show=False),
         Binding("up", "app.focus_previous", "Previous field", show=False),
+        Binding("escape", "app.act('panel-settings')", "Close", show=False),
     ]
 
     @dataclass

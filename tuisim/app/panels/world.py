@@ -26,6 +26,7 @@ from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec
 from tuisim.data_class import dataclass
 from tuisim.runs.records import Mark
 from tuisim.scene.mono_robot import body, pointer
+from tuisim.scene.off_field import off_field_words
 from tuisim.scene.painter import Faint, ScenePainter, SceneState
 from tuisim.scene.pen import PenTrace, Piece
 from tuisim.scene.robot import drawn_scale
@@ -94,9 +95,12 @@ class World(Widget, can_focus=True):
     def __init__(self) -> None:
         super().__init__()
         self._view = WorldView()
+        self._edits_boxes = False
+        self._snapshot: Snapshot | None = None
         self._mat = ""
         """Name of the mat."""
         self.time_bar = TimeBar()
+        """Shows the instant of the readings."""
 
     def compose(self) -> ComposeResult:
         yield self._view
@@ -104,8 +108,9 @@ class World(Widget, can_focus=True):
 
     def edit_boxes(self, on: bool, marked: int | None = None) -> None:
         """Enable or disable drawing and moving obstacles with the mouse; `marked` is the selected one."""
-        self.border_subtitle = "drag to draw or move an obstacle" if on else ""
+        self._edits_boxes = on
         self._view.edit_boxes(on, marked)
+        self._say_below()
 
     @property
     def show_rays(self) -> bool:
@@ -130,6 +135,14 @@ class World(Widget, can_focus=True):
 
     def _say(self) -> None:
         self.border_title = _INFO.titled(self._mat) + (f" {self.zoom}×" if self.zoom > 1 else "")
+
+    def _say_below(self) -> None:
+        """Say below the picture what the mouse does, where a robot is that is not seen, or what the outline is."""
+        words = "drag to draw or move an obstacle" if self._edits_boxes else ""
+        if (now := self._snapshot) is not None and not words:
+            words = off_field_words(now.instant.pose) or ("outline: the robot now" if now.now_pose else "")
+        if self.border_subtitle != words:
+            self.border_subtitle = words
 
     def cycle_zoom(self) -> None:
         """Go to the next zoom factor, and from the last to the first."""
@@ -164,8 +177,9 @@ class World(Widget, can_focus=True):
         if mat != self._mat:
             self._mat = mat
             self._say()
+        self._snapshot = snapshot
+        self._say_below()
         self._view.show(snapshot)
-        self.time_bar.show(snapshot)
 
 
 def _pointers(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:

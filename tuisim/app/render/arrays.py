@@ -9,8 +9,9 @@ from rich.color import Color
 from rich.style import Style
 
 from tuisim import palette
+from tuisim.core.sensors.color import ColorReading
 from tuisim.scene.discs import RINGS, DiscFace
-from tuisim.terminal.text_runs import Line, cut
+from tuisim.terminal.text_runs import Line, Run, cut
 
 FULL_COLS, LARGE_COLS = 20, 40
 """Columns of a disc of one or two cells a mm; sizes between them show no more."""
@@ -18,6 +19,9 @@ _LEAST_TEXT_COLS, _MOST_TEXT_COLS = 13, 24
 _MOST_LINES = 5
 _FAIR_ROWS = 6
 """A disc is not made lower than this for a second line of text."""
+
+UP_WORDS = "up is up on the mat"
+"""What the frame says where it has no names to say."""
 
 _LABEL, _VALUE, _UNIT = Style(color=palette.LABEL), Style(color=palette.WHITE, bold=True), Style(color=palette.SOFT)
 _FILLED, _REST = Style(color=palette.BLUE), Style(color=palette.LINE)
@@ -90,13 +94,18 @@ def face_lines(face: DiscFace, width: int, rows: int, *, has_limits: bool) -> li
 
 def _value_line(face: DiscFace, width: int) -> Line:
     value, name = face.value_words, face.seen.name
-    swatch = "  ", Style(bgcolor=Color.from_rgb(*face.seen.rgb))
+    swatch = swatch_of(face.seen)
     if len(value) + len(name) + 4 <= width:
         return [(value, _VALUE), (" ", _UNIT), swatch, (f" {name}", _VALUE)]
     close = value.replace(" %", "%").replace("mean ", "")
     short = close.partition(" of ")[0]
     fits = (text for text in (f"{close} {name}", f"{short} {name}", close, short) if len(text) <= width)
     return [(next(fits, cut(short, width)), _VALUE)]
+
+
+def swatch_of(seen: ColorReading) -> Run:
+    """Return two cells in a colour that is seen, with a line below that is seen where the panel has that colour."""
+    return "  ", Style(color=palette.LABEL, bgcolor=Color.from_rgb(*seen.rgb), underline=True)
 
 
 def _scale_line(face: DiscFace, width: int) -> Line:
@@ -111,14 +120,14 @@ def _scale_line(face: DiscFace, width: int) -> Line:
 def _ring_line(face: DiscFace, width: int) -> Line:
     values = face.ring_words
     named: list[str] = [part for pair in zip(RINGS, values, strict=True) for part in pair]
-    for words in (named, ["rings", *values], values):
+    for words in (named, ["from", "centre", *values], ["in→out", *values], values):
         if len(" ".join(words)) <= width:
             break
-    return [part for word in words for part in ((word, _LABEL if word.isalpha() else _VALUE), (" ", _UNIT))][:-1]
+    return [part for word in words for part in ((word, _LABEL if word[0].isalpha() else _VALUE), (" ", _UNIT))][:-1]
 
 
 def names_in_border(names: Sequence[str], where: Arrangement, *, has_limits: bool) -> str:
     """Return what the frame says where the lines do not name the sensors."""
     if len(names) < 2 or where.text_rows > _MOST_LINES - 2 + has_limits:
-        return ""
+        return UP_WORDS
     return (" │ " if where.across else " above ").join(names)

@@ -11,7 +11,7 @@ from typing import assert_never
 from rich.style import Style
 
 from tuisim import palette
-from tuisim.app.snapshot import RunPhase
+from tuisim.app.snapshot import RunPhase, short_value
 from tuisim.data_class import dataclass
 from tuisim.protocol import FrameState, Inspected, Paused, PauseReason, Variable
 from tuisim.terminal.text_runs import Line, cut
@@ -177,8 +177,8 @@ def _variables(title: str, variables: Sequence[Variable], width: int) -> list[Li
     lines: list[Line] = [[(cut(title, width), _HEAD)]]
     if not variables:
         lines.append([("  none", _PALE)])
-    # Changed variables are highlighted.
-    for variable in sorted(variables, key=lambda one: not one.changed):
+    # Changed variables are highlighted, each in its place.
+    for variable in variables:
         style = _CHANGED if variable.changed else _VALUE
         lines.append(_pair(variable.name, variable.value, _NAME, style, width, "•" if variable.changed else " "))
     return lines
@@ -201,5 +201,5 @@ def _pair(name: str, value: str, name_style: Style, style: Style, width: int, ma
     column = min(_NAME_COLUMN, max(6, width // 2 - 2), max(6, len(name)))
     shown = cut(name, column).ljust(column)
     room = width - column - 3
-    text = " ".join(value.split("\n"))
+    text = short_value(" ".join(value.split("\n")))
     return [(f"{mark} ", _CHANGED), (shown, name_style), (" ", _PLAIN), (cut(text, room), style)]

@@ -75,9 +75,9 @@ tank = MoveTank(OUTPUT_B, OUTPUT_C)
 
 """
 _SAYS = {
-    Skeleton.LOG: "Drive for six seconds and log the {noun}.",
+    Skeleton.LOG: "Log the {noun} sixty times while driving.",
     Skeleton.UNTIL: "Drive until the {noun} says stop.",
-    Skeleton.LIBRARY: "Drive for six seconds and log the {noun}, as on a real robot.",
+    Skeleton.LIBRARY: "Log the {noun} sixty times while driving, as on a real robot.",
     Skeleton.EMPTY: "A new program.",
 }
 OF_THE_BRICK = "sim_magic", "--profile ev3"

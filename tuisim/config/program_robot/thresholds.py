@@ -73,9 +73,9 @@ _READ = re.compile("|".join(rf"\.{read}\b" for read in LightRead if not read.is_
 
 
 def read_in(program: Program | None) -> LightRead:
-    """Return what a program reads first of a colour sensor as a number, by its text; without one, the library's."""
+    """Return what a program reads first of a colour sensor as a number, by its text; percent if it reads none."""
     found = _READ.search(program.text) if program else None
-    return LightRead(found[0][1:]) if found else LightRead.REFLECTED
+    return LightRead(found[0][1:]) if found else LightRead.PERCENT
 
 
 @lru_cache(maxsize=4)

@@ -1,0 +1,39 @@
+"""A paused program is run again; a new one that has run is not left unsaved without a question."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.app.app_help import ENDLESS, ready, settings, until
+from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.dialogs.question import Question
+from tuisim.app.snapshot import RunPhase
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
+
+pytestmark = pytest.mark.usefixtures("home")
+
+
+async def test_a_paused_program_starts_again() -> None:
+    async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
+        await pilot.press("space")
+        await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
+        before = app.run_controller.run_id
+        await pilot.press("R")
+        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
+        assert app.run_controller.run_id != before
+
+
+async def test_a_new_program_that_has_run_is_worth_a_question() -> None:
+    plain = AppSettings(spec=build_run_spec(Settings()), settings=Settings())
+    async with LabApp(plain).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        app.document.new("print(1)\n")
+        await until(pilot, lambda: app.run_controller.program is not None)
+        assert not app.document.dirty
+        await pilot.press("escape", "R")
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await pilot.press("q")
+        await until(pilot, lambda: isinstance(app.screen, Question))

@@ -1,0 +1,50 @@
+"""The command palette finds an action by what people call it."""
+
+from __future__ import annotations
+
+import pytest
+from textual.widgets import Input
+
+from tests.app.app_help import ready, settings, until
+from tuisim.app.actions.keys import ACTIONS
+from tuisim.app.app import LabApp
+from tuisim.app.dialogs.palette import Entry, matching
+
+pytestmark = pytest.mark.usefixtures("home")
+
+ENTRIES = [Entry(one.id, one.title, one.group, one.key_label, one.words) for one in ACTIONS.values()]
+
+
+@pytest.mark.parametrize(
+    ("typed", "first"),
+    [
+        ("chart", "panel-chart"),
+        ("graph", "panel-chart"),
+        ("cell", "cells"),
+        ("half", "cells"),
+        ("path", "panel-world"),
+        ("walls", "panel-obstacles"),
+        ("speed", "panel-controls"),
+        ("save the program", "edit"),
+        ("quit", "quit"),
+    ],
+)
+def test_words_that_people_use_find_an_action(typed: str, first: str) -> None:
+    assert matching(ENTRIES, typed)[0].id == first
+
+
+async def test_the_palette_keeps_its_place_while_the_list_becomes_shorter() -> None:
+    async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: bool(pilot.app.screen.query(".dialog")))
+        await pilot.pause()
+        frame = pilot.app.screen.query_one(".dialog")
+        before = frame.region
+        pilot.app.screen.query_one(Input).value = "graph"
+        await pilot.pause()
+        assert frame.region == before
+        pilot.app.screen.query_one(Input).value = "xyzzy"
+        await pilot.pause()
+        assert frame.region == before
+        assert pilot.app.screen.query_one("#message").display

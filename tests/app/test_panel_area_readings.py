@@ -1,0 +1,33 @@
+"""One instant in all panels with numbers, and in the time bar."""
+
+from __future__ import annotations
+
+from tests.app.app_help import ENDLESS, ready, screen_text, settings, until
+from tuisim.app.app import LabApp
+from tuisim.app.panels.arrays import Arrays
+from tuisim.app.panels.instrumentation import Instrumentation
+from tuisim.app.snapshot import RunPhase
+
+
+async def test_all_readings_are_of_one_instant() -> None:
+    async with LabApp(settings(ENDLESS, autorun=True, speed=1.0)).run_test(size=(200, 60)) as pilot:
+        app = await ready(pilot)
+        area, run = app.panel_area, app.run_controller
+        await until(pilot, lambda: run.state == RunPhase.RUNNING and run.timeline.newest > 50)
+        assert area.world is not None
+        readings, arrays = area.panels["instrumentation"], area.panels["arrays"]
+        assert isinstance(readings, Instrumentation)
+        assert isinstance(arrays, Arrays)
+        bar, seen = area.world.time_bar, set[int]()
+
+        def has_seen_five() -> bool:
+            assert bar._times is not None
+            shown = {panel._snapshot.now_tick for panel in (readings, arrays) if panel._snapshot}
+            assert shown == {bar._times.newest}
+            seen.update(shown)
+            return len(seen) >= 5
+
+        await until(pilot, has_seen_five)
+        await pilot.press("S")
+        await until(pilot, lambda: run.state == RunPhase.ENDED)
+        await until(pilot, lambda: f"{run.timeline.newest / run.timeline.tick_hz:.2f} s" in screen_text(app))
