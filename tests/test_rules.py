@@ -24,7 +24,7 @@ BROAD = {"Exception", "BaseException"}
 REASON = re.compile(r"# (?!noqa|type:|pragma|fmt:)\w")
 # Reading these would make the same run come out differently.
 WALL_CLOCK = {"time", "datetime", "random", "secrets", "uuid"}
-HELP_MAY_NOT_LOAD = ("numpy", "pandas", "pyarrow", "PIL", "textual", "platformdirs", "msgspec")
+HELP_MAY_NOT_LOAD = ("numpy", "pandas", "pyarrow", "PIL", "plotext", "textual", "platformdirs", "msgspec")
 CHILD_MAY_NOT_LOAD = (*HELP_MAY_NOT_LOAD, "argparse", "click")
 PRINTS = {"echo.py": "the one place", "relay.py": "passes on what a program prints"}
 """Files of the commands that may write to the terminal by themselves."""

@@ -26,7 +26,7 @@ def redraw_s(rows: int) -> list[float]:
         before = time.process_time()
         painter.paint(traces, ChartState(x_limits=(0.0, float(times_s[-1]) + at)), WIDTH, HEIGHT)
         used.append(time.process_time() - before)
-    # The first one also loads what is imported on demand.
+    # The first one imports plotext.
     return used[1:]
 
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from functools import lru_cache
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.color import Color
 from rich.style import Style
+from rich.text import Text
 
 from tuisim import palette
 from tuisim.charts import axes
@@ -47,6 +51,20 @@ class Curve:
     """Whether the times rise, so that points may be left out; a path may go anywhere."""
     joined: bool = True
     """Whether braille dots are joined by lines."""
+
+
+@lru_cache(maxsize=1)
+def _plotext() -> Any:
+    # Most of its import is spent on its manual, which nobody opens here.
+    manual = ModuleType("plotext._doc.doc")
+    vars(manual)["docs"] = None
+    sys.modules.setdefault(manual.__name__, manual)
+    # Costs more than the rest of the app's start: imported when the first curve is drawn.
+    import plotext
+
+    # Otherwise plotext crops a chart to what it detects as the size of the terminal.
+    plotext.terminal.limit(False, False)
+    return plotext
 
 
 def canvas(curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y_limits: Limits) -> list[list[TextRun]]:
@@ -124,31 +142,57 @@ def _inside(across: FloatArray, down: FloatArray, columns: int, rows: int) -> tu
 def _braille(curve: Curve, columns: int, rows: int, x_limits: Limits, y_limits: Limits) -> npt.NDArray[np.uint32]:
     """Return the dots of a curve, shape (rows, columns): as bits of a braille character."""
     across, down = _points(curve, columns, rows, x_limits, y_limits, (DOTS_X, DOTS_Y))
+    is_thick = curve.joined and curve.rising
+    # A line over time is two dots thick: those above and below its place.
+    across, down = np.floor(across), np.rint(down) - 1 if is_thick else np.floor(down)
+    inside = (across >= -DOTS_X) & (across < (columns + 1) * DOTS_X) & (down >= -DOTS_Y) & (down < (rows + 1) * DOTS_Y)
     if curve.joined:
-        across, down = _joined(np.floor(across), down)
-    dots = np.zeros((rows * DOTS_Y, columns * DOTS_X), np.uint32)
-    if curve.joined and curve.rising:
-        # A line over time is two dots thick: those above and below its place.
-        above = np.rint(down) - 1
-        for right, below in ((0, 0), (0, 1), (1, 0), (1, 1)):
-            at = _inside(across + right, above + below, dots.shape[1], dots.shape[0])
-            dots[at[1], at[0]] = 1
+        # What lies outside is at the edge of the margin: lines lead there.
+        across = across.clip(-DOTS_X, (columns + 1) * DOTS_X - 1)
+        down = down.clip(-DOTS_Y, (rows + 1) * DOTS_Y - 1)
     else:
-        at = _inside(across, down, dots.shape[1], dots.shape[0])
-        dots[at[1], at[0]] = 1
-    cells: npt.NDArray[np.uint32] = np.einsum("ryck,yk->rc", dots.reshape(rows, DOTS_Y, columns, DOTS_X), _BITS)
+        across, down = across[inside], down[inside]
+    if not len(across):
+        return np.zeros((rows, columns), np.uint32)
+    # A margin of one character: plotext places limits in the middle of the outermost ones.
+    bits = _plotted(across + DOTS_X, down + DOTS_Y, columns + 2, rows + 2, curve.joined)
+    dots = (bits[:, None, :, None] & _BITS[None, :, None, :] > 0).reshape((rows + 2) * DOTS_Y, (columns + 2) * DOTS_X)
+    if is_thick:
+        dots[:, 1:] |= dots[:, :-1].copy()
+        dots[1:] |= dots[:-1].copy()
+    inner = dots[DOTS_Y:-DOTS_Y, DOTS_X:-DOTS_X].astype(np.uint32)
+    cells: npt.NDArray[np.uint32] = np.einsum("ryck,yk->rc", inner.reshape(rows, DOTS_Y, columns, DOTS_X), _BITS)
     return cells
 
 
-def _joined(across: FloatArray, down: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the dots of the straight lines between points."""
-    if len(across) < 2:
-        return across, down
-    steps = np.maximum(np.ceil(np.maximum(np.abs(np.diff(across)), np.abs(np.diff(down)))), 1).astype(np.int64)
-    first = np.repeat(np.arange(len(steps)), steps)
-    share = (np.arange(len(first)) - np.repeat(np.cumsum(steps) - steps, steps)) / steps[first]
-    lines = [np.append(at[first] + share * np.diff(at)[first], at[-1]) for at in (across, down)]
-    return lines[0], lines[1]
+def _plotted(across: FloatArray, down: FloatArray, columns: int, rows: int, joined: bool) -> npt.NDArray[np.uint32]:
+    """Return the braille characters that plotext draws, shape (rows, columns): as bits.
+
+    plotext has one figure a process: call this from one thread only.
+
+    Args:
+        across, down: Places of dots, from the left and the top.
+        columns, rows: Size in characters.
+        joined: Whether the dots are joined by lines.
+    """
+    plotext = _plotext()
+    figure = plotext.figure
+    figure.clear()
+    figure.axes(False)
+    figure.canvas("default")
+    for axis, last in (("x", columns - 1), ("y", rows - 1)):
+        for side in (0, 1):
+            figure.ruler(axis, side).frequency(0)
+        figure.ruler(axis, 0).lim(0, last)
+    figure.plot_size(columns, rows)
+    # In characters, whose middles are whole numbers; upwards.
+    xs, ys = (across + 0.5) / DOTS_X - 0.5, rows - 0.5 - (down + 0.5) / DOTS_Y
+    figure.draw(figure.signal(xs.tolist(), ys.tolist(), marker=plotext.marker(BRAILLE)).lines(joined))
+    bits = np.zeros((rows, columns), np.uint32)
+    for row, line in enumerate(figure.build().string().split("\n")[:rows]):
+        signs = np.array([*map(ord, Text.from_ansi(line).plain[:columns])], np.uint32)
+        bits[row, : len(signs)] = np.where(signs > _NO_DOTS, signs - _NO_DOTS, 0)
+    return bits
 
 
 def _runs(text: npt.NDArray[np.uint32], owners: npt.NDArray[np.int64], colors: Sequence[Rgb | None]) -> list[TextRun]:
