@@ -91,6 +91,25 @@ def test_row_labels(limits: tuple[float, float], rows: int, labels: dict[int, st
     assert axes.row_labels(limits, rows) == labels
 
 
+@pytest.mark.parametrize("limits", [(0.0, 100.0), (0.0, 60.0), (-2.0, 1.0), (85.0, 100.0), (0.0, 0.25)])
+@pytest.mark.parametrize("rows", range(7, 60))
+def test_extended_limits_have_ticks_at_equal_distances_in_the_middle_of_rows(
+    limits: tuple[float, float], rows: int
+) -> None:
+    extended = axes.on_rows(limits, rows)
+
+    positions = axes.row_ticks(extended, rows)
+    at = [axes.row_of(position, extended, rows) - 0.5 for position in positions]
+
+    assert at == pytest.approx([round(one) for one in at], abs=1e-6)
+    assert len({round(one) for one in np.diff(at)}) == 1
+    assert 3 <= len(positions) <= 7
+    assert extended[0] <= limits[0] + 1e-9
+    assert limits[1] <= extended[1] + 1e-9
+    assert extended[1] - extended[0] < 1.7 * (limits[1] - limits[0])
+    assert [*axes.row_labels(extended, rows)] == [round(one) for one in at]
+
+
 def test_reduction_keeps_extremes_and_order() -> None:
     times = np.linspace(0, 60, 100_000)
     values = np.sin(times)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tuisim.charts.bands import MOST_SAMPLES, SHADES, spans_of
+from tuisim.charts.bands import MOST_SAMPLES, SHADES, placed_names, spans_of
 from tuisim.charts.plot_image import PlotInks, plot_image
 from tuisim.charts.text_chart import ChartPainter, ChartState
 from tuisim.charts.traces import Traces
@@ -23,13 +23,18 @@ def chart(values: list[float]) -> tuple[Traces, ChartState]:
 def test_each_band_is_named_by_its_level_and_grey() -> None:
     _, state = chart(LEVELS)
 
-    assert [span.texts for span in state.spans] == [("100 white", "100"), ("60",), ("0 black", "0")]
+    assert [span.texts for span in state.spans] == [("100 white", "100"), ("60", "60"), ("0 black", "0")]
     assert [(span.start, span.stop) for span in state.spans] == [(0.0, 1.9), (2.0, 3.9), (4.0, 5.9)]
 
 
-def test_a_name_is_rounded_where_there_is_little_room() -> None:
-    (span,) = chart([86.2745] * 20)[1].spans
-    assert span.texts == ("86.27 pale grey", "86.27", "86.3", "86")
+def test_names_are_all_long_or_all_short_and_never_touch() -> None:
+    spans = spans_of(next(iter(chart([86.2745] * 9 + [82.745] * 9 + [0.0])[0])), 0)
+
+    wide = placed_names(spans, [range(20), range(20, 40), range(40, 41)], 4, 41, lambda *_: True)
+    narrow = placed_names(spans, [range(3), range(3, 6), range(6, 7)], 4, 7, lambda *_: True)
+
+    assert [text for _, _, text in wide] == ["86.27 pale grey", "82.75 light grey"]
+    assert narrow == [(3, 0, "86.27"), (2, 2, "82.75")]
 
 
 def test_too_many_samples_are_left_to_the_analyser() -> None:

@@ -72,3 +72,21 @@ def test_a_line_over_time_is_two_dots_thick(value: float) -> None:
     rows = canvas([curve], 20, 10, (0.0, 10.0), (0.0, 100.0))
     middle = ["".join(text for text, _ in row)[8] for row in rows]
     assert sum((ord(sign) - 0x2800).bit_count() for sign in middle if sign != " ") == 4
+
+
+def test_a_line_is_drawn_around_its_place() -> None:
+    def dots(value: float) -> list[int]:
+        rows = canvas([curve([value, value], marker="braille")], 9, 11, (0.0, 1.0), (0.0, 100.0))
+        cells = [ord("".join(part for part, _ in row)[4]) for row in rows]
+        return [4 * row + dot for row, cell in enumerate(cells) if cell > 0x2800 for dot in range(3) if cell >> dot & 1]
+
+    # A row of ten per cent has four dots: the line at 50 is between those in the middle of its row.
+    assert dots(50.0) == [21, 22]
+    assert max(dots(56.0)) < min(dots(50.0))
+    assert max(dots(50.0)) < min(dots(44.0))
+
+
+def test_equal_lines_are_seen_in_turns() -> None:
+    level = [5.0] * 4
+    (row,) = canvas([curve(level, marker="braille"), curve(level, BLUE, "braille")], 12, 1, (0.0, 3.0), (0.0, 10.0))
+    assert [(len(part), rgb) for part, rgb in row] == [(4, BLUE), (4, RED), (4, BLUE)]

@@ -13,6 +13,7 @@ from rich.cells import cell_len
 from tests.app.analyser.logs import long_log, model_of
 from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.model import Model
+from tuisim.charts import axes
 from tuisim.charts.files import image_of, svg_of
 from tuisim.charts.layout import COLORS, Rule, Stroke, laid_out
 from tuisim.charts.text_chart import ChartPainter, ChartState, text_of
@@ -77,7 +78,7 @@ def test_a_screen_and_a_file_have_the_same_scales(columns: dict[str, object]) ->
         assert not model.traces.drawn()
         return
     (frame,) = drawing.plots
-    assert (picture.plot.x_limits, picture.plot.y_limits) == (frame.x, frame.y)
+    assert (picture.plot.x_limits, picture.plot.y_limits) == (frame.x, axes.on_rows(frame.y, picture.rows))
     drawn = sum(
         isinstance(shape, Stroke) and len(shape.points) and shape.points[0, 1] >= frame.top - 1
         for shape in drawing.shapes
@@ -97,7 +98,7 @@ def test_a_screen_and_a_file_have_the_same_scales_when_zoomed(name: str) -> None
 
     (frame,) = laid_out(chart, 960, 420).plots
     assert picture.plot is not None
-    assert (picture.plot.x_limits, picture.plot.y_limits) == (frame.x, frame.y)
+    assert (picture.plot.x_limits, picture.plot.y_limits) == (frame.x, axes.on_rows(frame.y, picture.rows))
     shown = [(trace.name, trace.scale) for trace in model.traces.drawn()]
     assert shown == [(line.name, line.scale) for line in chart.lines]
 

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING, TypeVar
+
+if TYPE_CHECKING:
+    from tuisim.runs.arrays import FloatArray
 
 _STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 
@@ -82,13 +86,62 @@ def at_column(column: int, limits: Limits, columns: int) -> float:
     return low + (high - low) * min(max((column + 0.25) / (columns - 0.5), 0.0), 1.0)
 
 
+_LEAST_CELLS = 2
+"""Rows from a tick to the next one at least."""
+_NEAR = 1e-6
+"""Tolerance for whole numbers."""
 _FEW_ROWS = 7
 """Limits are round numbers: on fewer rows, labels at both ends are more useful than one tick between them."""
 
 
+_MOST_PARTS = 6
+"""More ticks are crowded."""
+_SPARSE = {2: 0.15, 3: 0.05}
+"""How much of the height few parts between ticks may save, to be better than more parts."""
+
+
+def on_rows(limits: Limits, rows: int) -> Limits:
+    """Return limits, extended as little as possible, that have round ticks in the middle of rows, at equal distances.
+
+    Args:
+        limits: Of the values.
+        rows: Height of the canvas in characters, at least 1; few rows need no ticks between the limits.
+    """
+    if rows < _FEW_ROWS:
+        return limits
+    low, high = limits
+    found = []
+    for count in range(2, _MOST_PARTS + 1):
+        step = nice_step(high - low, count)
+        first = math.floor(low / step + 1e-9) * step
+        parts = math.ceil((high - first) / step - 1e-9)
+        if cells := max((rows - 1) // parts, 0):
+            end = first + step * (rows - 1) / cells
+            found.append(((end - first) / (high - low) + _SPARSE.get(parts, 0.0) + (cells < _LEAST_CELLS), first, end))
+    _, *extended = min(found)
+    return extended[0], extended[1]
+
+
 def row_ticks(limits: Limits, rows: int) -> list[float]:
     """Return the positions that a vertical axis has a label for."""
-    return list(limits) if rows < _FEW_ROWS else ticks(limits, min(6, (rows - 1) // 2))
+    if rows < _FEW_ROWS:
+        return list(limits)
+    low, high = limits
+    for cells in range(_LEAST_CELLS, (rows - 1) // 2 + 1):
+        distance, parts = (high - low) / (rows - 1) * cells, (rows - 1) // cells
+        step = nice_step(distance, 1)
+        if parts <= _MOST_PARTS and math.isclose(step, distance) and abs(low / step - round(low / step)) < _NEAR:
+            return [(round(low / step) + at) * step for at in range(parts + 1)]
+    return ticks(limits, min(_MOST_PARTS, (rows - 1) // 2))
+
+
+Places = TypeVar("Places", float, "FloatArray")
+
+
+def row_of(values: Places, limits: Limits, rows: int) -> Places:
+    """Return how far from the top of a canvas values are, in rows: limits are in the middle of the outermost ones."""
+    low, high = limits
+    return 0.5 + (high - values) / (high - low) * (rows - 1)
 
 
 def time_ticks(limits: Limits, columns: int) -> list[float]:
@@ -104,7 +157,7 @@ def row_labels(limits: Limits, rows: int) -> dict[int, str]:
         return {rows - 1: label(low, step), 0: label(high, step)}
     positions = row_ticks(limits, rows)
     step = positions[1] - positions[0] if len(positions) > 1 else high - low
-    return {math.floor((high - y) / (high - low) * (rows - 0.25)): label(y, step) for y in positions}
+    return {math.floor(row_of(y, limits, rows) + _NEAR): label(y, step) for y in positions}
 
 
 def time_axis(limits: Limits, columns: int, unit: str = "s") -> tuple[str, str]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from rich.style import Style
 
 from tuisim import palette
 from tuisim.charts import axes
 from tuisim.charts.axes import Limits
-from tuisim.charts.layout import Span
+from tuisim.charts.layout import Span, names_of
 from tuisim.charts.traces import Trace
 from tuisim.logs.levels import levels_of
 from tuisim.terminal.text_runs import Run
@@ -19,14 +19,18 @@ MOST_SAMPLES = 4000
 SHADES = Style(bgcolor=palette.HERE), Style(bgcolor=palette.FIELD)
 """In turns, so that bands without an edge between them stay apart."""
 _NAME = Style(color=palette.SOFT)
+_LEAST_COLUMNS = 3
+"""Narrower bands have no name."""
+_OVERHANG = 2
+"""Columns that a level may be wider than its band: names beside each other are in different rows."""
 FREE = " ┈"
 """What a name may be written over."""
 
 
 def band_span(name: str, start: float, stop: float, level: float, grey: str) -> Span:
     """Return the span of a band, named by its level and its grey."""
-    levels = (f"{level:.4g}", f"{level:.3g}", f"{level:.0f}")
-    return Span(start, stop, tuple(dict.fromkeys((f"{levels[0]} {grey}".rstrip(), *levels))), name)
+    text = f"{level:.4g}"
+    return Span(start, stop, (f"{text} {grey}".rstrip(), text), name)
 
 
 def spans_of(trace: Trace, noise: int) -> tuple[Span, ...]:
@@ -51,18 +55,43 @@ def columns_of(span: Span, x_limits: Limits, columns: int) -> range:
     return range(max(first, 0), min(last + 1, columns))
 
 
+def placed_names(
+    spans: Sequence[Span],
+    places: Sequence[range],
+    rows: int,
+    columns: int,
+    is_free: Callable[[int, int, int], bool],
+) -> list[tuple[int, int, str]]:
+    """Return the names of spans on a canvas: row, first column and text, each in the lowest place that is free.
+
+    Args:
+        spans: What is named.
+        places: Their columns.
+        rows, columns: Size of the canvas.
+        is_free: Returns whether nothing is drawn in a row between two columns.
+    """
+    found: list[tuple[int, int, str]] = []
+    letters = [len(place) if len(place) >= _LEAST_COLUMNS else 0 for place in places]
+    for place, name in zip(places, names_of(spans, letters, _OVERHANG), strict=True):
+        first = min(max(place.start + (len(place) - len(name) + 1) // 2, 0), columns - len(name))
+        stop = first + len(name)
+        for row in reversed(range(rows)) if name else ():
+            beside = (at for at in found if at[0] == row)
+            if is_free(row, first, stop) and not any(at <= stop and first <= at + len(text) for _, at, text in beside):
+                found.append((row, first, name))
+                break
+    return found
+
+
 def shaded(rows: Sequence[list[Run]], spans: Sequence[Span], x_limits: Limits, columns: int) -> list[list[Run]]:
     """Return the rows of a canvas with shaded spans, each with its name in the lowest place where nothing is drawn."""
     texts = ["".join(text for text, _ in row) for row in rows]
     places = [columns_of(span, x_limits, columns) for span in spans]
     made = list(rows)
-    for span, place in zip(spans, places, strict=True):
-        name = next((text for text in span.texts if len(text) < len(place)), "")
-        first = place.start + (len(place) - len(name) + 1) // 2
-        stop = first + len(name)
-        free = (at for at in reversed(range(len(rows))) if not texts[at][first:stop].strip(FREE))
-        if name and (at := next(free, None)) is not None:
-            made[at] = [*_cut(made[at], 0, first), (name, _NAME), *_cut(made[at], stop, columns)]
+    for at, first, name in placed_names(
+        spans, places, len(rows), columns, lambda at, first, stop: not texts[at][first:stop].strip(FREE)
+    ):
+        made[at] = [*_cut(made[at], 0, first), (name, _NAME), *_cut(made[at], first + len(name), columns)]
     return [_shaded(row, places, columns) for row in made]
 
 

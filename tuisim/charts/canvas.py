@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 from functools import lru_cache
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.color import Color
@@ -16,18 +16,26 @@ from rich.text import Text
 from tuisim import palette
 from tuisim.charts import axes
 from tuisim.charts.axes import Limits
-from tuisim.charts.traces import min_max
+from tuisim.charts.traces import min_max, within
 from tuisim.core.css_colors import Rgb
 from tuisim.data_class import dataclass
-from tuisim.runs.arrays import FloatArray
-from tuisim.terminal.text_runs import Run, rgb_of
+from tuisim.runs.arrays import FloatArray, IntArray
+from tuisim.terminal.text_runs import Run
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 TextRun = tuple[str, Rgb | None]
 """A piece of a row in one colour, None where nothing is drawn."""
 
 BRAILLE = "braille"
-_NEXT = 1.001
-"""Distance of the second line that makes a trace thicker, in dots."""
+DOTS_X, DOTS_Y = 2, 4
+"""Dots of a braille character."""
+_BLANK, _NO_DOTS = ord(" "), 0x2800
+_BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], np.uint32)
+"""The bit of each dot in the number of a braille character."""
+_TURN = 4
+"""Columns that a curve has at a time where it shares its cells with others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,86 +70,143 @@ def _plotext() -> Any:
 def canvas(curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y_limits: Limits) -> list[list[TextRun]]:
     """Return curves as rows of text, without axes.
 
-    plotext has one figure a process: call this from one thread only.
+    Where several lines share cells, these have the colours of the lines in turns, so that none is hidden. Of
+    points that are not joined, the topmost is seen.
 
     Args:
         curves: What to draw, the topmost last.
         columns: Width in characters, at least 1.
         rows: Height in characters, at least 1.
         x_limits: Times at the left and right edge.
-        y_limits: Values at the lower and upper edge.
+        y_limits: Values in the middle of the lowest and the highest row.
+    """
+    signs, dots = np.full((len(curves), rows, columns), _BLANK, np.uint32), np.zeros((rows, columns), np.uint32)
+    inked = np.zeros(signs.shape, np.bool_)
+    for number, curve in enumerate(curves):
+        if not len(curve.times_s):
+            continue
+        if curve.marker == BRAILLE:
+            cells = _braille(curve, columns, rows, x_limits, y_limits)
+            inked[number] = cells > 0
+            dots |= cells
+        else:
+            across, down = _inside(*_points(curve, columns, rows, x_limits, y_limits), columns, rows)
+            inked[number, down, across] = True
+            signs[number] = ord(curve.marker)
+    shown = in_turns(inked, _TURN if all(curve.joined for curve in curves) else columns)
+    for number, curve in enumerate(curves):
+        if curve.marker == BRAILLE:
+            signs[number] = _NO_DOTS + dots
+    owners = np.where(shown.any(axis=0), shown.argmax(axis=0), -1) if len(curves) else np.full((rows, columns), -1)
+    drawn = np.where(shown, signs, 0).max(axis=0, initial=0)
+    drawn[owners < 0] = _BLANK
+    colors = [*(curve.rgb for curve in curves), None]
+    return [_runs(text, owner, colors) for text, owner in zip(drawn, owners, strict=True)]
+
+
+def in_turns(covered: npt.NDArray[np.bool_], width: int) -> npt.NDArray[np.bool_]:
+    """Return which curve is seen at each place: the only one there, or each in turns along a row.
+
+    Args:
+        covered: Shape (curves, rows, columns): where each curve is, the topmost last.
+        width: Columns of a turn.
+    """
+    count = covered.sum(axis=0)
+    turn = np.arange(covered.shape[2]) // width % np.maximum(count, 1)
+    above = count - covered.cumsum(axis=0)
+    seen: npt.NDArray[np.bool_] = covered & (above == turn)
+    return seen
+
+
+def _points(curve: Curve, columns: int, rows: int, x_limits: Limits, y_limits: Limits, parts: tuple[int, int] = (1, 1)
+            ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    """Return the places of the points of a curve from the left and the top, in parts of cells."""
+    times_s, values = curve.times_s, curve.values
+    if curve.rising:
+        times_s, values = min_max(times_s, values, x_limits, columns)
+        if curve.joined and curve.marker == BRAILLE:
+            times_s, values = within(times_s, values, x_limits)
+    across = (times_s - x_limits[0]) / (x_limits[1] - x_limits[0]) * (columns - 0.5) * parts[0]
+    down = axes.row_of(values, y_limits, rows) * parts[1]
+    # A place far outside is not drawn; a line to it needs no dots there.
+    return across.clip(-columns, 4 * columns), down.clip(-4 * rows, 8 * rows)
+
+
+def _inside(across: FloatArray, down: FloatArray, columns: int, rows: int) -> tuple[IntArray, IntArray]:
+    """Return places as whole numbers; those outside a canvas of so many are left out."""
+    at = np.floor(across).astype(np.int64), np.floor(down).astype(np.int64)
+    good = (at[0] >= 0) & (at[0] < columns) & (at[1] >= 0) & (at[1] < rows)
+    return at[0][good], at[1][good]
+
+
+def _braille(curve: Curve, columns: int, rows: int, x_limits: Limits, y_limits: Limits) -> npt.NDArray[np.uint32]:
+    """Return the dots of a curve, shape (rows, columns): as bits of a braille character."""
+    across, down = _points(curve, columns, rows, x_limits, y_limits, (DOTS_X, DOTS_Y))
+    is_thick = curve.joined and curve.rising
+    # A line over time is two dots thick: those above and below its place.
+    across, down = np.floor(across), np.rint(down) - 1 if is_thick else np.floor(down)
+    inside = (across >= -DOTS_X) & (across < (columns + 1) * DOTS_X) & (down >= -DOTS_Y) & (down < (rows + 1) * DOTS_Y)
+    if curve.joined:
+        # What lies outside is at the edge of the margin: lines lead there.
+        across = across.clip(-DOTS_X, (columns + 1) * DOTS_X - 1)
+        down = down.clip(-DOTS_Y, (rows + 1) * DOTS_Y - 1)
+    else:
+        across, down = across[inside], down[inside]
+    if not len(across):
+        return np.zeros((rows, columns), np.uint32)
+    # A margin of one character: plotext places limits in the middle of the outermost ones.
+    bits = _plotted(across + DOTS_X, down + DOTS_Y, columns + 2, rows + 2, curve.joined)
+    dots = (bits[:, None, :, None] & _BITS[None, :, None, :] > 0).reshape((rows + 2) * DOTS_Y, (columns + 2) * DOTS_X)
+    if is_thick:
+        dots[:, 1:] |= dots[:, :-1].copy()
+        dots[1:] |= dots[:-1].copy()
+    inner = dots[DOTS_Y:-DOTS_Y, DOTS_X:-DOTS_X].astype(np.uint32)
+    cells: npt.NDArray[np.uint32] = np.einsum("ryck,yk->rc", inner.reshape(rows, DOTS_Y, columns, DOTS_X), _BITS)
+    return cells
+
+
+def _plotted(across: FloatArray, down: FloatArray, columns: int, rows: int, joined: bool) -> npt.NDArray[np.uint32]:
+    """Return the braille characters that plotext draws, shape (rows, columns): as bits.
+
+    plotext has one figure a process: call this from one thread only.
+
+    Args:
+        across, down: Places of dots, from the left and the top.
+        columns, rows: Size in characters.
+        joined: Whether the dots are joined by lines.
     """
     plotext = _plotext()
     figure = plotext.figure
     figure.clear()
     figure.axes(False)
     figure.canvas("default")
-    for axis, limits in (("x", x_limits), ("y", y_limits)):
+    for axis, last in (("x", columns - 1), ("y", rows - 1)):
         for side in (0, 1):
             figure.ruler(axis, side).frequency(0)
-        figure.ruler(axis, 0).lim(*limits)
+        figure.ruler(axis, 0).lim(0, last)
     figure.plot_size(columns, rows)
-    for curve in curves:
-        times_s, values = curve.times_s, curve.values
-        if curve.rising:
-            times_s, values = min_max(times_s, values, x_limits, columns)
-        if curve.marker != BRAILLE:
-            values = _on_rows(values, y_limits, rows)
-        if len(times_s):
-            marker = plotext.marker(curve.marker, curve.rgb)
-            signal = figure.signal(times_s.tolist(), values.tolist(), marker=marker)
-            is_line = curve.joined and curve.marker == BRAILLE
-            figure.draw(signal.lines(is_line))
-            if is_line and curve.rising:
-                thicker = _next_dots(times_s, values, columns, rows, x_limits, y_limits)
-                figure.draw(figure.signal(*(along.tolist() for along in thicker), marker=marker).lines(True))
-    return [[*_runs(line, columns)] for line in figure.build().string().split("\n")[:rows]]
+    # In characters, whose middles are whole numbers; upwards.
+    xs, ys = (across + 0.5) / DOTS_X - 0.5, rows - 0.5 - (down + 0.5) / DOTS_Y
+    figure.draw(figure.signal(xs.tolist(), ys.tolist(), marker=plotext.marker(BRAILLE)).lines(joined))
+    bits = np.zeros((rows, columns), np.uint32)
+    for row, line in enumerate(figure.build().string().split("\n")[:rows]):
+        signs = np.array([*map(ord, Text.from_ansi(line).plain[:columns])], np.uint32)
+        bits[row, : len(signs)] = np.where(signs > _NO_DOTS, signs - _NO_DOTS, 0)
+    return bits
 
 
-def _next_dots(
-    times_s: FloatArray, values: FloatArray, columns: int, rows: int, x_limits: Limits, y_limits: Limits
-) -> tuple[FloatArray, FloatArray]:
-    """Return points one dot beside and below others, or above where there is none below: both make a thicker line."""
-    # The limits are in the middle of the outermost characters. plotext rounds a half to the even dot: a distance of a
-    # little more than one dot is never lost.
-    across = _NEXT * (x_limits[1] - x_limits[0]) / (DOTS_X * max(columns - 1, 1))
-    down = _NEXT * (y_limits[1] - y_limits[0]) / (DOTS_Y * max(rows - 1, 1))
-    return times_s + across, np.where(values - down >= y_limits[0], values - down, values + down)
-
-
-def _on_rows(values: FloatArray, limits: Limits, rows: int) -> FloatArray:
-    """Return values at the rows whose labels they are nearest to, as `axes.row_labels` places them.
-
-    plotext rounds to the middle of a row, so that the first and the last row get half as many values as others.
-    """
-    low, high = limits
-    above = np.floor((high - values) / (high - low) * (rows - 0.25))
-    on_rows: FloatArray = high - above * (high - low) / max(rows - 1, 1)
-    return on_rows
-
-
-@lru_cache(maxsize=512)
-def _runs(codes: str, columns: int) -> tuple[TextRun, ...]:
-    """Return a row as pieces of one colour; crop or pad it to `columns`.
-
-    While a chart grows, most of its rows stay as they are.
-    """
-    line = Text.from_ansi(codes)
-    line.set_length(columns)
-    runs: list[TextRun] = []
-    at = 0
-    for start, end, style in line.spans:
-        rgb = rgb_of(style.color) if isinstance(style, Style) else None
-        runs += [(line.plain[at:start], None), (line.plain[start:end], rgb)]
-        at = end
-    runs.append((line.plain[at:], None))
-    return tuple(run for run in runs if run[0])
+def _runs(text: npt.NDArray[np.uint32], owners: npt.NDArray[np.int64], colors: Sequence[Rgb | None]) -> list[TextRun]:
+    """Return a row as pieces of one colour: that of the owner of each cell, the last one for nobody's."""
+    starts = np.flatnonzero(np.diff(owners, prepend=-2)).tolist()
+    ends = [*starts[1:], len(text)]
+    return [
+        ("".join(map(chr, text[start:end].tolist())), colors[owners[start]])
+        for start, end in zip(starts, ends, strict=True)
+    ]
 
 
 AXIS, PLAIN = Style(color=palette.LABEL), Style(color=palette.INK)
 _HERE = Style(color=palette.BLACK, bgcolor=palette.WHITE, bold=True)
-DOTS_X, DOTS_Y = 2, 4
-"""Dots of a braille character."""
 
 
 def styled(rgb: Rgb | None) -> Style:
@@ -195,6 +260,7 @@ def xy_lines(
         return [title, [("no sample has both", AXIS)]]
     x_limits, y_limits = (axes.value_limits(float(a[good].min()), float(a[good].max())) for a in (xs, ys))
     rows = max(height - 3, 1)
+    y_limits = axes.on_rows(y_limits, rows)
     labels = axes.row_labels(y_limits, rows)
     left = max(map(len, labels.values())) + 1
     columns = max(width - left, 2)
@@ -209,8 +275,8 @@ def xy_lines(
     if here is not None and good[here]:
         title.append((f"   {names[0]} {xs[here]:.5g}  {names[1]} {ys[here]:.5g}", Style(bold=True)))
         column = axes.column_of(float(xs[here]), x_limits, columns)
-        row = int((y_limits[1] - ys[here]) / (y_limits[1] - y_limits[0]) * (rows - 0.25))
-        _put(lines[1 + min(max(row, 0), rows - 1)], left + column)
+        row = int(axes.row_of(float(ys[here]), y_limits, rows))
+        _put(lines[1 + row], left + column)
     line, below = axes.time_axis(x_limits, columns, "")
     return [*lines, [(" " * (left - 1) + "└" + line, AXIS)], [(" " * left + below, AXIS)]]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import floor
+from dataclasses import replace
 
 import numpy as np
 from rich.style import Style
@@ -14,7 +14,6 @@ from tuisim.charts.canvas import AXIS, BRAILLE, Curve, styled
 from tuisim.charts.layout import Scale, Scales
 from tuisim.charts.traces import Trace
 from tuisim.data_class import dataclass
-from tuisim.runs.arrays import FloatArray
 from tuisim.terminal.text_runs import Run
 
 _LEAST_WIDTH = 36
@@ -23,7 +22,7 @@ _LEAST_COLUMNS = 30
 """Further scales do not make the canvas narrower than this."""
 _LONG = 9
 """Values with more characters than that are written with a power of ten."""
-_PARTS = 200
+_PARTS = 2000
 """Last values are rounded to about such a part of their scale."""
 
 
@@ -54,6 +53,7 @@ class CellScales:
     ) -> CellScales:
         """Return the scales of traces for a chart of a width, whose canvas has so many rows."""
         scales = Scales.of([(trace.name, trace.values, trace.scale) for trace in drawn], zoomed)
+        scales = Scales(_on_rows(scales.left, rows), tuple(_on_rows(scale, rows) for scale in scales.right))
         ends, ends_width = _ends(drawn, scales, rows, x_limits) if width >= _LEAST_WIDTH else ({}, 0)
         labels = [_labels(scales.left, rows)]
         left = width - _width_of(labels[0]) - ends_width
@@ -108,6 +108,10 @@ class CellScales:
         return line
 
 
+def _on_rows(scale: Scale, rows: int) -> Scale:
+    return replace(scale, limits=axes.on_rows(scale.limits, rows))
+
+
 def _labels(scale: Scale, rows: int) -> dict[int, str]:
     """Return the labels of a scale by row, the uppermost with the unit."""
     labels = axes.row_labels(scale.limits, rows)
@@ -130,7 +134,7 @@ def _ends(drawn: Sequence[Trace], scales: Scales, rows: int, x_limits: Limits) -
             continue
         value = trace.values[count - 1 : count]
         texts = [_rounded(end, scale) for end in (float(value[0]), *scale.limits)]
-        row = _row_of(scales.on_left(value, scale), scales.left.limits, rows)
+        row = int(axes.row_of(float(scales.on_left(value, scale)[0]), scales.left.limits, rows))
         found.append(
             (
                 row,
@@ -142,7 +146,7 @@ def _ends(drawn: Sequence[Trace], scales: Scales, rows: int, x_limits: Limits) -
         )
         # Of the limits, so that the canvas keeps its size while values come in.
         width = max(width, *(len(text + scale.unit) for text in texts))
-    return _apart(sorted(found, key=lambda one: one[0]), rows), width
+    return _apart(found, rows), width
 
 
 def _rounded(value: float, scale: Scale) -> str:
@@ -151,18 +155,15 @@ def _rounded(value: float, scale: Scale) -> str:
     return text if len(text) <= _LONG else f"{value:.4g}"
 
 
-def _row_of(value: FloatArray, limits: Limits, rows: int) -> int:
-    low, high = limits
-    return min(max(floor((high - float(value[0])) / (high - low) * (rows - 0.25)), 0), rows - 1)
-
-
 def _apart(found: Sequence[tuple[int, Run]], rows: int) -> dict[int, Run]:
-    """Return texts by row, each in a row of its own, as near as possible to that which it wants."""
-    at = [row for row, _ in found]
-    for number in range(1, len(at)):
-        at[number] = max(at[number], at[number - 1] + 1)
-    lowest = rows - 1
-    for number in reversed(range(len(at))):
-        at[number] = min(at[number], lowest)
-        lowest = at[number] - 1
-    return {row: text for row, (_, text) in zip(at, found, strict=True) if row >= 0}
+    """Return texts by row: an equal one once, others next to the row that they want, in a row of their own."""
+    taken: dict[int, Run] = {}
+    wanted: dict[int, int] = {}
+    for row, run in found:
+        near = [at for at in (row, row + 1, row - 1) if 0 <= at < rows]
+        same = next((at for at in near if at in taken and wanted[at] == row and taken[at][0] == run[0]), None)
+        if same is not None:
+            taken[same] = run[0], AXIS
+        elif (free := next((at for at in near if at not in taken), None)) is not None:
+            taken[free], wanted[free] = run, row
+    return taken

@@ -463,12 +463,33 @@ def _strokes(chart: ChartData, lines: Sequence[Line], scales: Scales, frame: Fra
 
 def _spans(chart: ChartData, lines: Sequence[Line], frame: Frame) -> list[Shape]:
     names = {line.name for line in lines}
-    shapes: list[Shape] = []
-    for span in chart.spans:
-        if span.name not in names or span.stop < frame.x[0] or span.start > frame.x[1]:
-            continue
+    seen = [span for span in chart.spans if span.name in names and frame.x[0] <= span.stop and span.start <= frame.x[1]]
+    shades: list[Shade] = []
+    for span in seen:
         x1, x2 = (float(frame.xs(min(max(x, frame.x[0]), frame.x[1]))) for x in (span.start, span.stop))
-        shapes.append(Shade(x1, frame.top, x2 - x1, frame.bottom - frame.top))
-        if text := next((text for text in span.texts if len(text) * LETTER_PX < x2 - x1), ""):
-            shapes.append(Words((x1 + x2) / 2, frame.bottom - LINE_PX / 2, text, "middle"))
-    return shapes
+        shades.append(Shade(x1, frame.top, x2 - x1, frame.bottom - frame.top))
+    texts = names_of(seen, [shade.width / LETTER_PX for shade in shades])
+    words = (
+        Words(shade.x + shade.width / 2, frame.bottom - LINE_PX / 2, name, "middle")
+        for shade, name in zip(shades, texts, strict=True)
+        if name
+    )
+    return [*shades, *words]
+
+
+_NARROW = 8
+"""Spans of fewer letters do not keep others from their long names."""
+
+
+def names_of(spans: Sequence[Span], letters: Sequence[float], overhang: int = 0) -> list[str]:
+    """Return the names of spans: the long forms, if all but those of very narrow spans fit; empty without room.
+
+    Args:
+        spans: What is named.
+        letters: How many letters each is wide.
+        overhang: Letters that a short form may be wider.
+    """
+    rooms = list(zip(spans, letters, strict=True))
+    is_long = all(len(span.texts[0]) < room for span, room in rooms if room >= _NARROW)
+    names = [span.texts[0] if is_long and len(span.texts[0]) < room else span.texts[-1] for span, room in rooms]
+    return [name if room and len(name) <= room + overhang else "" for name, room in zip(names, letters, strict=True)]

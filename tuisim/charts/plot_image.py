@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tuisim.charts.canvas import BRAILLE, Curve
-from tuisim.charts.traces import min_max
+from tuisim.charts import axes
+from tuisim.charts.bands import columns_of, placed_names
+from tuisim.charts.canvas import BRAILLE, Curve, in_turns
+from tuisim.charts.traces import min_max, within
 from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
@@ -59,9 +61,7 @@ class Plot:
 
     def down(self, values: FloatArray, height: int) -> _Points:
         """Return how far from the top of the canvas values are, for cells of that height."""
-        # As `axes.row_labels`.
-        low, high = self.y_limits
-        return (high - values) / (high - low) * (self.rows - 0.25) * height + 1
+        return axes.row_of(values, self.y_limits, self.rows) * height
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +83,8 @@ _LETTER = 0.602
 """Width of a letter of the font, of its size."""
 _LEVELS = 4
 """Shades of a smooth edge: each shade more is another colour to be sent."""
+_TURN = 4
+"""Cells across that a curve has at a time where it lies on others."""
 _LINE_SHARE, _MARK_SHARE = 1 / 9, 1 / 5
 """Width of a line and radius of a mark, of the height of a cell."""
 
@@ -105,8 +107,9 @@ def plot_image(plot: Plot, cell: tuple[int, int], inks: PlotInks) -> Pixels:
     _draw_axes(image, inside, plot, cell, inks)
     covered = [_coverage(plot, curve, cell) for curve in plot.curves]
     _draw_names(inside, covered, plot, cell, inks)
-    for curve, coverage in zip(plot.curves, covered, strict=True):
-        _lay(inside, coverage, curve.rgb)
+    seen = in_turns(np.array(covered, np.bool_), _TURN * width) if covered else ()
+    for curve, coverage, is_seen in zip(plot.curves, covered, seen, strict=True):
+        _lay(inside, coverage * is_seen, curve.rgb)
     for at in _places(plot.across(np.array(plot.cursors), width), inside.shape[1]):
         inside[:, at] = inks.cursor
     return image
@@ -126,17 +129,16 @@ def _draw_names(
     from PIL import Image, ImageDraw
 
     width, height = cell
-    for span in plot.spans:
-        start, stop = _cells_of(span, plot, width)
-        text = next((text for text in span.texts if (len(text) + 1) * width <= stop - start), "")
-        left = (start + stop - len(text) * width) // 2
-        place = slice(left, left + len(text) * width)
-        rows = range((plot.rows - 1) * height, -1, -height)
-        row = next((row for row in rows if not any(one[row : row + height, place].any() for one in covered)), None)
-        if text and row is not None:
-            mask = Image.new("L", (len(text) * width, height))
-            ImageDraw.Draw(mask).text((0, height // 2), text, 255, _font(width), anchor="lm")
-            _lay(inside[row : row + height, place], np.asarray(mask) // (256 // (_LEVELS + 1)), inks.axis)
+    places = [columns_of(span, plot.x_limits, plot.columns) for span in plot.spans]
+
+    def is_free(row: int, first: int, stop: int) -> bool:
+        return not any(one[row * height : (row + 1) * height, first * width : stop * width].any() for one in covered)
+
+    for row, first, text in placed_names(plot.spans, places, plot.rows, plot.columns, is_free):
+        mask = Image.new("L", (len(text) * width, height))
+        ImageDraw.Draw(mask).text((0, height // 2), text, 255, _font(width), anchor="lm")
+        place = inside[row * height : (row + 1) * height, first * width : (first + len(text)) * width]
+        _lay(place, np.asarray(mask) // (256 // (_LEVELS + 1)), inks.axis)
 
 
 @cache
@@ -183,7 +185,7 @@ def _coverage(plot: Plot, curve: Curve, cell: tuple[int, int]) -> npt.NDArray[np
     size = plot.columns * width, plot.rows * height
     mask = Image.new("L", (size[0] * _FINE, size[1] * _FINE))
     draw = ImageDraw.Draw(mask)
-    times_s, values = _within(*min_max(curve.times_s, curve.values, plot.x_limits, size[0]), plot.x_limits)
+    times_s, values = within(*min_max(curve.times_s, curve.values, plot.x_limits, size[0]), plot.x_limits)
     points = np.stack((plot.across(times_s, width), plot.down(values, height)), axis=1) * _FINE
     if curve.marker != BRAILLE or len(points) == 1:
         radius = max(height * _MARK_SHARE, 1.5) * _FINE
@@ -193,14 +195,6 @@ def _coverage(plot: Plot, curve: Curve, cell: tuple[int, int]) -> npt.NDArray[np
         draw.line(points.ravel().tolist(), fill=255, width=max(round(height * _LINE_SHARE * _FINE), _FINE))
     covered: npt.NDArray[np.uint8] = (np.asarray(mask.reduce(_FINE)) // (256 // (_LEVELS + 1))).clip(max=_LEVELS)
     return covered
-
-
-def _within(times_s: FloatArray, values: FloatArray, x_limits: Limits) -> tuple[FloatArray, FloatArray]:
-    """Return points whose first and last one are at most at the limits, where their lines cross these."""
-    if len(times_s) < 2:
-        return times_s, values
-    within = np.clip(times_s, *x_limits)
-    return within, np.where(within == times_s, values, np.interp(within, times_s, values))
 
 
 def _lay(image: Pixels, covered: npt.NDArray[np.uint8], rgb: Rgb) -> None:

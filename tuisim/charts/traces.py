@@ -189,6 +189,14 @@ def min_max(
     return _in_pairs(times_s[starts], times_s[ends]), _extremes(values[starts] <= values[ends], least, greatest)
 
 
+def within(times_s: FloatArray, values: FloatArray, x_limits: tuple[float, float]) -> tuple[FloatArray, FloatArray]:
+    """Return points whose first and last one are at most at the limits, where their lines cross these."""
+    if len(times_s) < 2:
+        return times_s, values
+    inside = np.clip(times_s, *x_limits)
+    return inside, np.where(inside == times_s, values, np.interp(inside, times_s, values))
+
+
 def _visible(times_s: FloatArray, x_limits: tuple[float, float]) -> tuple[int, int]:
     first = max(int(np.searchsorted(times_s, x_limits[0], "left")) - 1, 0)
     return first, min(int(np.searchsorted(times_s, x_limits[1], "right")) + 1, len(times_s))

@@ -85,7 +85,7 @@ def test_every_pane_fits_its_size(pane: str, words: str, size: tuple[int, int]) 
         assert words in text
 
 
-def test_an_empty_log_says_how_to_make_one() -> None:
+def test_an_empty_log_says_what_else_there_is() -> None:
     log = long_log()
     model = model_of(type(log)("none", log.table.slice(0, 0), log.layout))
-    assert "print('Colour: '" in text_of(model)
+    assert "T shows the telemetry" in text_of(model)

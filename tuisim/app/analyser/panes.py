@@ -41,6 +41,8 @@ CHOSEN = Style(color=palette.YELLOW, bold=True)
 _WIDEST = 28
 _GAP = 2
 """Columns between those of a table."""
+_MOST_BELOW = 20
+"""Lines below the rows of a pane at most, if there is room for all."""
 _SAMPLED = 40
 """Number of rows that determine the width of a table's column, besides the visible ones."""
 _MEASURED = 1000
@@ -48,11 +50,10 @@ _MEASURED = 1000
 SEARCHED_AT_ONCE = 20_000
 """Up to this many rows, the search for bands takes a few hundredths of a second."""
 
-EMPTY = (
-    "This log is empty. To log a value, print it with a name:",
-    "    print('Colour: ' + str(value))",
-    "Then run again; T shows the telemetry.",
-)
+_LEAST_ROWS = 10
+"""A pane with few rows leaves the rest of its lines to the chart, but these."""
+
+EMPTY = ("This log is empty. T shows the telemetry of a run.",)
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,7 +225,10 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     measured = rows if len(rows) <= _MEASURED else rows[first : first + room]
     widths = [max(map(len, column)) for column in zip(pane.heads, *measured, strict=True)]
     used, gap = _columns_of(measured, widths, width)
-    lines: list[Line] = [_row([pane.heads[at] for at in used], [widths[at] for at in used], gap, HEAD)]
+    head = _row([pane.heads[at] for at in used], [widths[at] for at in used], gap, HEAD)
+    if any(row[at] for row in measured for at in range(used[-1] + 1, len(widths))):
+        head = [(f"{cut(head[0][0], width - 2):{width - 1}}…", HEAD)]
+    lines: list[Line] = [head]
     shown: list[Line] = []
     chosen_at = range(0)
     for number, row in enumerate(rows[first : first + room], first):
@@ -240,13 +244,21 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     return lines + shown[start : start + room] + [[(text, DIM)] for text in below]
 
 
+def _wanted_rows(name: str, model: Model, width: int) -> int:
+    """Return the number of lines that show all of a pane."""
+    if name == "table":
+        return 1 + len(model.rows)
+    rows, below = PANES[name].rows(model), PANES[name].below(model)
+    return 1 + len(rows) + len(_wrapped(below, width, _MOST_BELOW)) if not PANES[name].wraps else _MEASURED
+
+
 def _below(pane: Pane, model: Model, width: int, height: int) -> tuple[list[str], int]:
     """Return the lines below the rows of a pane, and the number of rows for which there is room.
 
-    All rows come first, if they fit; among many, a third of the lines is for what is below them.
+    All rows come first, if they fit; among many, a sixth of the lines is for what is below them.
     """
     spare = height - 1 - len(pane.rows(model))
-    below = _wrapped(pane.below(model), width, spare if spare >= 0 else height // 3)
+    below = _wrapped(pane.below(model), width, spare if spare >= 0 else height // 6)
     return below, max(height - 1 - len(below), 1)
 
 
@@ -418,6 +430,7 @@ class PaneView(LinesPanel):
             if not is_table:
                 self.border_subtitle = place_in(self.name_shown, model, self.chosen, width, height)
             self._text.set_lines(pane_lines(self.name_shown, model, self.chosen, width, height))
+            self.styles.max_height = max(_wanted_rows(self.name_shown, model, width), _LEAST_ROWS) + 2
 
     def _compute(self, model: Model, pane: str) -> None:
         """Compute the missing content of a pane, once at a time; that of a small log at once."""

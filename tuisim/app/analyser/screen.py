@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from time import monotonic
 from typing import TypeVar
@@ -170,6 +171,11 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         """Show the log that was read, unless another one was requested since."""
         opened, before = model.opened, self._model
         if opened.request is not self.request:
+            return
+        is_first = before is None and not opened.request.telemetry
+        if is_first and not model.log.rows and any(run.telemetry.count for run in opened.runs):
+            self.say("Nothing was printed with a name: this is the telemetry. {telemetry} shows the printed samples")
+            self.open(replace(opened.request, telemetry=True))
             return
         if opened.done:
             now_s = monotonic()

@@ -175,7 +175,9 @@ class WorldPane(Vertical):
         self._model, self._shown = model, None
         self._worlds.clear()
         self._requested.clear()
-        self.display = self.is_on and has_poses(model.opened) and self.screen.size.width >= _BESIDE_COLS
+        self.display = (
+            self.is_on and bool(model.log.rows) and has_poses(model.opened) and self.screen.size.width >= _BESIDE_COLS
+        )
         self.show(model)
 
     def show(self, model: Model) -> None:
