@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from textual.pilot import Pilot
-from textual.widgets import Input
+from textual.widgets import Input, OptionList
 
 from tests.app.app_help import notices, ready, screen_text, settings, until, until_shown
 from tests.app.render.test_goals import texts
@@ -199,9 +199,14 @@ async def test_examples_of_goals_are_offered_and_opened_by_name(task: Path) -> N
     async with LabApp(settings()).run_test(size=SIZE) as pilot:
         app = await ready(pilot)
         await pilot.press("o")
+        await until(pilot, lambda: bool(app.screen.query(OptionList)))
+        listed = app.screen.query_one(OptionList)
+        await until(pilot, lambda: listed.option_count > 0)
+        assert "task_goals.toml" in screen_text(app)
+        # Those of tuisim come last.
+        listed.highlighted = listed.option_count - 1
         await until_shown(pilot, "square_goals.toml")
         assert "A square, closed within 20 mm" in screen_text(app)
-        assert "task_goals.toml" in screen_text(app)
         await pilot.press("escape")
         await open_path(pilot, app, "square_goals.toml")
         await until_shown(pilot, "A square, closed within 20 mm")
