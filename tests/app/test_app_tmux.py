@@ -95,8 +95,8 @@ def test_with_an_untried_textual_it_runs_without_private_names(terminal: Termina
     text = terminal.until(lambda text: "finished" in text.splitlines()[-1] and "Colour: 0.0" in text)
     assert "▀" in text
     terminal.keys("?")
-    terminal.until(lambda text: "Guide" in text)
+    terminal.until(lambda text: "Guide" in text and "esc closes" in text)
     terminal.keys("Escape")
-    terminal.until(lambda text: "R run" in text.splitlines()[-1])
+    terminal.until(lambda text: "Guide" not in text and "R run" in text.splitlines()[-1])
     terminal.keys("q")
     terminal.until(lambda text: "EXIT 0" in text)
