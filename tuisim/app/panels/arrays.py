@@ -69,7 +69,8 @@ class _Disc(Widget):
         self._picture.show(face)
         lines: list[Line] = []
         if face is not None and (where := self._where) is not None:
-            lines = face_lines(face, where.text_cols - where.below, where.text_rows, has_limits=has_limits)
+            width = min(where.text_cols - where.below, self._text.size.width or where.text_cols)
+            lines = face_lines(face, width, where.text_rows, has_limits=has_limits)
         self._text.set_lines(lines)
 
 
