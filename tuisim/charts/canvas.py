@@ -144,19 +144,18 @@ def _braille(curve: Curve, columns: int, rows: int, x_limits: Limits, y_limits: 
     across, down = _points(curve, columns, rows, x_limits, y_limits, (DOTS_X, DOTS_Y))
     is_thick = curve.joined and curve.rising
     # A line over time is two dots thick: those above and below its place.
-    across, down = np.floor(across), np.rint(down) - 1 if is_thick else np.floor(down)
-    inside = (across >= -DOTS_X) & (across < (columns + 1) * DOTS_X) & (down >= -DOTS_Y) & (down < (rows + 1) * DOTS_Y)
+    # A margin of one character: plotext places limits in the middle of the outermost ones.
+    across, down = np.floor(across) + DOTS_X, (np.rint(down) - 1 if is_thick else np.floor(down)) + DOTS_Y
+    width, height = (columns + 2) * DOTS_X, (rows + 2) * DOTS_Y
     if curve.joined:
         # What lies outside is at the edge of the margin: lines lead there.
-        across = across.clip(-DOTS_X, (columns + 1) * DOTS_X - 1)
-        down = down.clip(-DOTS_Y, (rows + 1) * DOTS_Y - 1)
+        across, down = across.clip(0, width - 1), down.clip(0, height - 1)
     else:
-        across, down = across[inside], down[inside]
+        across, down = (at.astype(np.float64) for at in _inside(across, down, width, height))
     if not len(across):
         return np.zeros((rows, columns), np.uint32)
-    # A margin of one character: plotext places limits in the middle of the outermost ones.
-    bits = _plotted(across + DOTS_X, down + DOTS_Y, columns + 2, rows + 2, curve.joined)
-    dots = (bits[:, None, :, None] & _BITS[None, :, None, :] > 0).reshape((rows + 2) * DOTS_Y, (columns + 2) * DOTS_X)
+    bits = _plotted(across, down, columns + 2, rows + 2, curve.joined)
+    dots = (bits[:, None, :, None] & _BITS[None, :, None, :] > 0).reshape(height, width)
     if is_thick:
         dots[:, 1:] |= dots[:, :-1].copy()
         dots[1:] |= dots[:-1].copy()
