@@ -90,15 +90,22 @@ def welcome_at_start(context: ActionContext) -> None:
 
     def found(entries: list[Recent]) -> None:
         if entries:
-            welcome(context)
+            _welcome(context, lambda: entries)
 
     background.run(context.panels, partial(recent, NEW_NAME), found, group="welcome")
 
 
 def welcome(context: ActionContext) -> None:
     """Show the ways to begin, and what there is to go on with."""
+    from tuisim.app.setup.recent import recent
+
+    _welcome(context, partial(recent, NEW_NAME))
+
+
+def _welcome(context: ActionContext, find: Callable[[], list[Recent]]) -> None:
+    """Show the welcome; `find` returns what there is to go on with, and is called in a thread."""
     from tuisim.app.dialogs.welcome import Begin, Welcome
-    from tuisim.app.setup.recent import Recent, recent
+    from tuisim.app.setup.recent import Recent
 
     def chosen(what: Begin | Recent | None) -> None:
         # Without a home folder it appears again, which is no reason to fail.
@@ -117,7 +124,7 @@ def welcome(context: ActionContext) -> None:
             case Recent():
                 context.document.when_safe(partial(_go_on, context, what))
 
-    context.app.push_screen(Welcome(not preference(_WELCOMED), partial(recent, NEW_NAME)), chosen)
+    context.app.push_screen(Welcome(not preference(_WELCOMED), find), chosen)
 
 
 def _go_on(context: ActionContext, what: Recent) -> None:
