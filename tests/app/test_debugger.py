@@ -186,6 +186,9 @@ async def test_the_footer_offers_what_is_needed_while_the_code_is_read(home: obj
         shown = str(app.key_footer.render())
         assert "N line back" in shown
         assert "u out" in shown
+        # Where there is room for more.
+        await pilot.resize_terminal(200, 60)
+        await until(pilot, lambda: "L to cursor" in str(app.key_footer.render()))
 
 
 @pytest.mark.slow
