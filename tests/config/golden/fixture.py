@@ -174,15 +174,17 @@ def accepted() -> tuple[Difference, ...]:
 
 
 @cache
-def other_first() -> frozenset[str]:
-    """Return the cases with several errors of which another one is told first."""
-    return frozenset(tomllib.loads(DIFFERENCES.read_text("utf-8"))["other_first"])
+def listed(name: str) -> frozenset[str]:
+    """Return one of the lists of `differences.toml`, such as `other_first`."""
+    return frozenset(tomllib.loads(DIFFERENCES.read_text("utf-8"))[name])
 
 
-@cache
-def other_world() -> frozenset[str]:
-    """Return the cases whose world is meant to be another one."""
-    return frozenset(tomllib.loads(DIFFERENCES.read_text("utf-8"))["other_world"])
+def without_other_goals(outcome: Recorded, case: Case) -> Recorded:
+    """Return an outcome without the goals of its first run if they come with the examples and were changed."""
+    if listed("other_goals").isdisjoint((*case.words, case.choices.get("goals"))) or "runs" not in outcome:
+        return outcome
+    first, *others = outcome["runs"]
+    return {**outcome, "runs": [{key: value for key, value in first.items() if key != "goals"}, *others]}
 
 
 def in_words_of_now(before: Recorded) -> Recorded:
