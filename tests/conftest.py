@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Generator, Iterator
@@ -19,7 +20,7 @@ from tests.running import PATIENCE_S, Done, Run, Start, over
 from tuisim.atomic import make_private_folder
 from tuisim.cli import run_command
 from tuisim.config import mat_cache
-from tuisim.config.folders import cache_folder
+from tuisim.config.folders import cache_folder, home_folder
 from tuisim.config.preferences import keep
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
@@ -102,6 +103,13 @@ def _own_home(tmp_path_factory: pytest.TempPathFactory) -> object:
     keep("welcomed", True)
     yield
     patch.undo()
+
+
+@pytest.fixture(autouse=True)
+def _no_draft_stays() -> Iterator[None]:
+    """Remove what a test left unsaved in the home of all: the next app that starts without a program would offer it."""
+    yield
+    shutil.rmtree(home_folder() / "drafts", ignore_errors=True)
 
 
 @pytest.fixture(scope="session", autouse=True)
