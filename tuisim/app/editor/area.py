@@ -39,8 +39,8 @@ _GUARD = {ord(char): 0xF700 + at for at, char in enumerate(_BREAKS)}
 _UNGUARD = {stand_in: char for char, stand_in in _GUARD.items()}
 _UNSHOWN = re.compile(r"[\x00-\x08\x0a-\x1f\x7f-\x9f\uf700-\uf707]")
 
-VALUE_GAP, LEAST_VALUE = 2, 5
-"""Cells between a line and the values behind it, and the fewest for these."""
+VALUE_GAP, LEAST_VALUE = 2, 10
+"""Cells between a line and the values behind it, and those that the line leaves to them."""
 
 EDITOR_KEYS = (
     ("Enter", "Start editing; Escape ends it"),
@@ -277,30 +277,40 @@ class CodeArea(TextArea):
             number_style = base + self._component(lit)
             text = _on(text, base, number_style)
         room = self.scrollable_content_region.width - gutter
-        if cell_len(text.text.rstrip()) > room and not (self.typing and line_index == self.cursor_location[0]):
-            text = Strip.join([text.crop(0, room - 1), Strip([Segment("…", number_style)], 1)])
-        elif values := self._values.get(line):
-            text = self._with_values(text, values, room, Style(bgcolor=number_style.bgcolor))
+        is_typed = self.typing and line_index == self.cursor_location[0]
+        if (values := self._values.get(line)) and section == 0 and not is_typed:
+            text = self._with_values(text, values, room, number_style)
+        elif cell_len(text.text.rstrip()) > room and not is_typed:
+            text = _cut(text, room, number_style)
         run_mark = {"error": "✗", "lit": "▶"}.get(lit, " ") if section == 0 else " "
         number = f"{line if section == 0 else '':>{gutter - 3}}"
         mark = self._breaks.get(line, " ") if section == 0 else " "
         head = [Segment(mark, number_style + self._component("break")), Segment(f"{run_mark}{number} ", number_style)]
         return Strip.join([Strip(head, gutter), text])
 
-    def _with_values(self, text: Strip, values: Sequence[Variable], room: int, ground: Style) -> Strip:
-        """Return a row with the values of variables behind its text, as far as they fit."""
+    def _with_values(self, text: Strip, values: Sequence[Variable], room: int, style: Style) -> Strip:
+        """Return a row with the values of variables behind its text, without their names if these do not fit.
+
+        The text gives way: without its value a line is of little use to who looks for an error.
+        """
+        ground = Style(bgcolor=style.bgcolor)
         used = cell_len(text.text.rstrip()) + VALUE_GAP
-        left = room - used
-        if left < LEAST_VALUE:
-            return text
-        pieces: Line = []
-        for one in values:
-            style = self._component("changed" if one.changed else "value")
-            pieces.append(
-                (f"{', ' if pieces else ''}{one.name} = {short_value(' '.join(one.value.split()))}", style + ground)
-            )
-        shown = [Segment(piece, style) for piece, style in cut_line(pieces, left)]
-        return Strip.join([text.crop(0, used), Strip(shown), text.crop(used + sum(one.cell_length for one in shown))])
+        named = [(one.name + " = ", one) for one in values]
+        bare = [("" if at else "→ ", one) for at, one in enumerate(values)]
+        for pieces in (named, bare):
+            line: Line = [
+                (f"{', ' if at else ''}{before}{short_value(' '.join(one.value.split()))}",
+                 self._component("changed" if one.changed else "value") + ground)
+                for at, (before, one) in enumerate(pieces)
+            ]  # fmt: skip
+            width = sum(cell_len(piece) for piece, _ in line)
+            if used + width <= room:
+                break
+        start = min(used, room - min(width, LEAST_VALUE))
+        shown = [Segment(piece, style) for piece, style in cut_line(line, room - start)]
+        if start < used:
+            text = Strip.join([_cut(text, start - 1, style), Strip([Segment(" ", style)], 1)])
+        return Strip.join([text.crop(0, start), Strip(shown)]).extend_cell_length(room, style)
 
     # Keys and mouse
 
@@ -472,6 +482,11 @@ def _on(strip: Strip, base: Style, lit: Style) -> Strip:
     pieces = ((piece.text, piece.style or base) for piece in strip)
     shown = [Segment(text, style + background if style.bgcolor == base.bgcolor else style) for text, style in pieces]
     return Strip(shown, strip.cell_length)
+
+
+def _cut(strip: Strip, width: int, style: Style) -> Strip:
+    """Return a row that is too long, or is to give way, with a mark that more follows."""
+    return Strip.join([strip.crop(0, width - 1), Strip([Segment("…", style)], 1)])
 
 
 FIND, LINE = "find", "line"
