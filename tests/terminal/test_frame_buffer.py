@@ -153,6 +153,15 @@ def test_after_something_else_has_written_everything_is_sent_again() -> None:
     assert sent(frame_buffer, rows([text("word")])) == "\x1b[1;1Hword"
 
 
+def test_of_another_size_everything_is_sent_whatever_was_drawn_for_the_size_before() -> None:
+    frame_buffer = FrameBuffer()
+    sent(frame_buffer, rows([text("words")]))
+    frame_buffer.forget()
+    sent(frame_buffer, ChopsUpdate([{0: text("words")}], [(0, 0, 5)], [[5]]))
+
+    assert sent(frame_buffer, rows([text("word")])) == "\x1b[1;1Hword"
+
+
 def test_an_unknown_kind_of_update_is_left_to_textual() -> None:
     frame_buffer = FrameBuffer()
     sent(frame_buffer, rows([text("word")]))

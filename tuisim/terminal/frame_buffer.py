@@ -18,6 +18,7 @@ from weakref import WeakSet, finalize
 from rich.cells import cell_len, split_graphemes
 from rich.color import Color, ColorSystem
 from rich.style import Style
+from textual.geometry import Size
 from textual.strip import SGR_STYLES, Strip
 
 from tuisim.terminal.cell_view import CellStrip, JoinedStrip, PictureStrip
@@ -72,6 +73,8 @@ class FrameBuffer:
 
     def __init__(self) -> None:
         self._rows: dict[int, list[Cell | None]] = {}
+        self._size = Size(0, 0)
+        """That of the last whole screen."""
         self._pictures: WeakSet[TilePicture] = WeakSet()
         """Those that have been drawn, and still are in use."""
         self._gone: list[Callable[[], str]] = []
@@ -95,6 +98,10 @@ class FrameBuffer:
         """
         pen = _Pen()
         if isinstance(update, LayoutUpdate):
+            if update.region.size != self._size:
+                # What was drawn for another size since the terminal has got this one is wrapped or cut there.
+                self.forget()
+                self._size = update.region.size
             pieces = _pieces_of_all(update)
         elif isinstance(update, ChopsUpdate):
             pieces = _pieces_of_part(update)
