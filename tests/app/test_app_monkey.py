@@ -21,7 +21,7 @@ from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.terminal_app import TerminalApp
 
-PRESSES, AT_ONE_GO = 3000, 400
+PRESSES, AT_ONE_GO = 1500, 400
 """How often something is pressed for one seed, and at most before the app is left and opened anew."""
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("home")]

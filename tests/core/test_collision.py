@@ -184,17 +184,10 @@ def check_case(
 QUIET = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_too_much]
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=QUIET)
-@given(**CASE)
 @pytest.mark.slow
-def test_outline_never_enters_anything(**case: Any) -> None:
-    check_case(**case)
-
-
-@pytest.mark.slow
-@settings(max_examples=10_000, deadline=None, suppress_health_check=QUIET)
+@settings(max_examples=2_500, deadline=None, suppress_health_check=QUIET)
 @given(**CASE)
-def test_outline_never_enters_anything_in_ten_thousand_cases(**case: Any) -> None:
+def test_outline_never_enters_anything_in_thousands_of_cases(**case: Any) -> None:
     check_case(**case)
 
 
