@@ -96,10 +96,10 @@ PAUSE = pause(Variable("total", "int", "100000000000", True), Variable("n", "int
     ("width", "rows"),
     [
         (70, ["total = 0", "for n in range(9):  n = 1", "total = total + n * 100000000000  total = 100000000000"]),
-        (48, ["total = 0", "for n in range(9):  n = 1", "total = total + n * 100000000000  tota…"]),
-        (44, ["total = 0", "for n in range(9):  n = 1", "total = total + n * 100000000000"]),
+        (60, ["total = 0", "for n in range(9):  n = 1", "total = total + n * 100000000000  → 100000000000"]),
+        (44, ["total = 0", "for n in range(9):  n = 1", "total = total + n *… → 100000000000"]),
     ],
-    ids=["fits", "cut", "no room"],
+    ids=["fits", "without the name", "instead of the end of the line"],
 )
 async def test_values_stand_behind_the_lines_that_assign_them(width: int, rows: list[str]) -> None:
     app = CodeApp()

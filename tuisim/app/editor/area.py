@@ -40,7 +40,7 @@ _UNGUARD = {stand_in: char for char, stand_in in _GUARD.items()}
 _UNSHOWN = re.compile(r"[\x00-\x08\x0a-\x1f\x7f-\x9f\uf700-\uf707]")
 
 VALUE_GAP, LEAST_VALUE = 2, 10
-"""Cells between a line and the values behind it, and those that the line leaves to them."""
+"""Cells between a line and the values behind it, and those that the line leaves to values that need more than half."""
 
 EDITOR_KEYS = (
     ("Enter", "Start editing; Escape ends it"),
@@ -306,7 +306,7 @@ class CodeArea(TextArea):
             width = sum(cell_len(piece) for piece, _ in line)
             if used + width <= room:
                 break
-        start = min(used, room - min(width, LEAST_VALUE))
+        start = min(used, room - (width if width <= room // 2 else LEAST_VALUE))
         shown = [Segment(piece, style) for piece, style in cut_line(line, room - start)]
         if start < used:
             text = Strip.join([_cut(text, start - 1, style), Strip([Segment(" ", style)], 1)])
