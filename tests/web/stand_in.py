@@ -29,9 +29,15 @@ while True:
         send(b"P", b"ts13:deliver_chunks3:key%d:%se" % (len(chunk), chunk))
     elif data == b"nonsense":
         os.write(1, b"X" * 5)
+    elif data.startswith(b"packet "):
+        os.write(1, bytes.fromhex(data.decode().split()[1]))
     elif data == b"offer":
         file = {"key": "key", "path": "/x/run.csv", "open_method": "download", "mime_type": "text/csv", "encoding": ""}
         send(b"M", json.dumps({"type": "deliver_file_start"} | file).encode())
+    elif data.startswith(b"tell "):
+        _, what, name = data.decode().split(" ", 2)
+        send(b"M", json.dumps({"type": "tell", "what": what, "program": name}).encode())
+        send(b"D", b"told")
     elif data.startswith(b"end "):
         _, code, text = data.decode().split(" ", 2)
         sys.stderr.write(text)

@@ -7,6 +7,8 @@ from typing import TypeVar
 
 from aiohttp import WSCloseCode, web
 
+from tuisim.web.watchers import Watchers
+
 _Data = TypeVar("_Data")
 _MOST_REASON_BYTES = 123
 """The most that fits into the last message of a socket."""
@@ -22,10 +24,13 @@ class Link:
     def __init__(self) -> None:
         self.socket: web.WebSocketResponse | None = None
         """The connection to the browser; None while the app has none."""
+        self.watchers = Watchers()
+        """Browsers that only look on."""
         self._waiting: list[str] = []
 
     async def send_bytes(self, data: bytes) -> None:
         """Send what the app draws."""
+        self.watchers.show(data)
         if self.socket is not None:
             await _sent(self.socket, self.socket.send_bytes, data)
 

@@ -101,8 +101,11 @@ const session = (() => {
     // Adds the app to the address of a socket.
     address: (url) => (chosen ? `${url}&session=${chosen}` : url),
     heard: (data) => {
-      if (typeof data !== "string" || !data.startsWith('["session"')) return;
-      [, chosen] = JSON.parse(data);
+      if (typeof data !== "string") return;
+      const [what, told] = JSON.parse(data);
+      if (what === "watched") document.getElementById("watched").hidden = !told;
+      if (what !== "session") return;
+      chosen = told;
       kept.setItem("session", chosen);
     },
     closed: (event) => {
