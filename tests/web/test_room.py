@@ -66,11 +66,13 @@ async def opened(tmp_path: Path) -> AsyncIterator[Opened]:
     """Serve a class with the stand-in for an app."""
     async with AsyncExitStack() as stack:
 
-        async def start(most: int = 3, keep_s: float = PATIENCE_S) -> Class:
+        async def start(*words: str, most: int = 3, keep_s: float = PATIENCE_S) -> Class:
             links = open_class(tmp_path / "class", NAMES)
             stack.callback(os.close, links.lock_fd)
             limits = ServerLimits(most, VisitLimits(PATIENCE_S, keep_s))
-            made = Room(links, "127.0.0.1", lambda one: (stand_in(), Place(one.folder, {})), limits, lambda _: None)
+            made = Room(
+                links, "127.0.0.1", lambda one: (stand_in(*words), Place(one.folder, {})), limits, lambda _: None
+            )
             port = await stack.enter_async_context(listening(made, "127.0.0.1", 0))
             client = await stack.enter_async_context(ClientSession())
             tokens = {"tutor": links.tutor} | {pupil.name: pupil.token for pupil in links.pupils}
@@ -171,6 +173,21 @@ async def test_an_app_that_no_tab_shows_can_be_looked_on_at(opened: Opened) -> N
     assert [await heard(view), (await heard(view))[:16]] == ['["size", [120, 40]]', '{"type": "show",']
     again = await found["Ada"].socket(f"?session={(await found['Ada'].sessions())['sessions'][0]['id']}")
     assert ['"watched", 1' in await heard(again) for _ in range(2)] == [False, True]
+
+
+async def test_an_app_that_no_tab_shows_goes_on_drawing_for_who_looks_on(opened: Opened) -> None:
+    found = await opened("asks")
+    socket, _ = await found["Ada"].started()
+    view = await found.looks_on("Ada")
+    assert [await heard(view), await heard(view)] == ['["size", [120, 40]]', "\x1b[6n"]
+    # The page of the student answers by itself.
+    await view.close()
+    await socket.close()
+    async with asyncio.timeout(PATIENCE_S):
+        while (await found.seen())["Ada"]["shown"]:
+            await asyncio.sleep(0.005)
+    view = await found.looks_on("Ada")
+    assert [await heard(view) for _ in range(3)] == ['["size", [120, 40]]', "\x1b[6n", "\x1b[1;1R"]
 
 
 PLACES_OF_OTHERS = {

@@ -82,7 +82,7 @@ class Visit:
         place: Place,
     ) -> None:
         self._limits, self._report = limits, report
-        self._link, self._activity = Link(), Activity()
+        self._link, self._activity = Link(self._answer), Activity()
         self._session = WebSession(command, self._link, downloads, place)
         self.doing = Doing()
         """What the app does."""
@@ -164,6 +164,9 @@ class Visit:
             async for _ in socket:
                 pass
         await self._tell_watched()
+
+    async def _answer(self, data: bytes) -> None:
+        await self._session.send_bytes(data)
 
     async def _tell_watched(self) -> None:
         # A file that is offered waits for a browser; this is of no use to a later one, which is told when it comes.
