@@ -306,8 +306,8 @@ PLACES: Mapping[str, Callable[[Random], None]] = {
 
 def _names(random: Random) -> Iterator[str]:
     yield from (f"web:{name}" for name in ATTACKS)
-    yield from (f"room:{name}" for name in ROOM_ATTACKS)
     while True:
+        yield f"room:{random.choice(list(ROOM_ATTACKS))}"
         yield f"{random.choice(list(PLACES))}:{random.getrandbits(32)}"
 
 

@@ -78,6 +78,9 @@ _SERVER = (
     Prints an address with a secret part. Whoever has this address can run programs as you. ctrl+c ends the server and
     the apps of all visitors.
 
+    With --students, each student of a class has a link, folders and an app with limits, and you have a page of all of
+    them: see tuisim guide in-a-browser.
+
     PROGRAM and options are those of `tuisim open`. This command needs the extra `web`.
     """,
 )

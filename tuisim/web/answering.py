@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from typing import Any, Protocol
 
 from aiohttp import web
@@ -13,9 +13,8 @@ from tuisim.web.upload import MOST_FILE_BYTES
 
 Answer = Callable[[Any, web.Request], Awaitable[web.StreamResponse]]
 Routes = Sequence[tuple[str, str, Answer]]
-"""Method, path after the secret part, and the function that answers, which gets the owner of the secret part first."""
+"""GET or POST, the path after the secret part, and the function that answers, which gets the owner of that part."""
 _REFUSAL = "Use the whole address that `tuisim serve` has printed.\n"
-_OWNER: web.RequestKey[Any] = web.RequestKey("owner", object)
 
 
 class Owner(Protocol):
@@ -35,20 +34,30 @@ def application_of(find: Callable[[], Sequence[Owner]]) -> web.Application:
         find: Returns the owners; a secret part may change.
     """
 
-    @web.middleware
-    async def guard(request: web.Request, handler: Handler) -> web.StreamResponse:
+    def owner_of(request: web.Request) -> Owner | None:
         # What does something is sent by a page of ours only.
         acts, origin = request.path.endswith("/ws") or request.method == "POST", request.headers.get("Origin")
         # All are asked, so that the time does not tell which one it was.
         found = [one for one in find() if one.gate.admits(request.path, request.host, origin, from_a_page=acts)]
-        if not found:
+        return found[0] if found else None
+
+    @web.middleware
+    async def guard(request: web.Request, handler: Handler) -> web.StreamResponse:
+        if owner_of(request) is None:
             raise web.HTTPForbidden(text=_REFUSAL)
-        request[_OWNER] = found[0]
         return await handler(request)
 
     async def protect(request: web.Request, response: web.StreamResponse) -> None:
-        owner = request.get(_OWNER)
-        _protect(request, response, owner.gate.framed_by if owner else find()[0].gate.framed_by)
+        _protect(request, response, (owner_of(request) or find()[0]).gate.framed_by)
+
+    def among(answers: Mapping[type, Answer]) -> Handler:
+        async def handle(request: web.Request) -> web.StreamResponse:
+            owner = owner_of(request)
+            if owner is None or type(owner) not in answers:
+                raise web.HTTPForbidden(text=_REFUSAL)
+            return await answers[type(owner)](owner, request)
+
+        return handle
 
     application = web.Application(middlewares=[guard], client_max_size=MOST_FILE_BYTES)
     by_path: dict[tuple[str, str], dict[type, Answer]] = {}
@@ -57,19 +66,10 @@ def application_of(find: Callable[[], Sequence[Owner]]) -> web.Application:
             by_path.setdefault((method, path), {})[type(owner)] = answer
     for (method, path), answers in by_path.items():
         # The gate looks at the token, which may change.
-        application.router.add_route(method, f"/{{token}}{path}", _among(answers))
+        add = application.router.add_get if method == "GET" else application.router.add_post
+        add(f"/{{token}}{path}", among(answers))
     application.on_response_prepare.append(protect)
     return application
-
-
-def _among(answers: dict[type, Answer]) -> Handler:
-    async def handle(request: web.Request) -> web.StreamResponse:
-        owner = request[_OWNER]
-        if (answer := answers.get(type(owner))) is None:
-            raise web.HTTPForbidden(text=_REFUSAL)
-        return await answer(owner, request)
-
-    return handle
 
 
 def _protect(request: web.Request, response: web.StreamResponse, framed_by: str) -> None:

@@ -10,6 +10,8 @@ const span = (seconds) => {
   return seconds < 5400 ? `${Math.round(seconds / 60)} min` : `${(seconds / 3600).toFixed(1)} h`;
 };
 
+const counted = (number, noun) => `${number} ${noun}${number === 1 ? "" : "s"}`;
+
 const state = (app) => {
   if (app.runs) return `runs for ${span(app.since_s)}`;
   return app.program ? `at rest for ${span(app.since_s)}` : "";
@@ -66,8 +68,8 @@ const show = ({ students }) => {
   const apps = students.map((one) => one.app).filter(Boolean);
   const shown = apps.filter((app) => app.shown).length;
   const running = apps.filter((app) => app.runs).length;
-  document.getElementById("sum").textContent =
-    `${students.length} students, ${shown} with an open tab, ${apps.length} apps, ${running} programs running`;
+  const counts = [counted(students.length, "student"), `${shown} with an open tab`, counted(apps.length, "app")];
+  document.getElementById("sum").textContent = [...counts, `${counted(running, "program")} running`].join(", ");
 };
 
 const ask = async () => {
