@@ -96,6 +96,18 @@ def test_what_the_tutors_environment_says_is_not_passed_on(ada: Pupil, monkeypat
     assert (place.variables["TUISIM_HOME"], place.variables["HOME"]) == (str(ada.home), str(ada.folder))
 
 
+KERNELS = {"6.18.44-x": True, "5.14.0": True, "5.13.9": False, "4.20": False, "unknown": False}
+
+
+@pytest.mark.parametrize(("release", "limited"), KERNELS.items())
+def test_processes_are_limited_where_each_app_is_counted_by_itself(
+    release: str, limited: bool, ada: Pupil, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("platform.release", lambda: release)
+    commands = [" ".join(app_of(ada, Handed((), (), ()), isolated=isolated)[0]) for isolated in (True, False)]
+    assert ["RLIMIT_NPROC" in command for command in commands] == [limited, False]
+
+
 ATTACKS = {
     "reading the file of another": "open('{bob}/secret').read()",
     "reading the runs of another": "open('{bobs_home}/runs').read()",
@@ -130,7 +142,9 @@ def test_an_isolated_app_reaches_nothing_of_others(tutor: Path, ada: Pupil, tmp_
         lines += [f"print(open('{tutor}/mat.png').read())", "print('done')"]
         # The same start, with an attack in the place of the app.
         at = command.index("-c") + 1
-        code = command[at].partition("import sys; sys.path")[0] + "\n".join(lines)
+        start = command[at].partition("import sys; sys.path")[0]
+        assert "resource.RLIMIT_AS" in start
+        code = start + "\n".join(lines)
         done = subprocess.run(
             [*command[:at], code], env=place.variables, cwd=place.folder, capture_output=True, text=True, check=False
         )

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import platform
+import re
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,11 +17,22 @@ from tuisim.runs.child.isolation import LIMITS, confined
 from tuisim.web.app_command import app_command
 from tuisim.web.class_links import Pupil
 from tuisim.web.session import Place
+from tuisim.web.usage import MOST_THREADS
 
 _OWN_COPY = (".py", ".ipynb")
 """What a student changes: everybody gets a copy of it."""
 _PASSED_ON = ("PATH", "LANG", "LD_LIBRARY_PATH", "TUISIM_ASSETS", "TZ")
 """Variables of the server that an app gets; others may hold what is meant for the tutor only."""
+_MOST_TASKS = f"""\
+import resource
+hard = resource.getrlimit(resource.RLIMIT_NPROC)[1]
+most = {MOST_THREADS} if hard == resource.RLIM_INFINITY else min({MOST_THREADS}, hard)
+resource.setrlimit(resource.RLIMIT_NPROC, (most, most))
+del resource, hard, most
+"""
+"""Code that limits processes and threads of all programs of a user together; root has no such limit."""
+_COUNTS_ALONE_FROM = (5, 14)
+"""Linux counts them for each isolated app by itself from this version on; before, it counts all of the user."""
 _NICE = "import os; os.nice(5); del os\n"
 """The server, and with it what everybody sees, comes before the programs."""
 
@@ -73,13 +86,18 @@ def app_of(pupil: Pupil, handed: Handed, *, isolated: bool) -> tuple[list[str], 
     """
     for file in handed.copied:
         _give(file, pupil.folder / file.name)
-    command = app_command(handed.words, LIMITS + _NICE)
+    command = app_command(handed.words, LIMITS + (_MOST_TASKS if isolated and _counts_alone() else "") + _NICE)
     if isolated:
         readable = [backgrounds_folder(), programs_folder(), *handed.read]
         command = [*confined(pupil.folder, [pupil.home, pupil.folder], readable), "--", *command]
     passed_on = {name: os.environ[name] for name in _PASSED_ON if name in os.environ}
     own = {"HOME": str(pupil.folder), "TUISIM_HOME": str(pupil.home)}
     return command, Place(pupil.folder, passed_on | own)
+
+
+def _counts_alone() -> bool:
+    found = re.match(r"(\d+)\.(\d+)", platform.release())
+    return found is not None and (int(found[1]), int(found[2])) >= _COUNTS_ALONE_FROM
 
 
 def _give(file: Path, to: Path) -> None:
