@@ -137,7 +137,7 @@ def test_a_cell_says_why_the_app_does_not_run_its_program(cell: Cell, view: AppV
 def test_without_the_app_cells_show_pictures_again(cell: Cell) -> None:
     view = lab.roboSim._view
     assert view is not None
-    view._server.call(view._server.server._send_all_away(None))  # type: ignore[arg-type]
+    view._server.call(view._server.server.send_all_away())
     shown = cell(RUN)
     assert (shown.out, shown.pictures) == ("Colour: 100.0\n", 1)
 

@@ -29,9 +29,17 @@ while True:
         send(b"P", b"ts13:deliver_chunks3:key%d:%se" % (len(chunk), chunk))
     elif data == b"nonsense":
         os.write(1, b"X" * 5)
+    elif said.get("type") == "show" and "asks" in sys.argv:
+        send(b"D", b"\x1b[6n")
+    elif data.startswith(b"packet "):
+        os.write(1, bytes.fromhex(data.decode().split()[1]))
     elif data == b"offer":
         file = {"key": "key", "path": "/x/run.csv", "open_method": "download", "mime_type": "text/csv", "encoding": ""}
         send(b"M", json.dumps({"type": "deliver_file_start"} | file).encode())
+    elif data.startswith(b"tell "):
+        _, what, name = data.decode().split(" ", 2)
+        send(b"M", json.dumps({"type": "tell", "what": what, "program": name}).encode())
+        send(b"D", b"told")
     elif data.startswith(b"end "):
         _, code, text = data.decode().split(" ", 2)
         sys.stderr.write(text)
@@ -44,5 +52,5 @@ while True:
 
 def stand_in(*words: str) -> list[str]:
     """Return the command of the app; one that is `stubborn` does not end when it is asked to, a `slow` one
-    does not hand over its file."""
+    does not hand over its file, one that `asks` wants to know the place of the cursor when it is shown."""
     return [sys.executable, "-I", "-S", "-c", _SOURCE, *words]

@@ -242,6 +242,35 @@ async def test_an_app_that_sends_nonsense_is_ended(visited: Visited) -> None:
     await gone(pid)
 
 
+def packet(kind: bytes, payload: bytes, size: int | None = None) -> str:
+    """Return a packet of an app in hexadecimal, with the size that it says it has."""
+    return (kind + (len(payload) if size is None else size).to_bytes(4, "big") + payload).hex()
+
+
+PACKETS = {
+    "an enormous one": packet(b"D", b"", 0xFFFFFFFF),
+    "no JSON": packet(b"M", b"{"),
+    "no object": packet(b"M", b"[]"),
+    "deep JSON": packet(b"M", b"[" * 9_000),
+    "no type": packet(b"M", b"{}"),
+    "no path": packet(b"M", b'{"type": "deliver_file_start", "key": "k", "path": 5}'),
+    "nothing packed": packet(b"P", b"x"),
+}
+
+
+@pytest.mark.parametrize("sent", PACKETS.values(), ids=PACKETS)
+async def test_a_packet_that_makes_no_sense_ends_its_app_only(sent: str, visited: Visited) -> None:
+    visitor = await visited()
+    socket, pid = await visitor.started()
+    _, other = await visitor.started()
+    await socket.send_json(["stdin", f"packet {sent}"])
+    while (message := await socket.receive(PATIENCE_S)).type is not WSMsgType.CLOSE:
+        pass
+    await gone(pid)
+    assert message.extra == "The app has been ended."
+    assert is_there(other)
+
+
 MESSAGES: dict[str, tuple[str, str]] = {
     "keys": ('["stdin", "é"]', "é"),
     "half a pair": ('["stdin", "\\ud83da"]', "a"),

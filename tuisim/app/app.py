@@ -231,7 +231,12 @@ class LabApp(PanelMessages):
         self.set_interval(_REST_GAP_S, self._seldom)
         self.set_interval(PERIOD_S, self.check_files)
         self.set_timer(_WARM_UP_AFTER_S, warm_up)
-        self.tell_server("ready")
+        self.tell_server("ready", program=self._program_name)
+
+    @property
+    def _program_name(self) -> str:
+        program = self.run_controller.program
+        return program.name if program else ""
 
     def check_files(self) -> None:
         """Reload the files that have changed on disk, or ask about those with unsaved edits."""
@@ -298,7 +303,7 @@ class LabApp(PanelMessages):
         except TuisimError as error:
             self.complain(error)
             return False
-        self.tell_server("run", id=self.run_controller.run_id)
+        self.tell_server("run", id=self.run_controller.run_id, program=self._program_name)
         self._starting_until_s = time.monotonic() + _STARTING_S
         self._set_frame_gap(_START_GAP_S)
         self.set_timer(_WARM_UP_AFTER_S, self.run_controller.prepare_next)

@@ -321,16 +321,18 @@ def words_without(options: Sequence[click.Option]) -> list[str]:
     """Return the words of the command that is running, without the given options and their values.
 
     Args:
-        options: Options with a value and without a short name.
+        options: Options without a short name.
     """
     flags = {flag for one in options for flag in one.opts}
+    alone = {flag for one in options if one.is_flag for flag in one.opts}
     kept: list[str] = []
     words = iter(click.get_current_context().meta[_WORDS])
     for word in words:
         if word == ARGUMENTS_FOLLOW:
             return [*kept, word, *words]
         if word in flags:
-            next(words)
+            if word not in alone:
+                next(words)
         elif word.partition("=")[0] not in flags:
             kept.append(word)
     return kept

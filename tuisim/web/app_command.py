@@ -11,6 +11,11 @@ _BOOT = "import sys; sys.path.append(sys.argv.pop(1)); from tuisim.__main__ impo
 _PACKAGE_FOLDER = str(Path(__file__).parent.parent.parent)
 
 
-def app_command(words: Sequence[str]) -> list[str]:
-    """Return the command, as words, of an app that opens what these words of `tuisim open` name."""
-    return [sys.executable, "-P", "-c", _BOOT, _PACKAGE_FOLDER, "open", *words]
+def app_command(words: Sequence[str], first: str = "") -> list[str]:
+    """Return the command, as words, of an app.
+
+    Args:
+        words: What it opens, as words of `tuisim open`.
+        first: Code for its start.
+    """
+    return [sys.executable, "-P", "-c", first + _BOOT, _PACKAGE_FOLDER, "open", *words]

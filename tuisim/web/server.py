@@ -9,33 +9,36 @@ import signal
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
+from typing import Protocol
 from urllib.parse import quote
 
 import textual_serve
 from aiohttp import WSCloseCode, web
 from aiohttp.http import HttpProcessingError
-from aiohttp.typedefs import Handler, Middleware
 from textual_serve.download_manager import DownloadManager
 
 from tuisim.data_class import dataclass
 from tuisim.errors import SIGNALLED, ConfigError, TuisimError, counted
+from tuisim.web.answering import Routes, application_of
 from tuisim.web.gate import Gate
 from tuisim.web.link import close
-from tuisim.web.session import END_WITHIN_S
-from tuisim.web.upload import MOST_FILE_BYTES, keep_file
+from tuisim.web.session import END_WITHIN_S, HERE, Place
+from tuisim.web.upload import keep_file
 from tuisim.web.visit import Visit, VisitLimits
 
 HEARTBEAT_S = 15.0
 """A browser that does not answer for about this time has gone."""
 CLOSE_WITHIN_S = 2.0
 """Time for a browser to confirm that its socket is closed."""
-_PAGE = Path(__file__).parent / "page"
+PAGE = Path(__file__).parent / "page"
 _FOLDERS = {
     "static": Path(textual_serve.__file__).parent / "static",
-    "page": _PAGE,
+    "page": PAGE,
     "fonts": Path(__file__).parent.parent / "charts" / "fonts",
 }
 """Folders of files that every visitor gets, by name."""
+FILES_OF_PAGE = f"/{{folder:{'|'.join(_FOLDERS)}}}/{{name:.+}}"
+"""Where they are, as a path of aiohttp."""
 _DEFAULT_SIZE = (80, 24)
 
 
@@ -49,6 +52,24 @@ class ServerLimits:
     """How long each lasts."""
 
 
+class Answering(Protocol):
+    """What answers requests."""
+
+    def application(self) -> web.Application:
+        """Return the web application."""
+
+
+class Places:
+    """Counts the apps of several servers.
+
+    Args:
+        most: So many may live at the same time.
+    """
+
+    def __init__(self, most: int) -> None:
+        self.most = self.free = most
+
+
 class Server:
     """Answers the requests of visitors.
 
@@ -57,58 +78,52 @@ class Server:
         gate: Decides which requests are answered.
         limits: What visitors may use.
         report: Called with what an app that has failed wrote to stderr.
+        place: Where the apps run.
+        among: The places that it shares with other servers, if any.
     """
 
     def __init__(
-        self, command: Sequence[str], gate: Gate, limits: ServerLimits, report: Callable[[str], None] = lambda _: None
+        self,
+        command: Sequence[str],
+        gate: Gate,
+        limits: ServerLimits,
+        report: Callable[[str], None] = lambda _: None,
+        place: Place = HERE,
+        among: Places | None = None,
     ) -> None:
-        self._command, self._limits, self._report = command, limits, report
+        self._command, self._limits, self._report, self._place = command, limits, report, place
+        self._among = among or Places(limits.visitors)
         self.gate = gate
         self._downloads = DownloadManager()
         self._visits: dict[str, Visit] = {}
         self._lives: set[asyncio.Task[None]] = set()
 
+    @property
+    def routes(self) -> Routes:
+        """What it answers, after its secret part."""
+        return _ROUTES
+
     def application(self) -> web.Application:
         """Return the web application."""
-        application = web.Application(middlewares=[self._guard()], client_max_size=MOST_FILE_BYTES)
-        # The gate looks at the token, which may change.
-        top = "/{token}"
-        application.add_routes(
-            [
-                web.get(top, self._to_page),
-                web.get(f"{top}/", self._page),
-                web.get(f"{top}/ws", self._socket),
-                web.get(f"{top}/sessions", self._list),
-                web.post(f"{top}/sessions/{{id}}/end", self._end),
-                web.post(f"{top}/sessions/{{id}}/file", self._bring),
-                web.get(f"{top}/download/{{key}}", self._download),
-                web.get(f"{top}/{{folder:{'|'.join(_FOLDERS)}}}/{{name:.+}}", _file),
-            ]
-        )
-        application.on_response_prepare.append(self._protect)
-        application.on_shutdown.append(self._send_all_away)
+        application = application_of(lambda: [self])
+        application.on_shutdown.append(self.send_all_away)
         return application
 
-    def _guard(self) -> Middleware:
-        @web.middleware
-        async def guard(request: web.Request, handler: Handler) -> web.StreamResponse:
-            # What does something is sent by a page of ours only.
-            acts, origin = request.path.endswith("/ws") or request.method == "POST", request.headers.get("Origin")
-            if self.gate.admits(request.path, request.host, origin, from_a_page=acts):
-                return await handler(request)
-            raise web.HTTPForbidden(text="Use the whole address that `tuisim serve` has printed.\n")
-
-        return guard
-
-    async def _to_page(self, request: web.Request) -> web.StreamResponse:
-        raise web.HTTPFound(f"{request.path}/")
+    @property
+    def visits(self) -> Sequence[Visit]:
+        """The apps of its visitors."""
+        return [*self._visits.values()]
 
     async def _page(self, request: web.Request) -> web.StreamResponse:
-        return web.FileResponse(_PAGE / "index.html")
+        return web.FileResponse(PAGE / "index.html")
 
     async def _list(self, request: web.Request) -> web.StreamResponse:
         sessions = [visit.to_plain() for visit in self._visits.values()]
-        return web.json_response({"sessions": sessions, "free": self._limits.visitors - len(sessions)})
+        return web.json_response({"sessions": sessions, "free": self._free})
+
+    @property
+    def _free(self) -> int:
+        return min(self._limits.visitors - len(self._visits), self._among.free)
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
         socket = web.WebSocketResponse(heartbeat=HEARTBEAT_S, timeout=CLOSE_WITHIN_S)
@@ -133,10 +148,11 @@ class Server:
             height: Its rows.
             socket: The connection to the browser that shows it from its first frame; None for none yet.
         """
-        if len(self._visits) >= self._limits.visitors:
+        if self._free <= 0:
             return None
-        visit = Visit(self._command, self._downloads, self._limits.visit, self._report)
+        visit = Visit(self._command, self._downloads, self._limits.visit, self._report, self._place)
         self._visits[visit.id] = visit
+        self._among.free -= 1
         if socket is not None:
             await visit.take(socket)
         has_begun = asyncio.Event()
@@ -146,6 +162,7 @@ class Server:
                 await visit.live(width, height, has_begun.set)
             finally:
                 del self._visits[visit.id]
+                self._among.free += 1
 
         life = asyncio.create_task(live())
         self._lives.add(life)
@@ -166,7 +183,9 @@ class Server:
     async def _bring(self, request: web.Request) -> web.StreamResponse:
         visit, data = self._visit(request), await request.read()
         try:
-            path = await asyncio.to_thread(keep_file, Path.cwd(), request.query.get("name", ""), data)
+            path = await asyncio.to_thread(
+                keep_file, self._place.folder or Path.cwd(), request.query.get("name", ""), data
+            )
         except TuisimError as error:
             raise web.HTTPBadRequest(text=f"{error}\n") from None
         await visit.open_file(path)
@@ -174,7 +193,9 @@ class Server:
 
     @property
     def _full(self) -> str:
-        return f"This server allows {counted(self._limits.visitors, 'visitor')} at a time, and all places are taken."
+        own = self._limits.visitors
+        most = own if len(self._visits) >= own else self._among.most
+        return f"This server allows {counted(most, 'visitor')} at a time, and all places are taken."
 
     async def _download(self, request: web.Request) -> web.StreamResponse:
         key = request.match_info["key"]
@@ -197,31 +218,20 @@ class Server:
         await response.write_eof()
         return response
 
-    async def _protect(self, request: web.Request, response: web.StreamResponse) -> None:
-        """Let the page load nothing from elsewhere, be part of other pages only as the gate says, and tell nobody its
-        address."""
-        sockets = f"ws://{request.host} wss://{request.host}" if request.host else ""
-        response.headers.update(
-            {
-                "Content-Security-Policy": "default-src 'self'; img-src 'self' data: blob:; "
-                f"style-src 'self' 'unsafe-inline'; connect-src 'self' {sockets}; "
-                f"form-action 'none'; base-uri 'none'; object-src 'none'; frame-ancestors {self.gate.framed_by}",
-                "Cross-Origin-Opener-Policy": "same-origin",
-                "Cross-Origin-Resource-Policy": "same-origin",
-                "Referrer-Policy": "no-referrer",
-                "X-Content-Type-Options": "nosniff",
-                "Cache-Control": "no-store",
-                "Server": "tuisim",
-            }
-        )
-
-    async def _send_all_away(self, _: web.Application) -> None:
+    async def send_all_away(self, _: object = None) -> None:
+        """End the apps of all visitors."""
         for visit in self._visits.values():
             visit.end("The server has been ended.")
         await asyncio.gather(*self._lives)
 
 
-async def _file(request: web.Request) -> web.StreamResponse:
+async def to_page(_: object, request: web.Request) -> web.StreamResponse:
+    """Send to the address of a page, which ends in a slash: what it loads is beside it."""
+    raise web.HTTPFound(f"{request.rel_url.raw_path}/")
+
+
+async def file_of_page(_: object, request: web.Request) -> web.StreamResponse:
+    """Answer with a file that every page may have."""
     folder = _FOLDERS[request.match_info["folder"]].resolve()
     try:
         path = (folder / request.match_info["name"]).resolve(strict=True)
@@ -232,6 +242,18 @@ async def _file(request: web.Request) -> web.StreamResponse:
     return web.FileResponse(path)
 
 
+_ROUTES: Routes = [
+    ("GET", "", to_page),
+    ("GET", "/", Server._page),
+    ("GET", "/ws", Server._socket),
+    ("GET", "/sessions", Server._list),
+    ("POST", "/sessions/{id}/end", Server._end),
+    ("POST", "/sessions/{id}/file", Server._bring),
+    ("GET", "/download/{key}", Server._download),
+    ("GET", FILES_OF_PAGE, file_of_page),
+]
+
+
 def _size(request: web.Request) -> tuple[int, int]:
     """Return the size of the visitor's terminal in cells, as its page says."""
     try:
@@ -240,7 +262,7 @@ def _size(request: web.Request) -> tuple[int, int]:
         return _DEFAULT_SIZE
 
 
-def serve(server: Server, host: str, port: int, announce: Callable[[int], None]) -> int:
+def serve(server: Answering, host: str, port: int, announce: Callable[[int], None]) -> int:
     """Serve until a signal ends it, and with it the apps of all visitors. Return the exit code.
 
     Args:
@@ -255,7 +277,7 @@ def serve(server: Server, host: str, port: int, announce: Callable[[int], None])
     return asyncio.run(_serve(server, host, port, announce))
 
 
-async def _serve(server: Server, host: str, port: int, announce: Callable[[int], None]) -> int:
+async def _serve(server: Answering, host: str, port: int, announce: Callable[[int], None]) -> int:
     loop = asyncio.get_running_loop()
     ended_by: asyncio.Future[signal.Signals] = loop.create_future()
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -268,7 +290,7 @@ async def _serve(server: Server, host: str, port: int, announce: Callable[[int],
 
 
 @asynccontextmanager
-async def listening(server: Server, host: str, port: int) -> AsyncIterator[int]:
+async def listening(server: Answering, host: str, port: int) -> AsyncIterator[int]:
     """Answer requests in the context, which gets the port; at its end, end the apps of all visitors.
 
     Args:

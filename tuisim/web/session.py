@@ -9,11 +9,13 @@ import signal
 from asyncio.subprocess import PIPE, Process
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 from textual_serve.app_service import AppService
 from textual_serve.download_manager import DownloadManager
 
+from tuisim.data_class import dataclass
 from tuisim.web.link import Link
 
 END_WITHIN_S = 5.0
@@ -21,12 +23,29 @@ END_WITHIN_S = 5.0
 _HEAD = b"__GANGLION__\n"
 """The line before the first packet of an app."""
 _MOST_ERROR_BYTES = 4096
+_MOST_PACKET_BYTES = 32 << 20
 _OF_A_TERMINAL = (
     "LC_ALL", "TMUX", "STY", "LC_TERMINAL", "LC_TERMINAL_VERSION", "ITERM_SESSION_ID", "KITTY_WINDOW_ID",
     "WEZTERM_PANE", "KONSOLE_VERSION", "VTE_VERSION", "WT_SESSION", "TERMINAL_EMULATOR",
 )  # fmt: skip
 """Variables that tell what the terminal shows that the server was started in; the app is not in that one."""
 _OF_A_BROWSER = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "LC_CTYPE": "C.UTF-8", "PYTHONUTF8": "1"}
+_OF_THE_PROTOCOL = ("TEXTUAL", "TERM_PROGRAM", "COLUMNS", "ROWS")
+"""Beginnings of the variables that tell an app how it is shown."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where an app runs."""
+
+    folder: Path | None = None
+    """Its working directory, into which files are brought; None for that of the server."""
+    variables: Mapping[str, str] | None = None
+    """Its environment variables; None for those of the server."""
+
+
+HERE = Place()
+"""Where the server itself runs."""
 
 
 class WebSession(AppService):
@@ -36,9 +55,10 @@ class WebSession(AppService):
         command: The command of the app, as words.
         link: The way to its browser.
         downloads: The files that apps offer.
+        place: Where it runs.
     """
 
-    def __init__(self, command: Sequence[str], link: Link, downloads: DownloadManager) -> None:
+    def __init__(self, command: Sequence[str], link: Link, downloads: DownloadManager, place: Place) -> None:
         super().__init__(
             " ".join(command),
             write_bytes=link.send_bytes,
@@ -46,14 +66,17 @@ class WebSession(AppService):
             close=_nothing,
             download_manager=downloads,
         )
-        self._words = command
+        self._words, self._place = command, place
         self.told: Callable[[Mapping[str, Any]], None] = lambda _: None
         """Called with what the app tells."""
         self.errors = ""
         """The last that the app has written to stderr, once it has ended."""
 
     def _build_environment(self, width: int = 80, height: int = 24) -> dict[str, str]:
-        environment = super()._build_environment(width, height)
+        environment, given = super()._build_environment(width, height), self._place.variables
+        if given is not None:
+            shown = {name: value for name, value in environment.items() if name.startswith(_OF_THE_PROTOCOL)}
+            environment = {**given, **shown}
         kept = {name: value for name, value in environment.items() if name not in _OF_A_TERMINAL}
         return kept | _OF_A_BROWSER
 
@@ -64,6 +87,7 @@ class WebSession(AppService):
             stdout=PIPE,
             stderr=PIPE,
             env=self._build_environment(width, height),
+            cwd=self._place.folder,
             # Otherwise ctrl+c in the server's terminal would reach the app before the server can end it.
             start_new_session=True,
         )
@@ -91,16 +115,27 @@ class WebSession(AppService):
         await output.readuntil(_HEAD)
         handlers = {b"D": self.on_data, b"M": self.on_meta, b"P": self.on_packed}
         while True:
-            if (kind := await output.readexactly(1)) not in handlers:
-                # What follows cannot be understood either.
+            kind, size = await output.readexactly(1), int.from_bytes(await output.readexactly(4), "big")
+            # What follows cannot be understood either. A program can reach the app that runs it: it is not trusted.
+            if kind not in handlers or size > _MOST_PACKET_BYTES:
                 self._kill()
                 return
-            payload = await output.readexactly(int.from_bytes(await output.readexactly(4), "big"))
-            await handlers[kind](payload)
+            payload = await output.readexactly(size)
+            try:
+                await handlers[kind](payload)
+            # Whatever a packet that makes no sense raises: other apps go on.
+            except Exception:
+                self._kill()
+                return
 
     async def show(self, width: int, height: int) -> None:
         """Draw everything: a terminal of this size, in columns and rows, shows the app from now on."""
         await self.send_meta({"type": "show", "width": width, "height": height})
+
+    @property
+    def pid(self) -> int:
+        """The process of the app; 0 if it has none."""
+        return self._process.pid if self._process is not None else 0
 
     async def ended(self) -> None:
         """Wait until the app has ended by itself."""

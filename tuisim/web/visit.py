@@ -15,8 +15,9 @@ from aiohttp import WSMsgType, web
 from textual_serve.download_manager import DownloadManager
 
 from tuisim.data_class import dataclass
+from tuisim.web.doing import Doing
 from tuisim.web.link import Link, close
-from tuisim.web.session import WebSession
+from tuisim.web.session import Place, WebSession
 
 _LONGEST_S = 86400.0
 """The longest that a timer waits at once."""
@@ -69,14 +70,24 @@ class Visit:
         downloads: The files that apps offer.
         limits: How long it lasts.
         report: Called with what an app that has failed wrote to stderr.
+        place: Where the app runs.
     """
 
     def __init__(
-        self, command: Sequence[str], downloads: DownloadManager, limits: VisitLimits, report: Callable[[str], None]
+        self,
+        command: Sequence[str],
+        downloads: DownloadManager,
+        limits: VisitLimits,
+        report: Callable[[str], None],
+        place: Place,
     ) -> None:
         self._limits, self._report = limits, report
-        self._link, self._activity = Link(), Activity()
-        self._session = WebSession(command, self._link, downloads)
+        self._link, self._activity = Link(self._answer), Activity()
+        self._session = WebSession(command, self._link, downloads, place)
+        self.doing = Doing()
+        """What the app does."""
+        self._session.told = self.doing.note
+        self._size = 0, 0
         self._begun_s = time.monotonic()
         self._left: asyncio.TimerHandle | None = None
         self._end: asyncio.Future[str] = asyncio.get_running_loop().create_future()
@@ -101,8 +112,9 @@ class Visit:
             height: Its rows.
             began: Called once a browser can show it.
         """
+        self._size = _within(width, height)
         try:
-            await self._session.start(*_within(width, height))
+            await self._session.start(*self._size)
         except OSError as error:
             self._end.set_result(f"The app cannot be started: {error.strerror}")
         began()
@@ -114,6 +126,7 @@ class Visit:
             self.end(reason)
             if self._link.socket is not None:
                 await close(self._link.socket, reason)
+            self._link.watchers.end(reason)
         finally:
             for wait in waits:
                 wait.cancel()
@@ -124,6 +137,8 @@ class Visit:
         """Let a browser show the app from now on, which has not begun yet or is asked to draw everything."""
         self._is_watched()
         await self._link.take(socket, json.dumps(["session", self.id]), "Another tab has taken this session over.")
+        if self._link.watchers:
+            await self._tell_watched()
 
     async def take_over(self, socket: web.WebSocketResponse, width: int, height: int) -> None:
         """Let another browser show the app from now on; the one before is told.
@@ -134,7 +149,33 @@ class Visit:
             height: Its rows.
         """
         await self.take(socket)
-        await self._session.show(*_within(width, height))
+        self._resized(width, height)
+        await self._session.show(*self._size)
+
+    async def watch(self, socket: web.WebSocketResponse) -> None:
+        """Let a browser look on until it goes; nothing that it sends reaches the app."""
+        if self._end.done():
+            await close(socket, self._end.result())
+            return
+        watchers = self._link.watchers
+        with watchers.one(socket, self._size):
+            await self._tell_watched()
+            await self._session.show(*self._size)
+            async for _ in socket:
+                pass
+        await self._tell_watched()
+
+    async def _answer(self, data: bytes) -> None:
+        await self._session.send_bytes(data)
+
+    async def _tell_watched(self) -> None:
+        # A file that is offered waits for a browser; this is of no use to a later one, which is told when it comes.
+        if (socket := self._link.socket) is not None and not socket.closed:
+            await self._link.send_str(json.dumps(["watched", len(self._link.watchers)]))
+
+    def _resized(self, width: int, height: int) -> None:
+        self._size = _within(width, height)
+        self._link.watchers.resize(self._size)
 
     async def follow(self, socket: web.WebSocketResponse) -> None:
         """Do what the visitor does in the browser that shows the app, until that has gone."""
@@ -168,6 +209,11 @@ class Visit:
         """Call a function with what the app tells from now on: a start or an end of a run, a problem."""
         self._session.told = told
 
+    @property
+    def pid(self) -> int:
+        """The process of its app; 0 if it has none."""
+        return self._session.pid
+
     def end(self, reason: str) -> None:
         """End the visit and tell the visitor why."""
         if not self._end.done():
@@ -199,7 +245,8 @@ class Visit:
                     await self._session.send_bytes(text.encode("utf-8", "ignore"))
                 case ["resize", {"width": int(width), "height": int(height)}]:
                     self._activity.note()
-                    await self._session.set_terminal_size(*_within(width, height))
+                    self._resized(width, height)
+                    await self._session.set_terminal_size(*self._size)
                 case ["ping", str(sent)]:
                     await self._link.send_str(json.dumps(["pong", sent]))
                 case ["act", str(name)]:

@@ -70,7 +70,7 @@ def check_isolation() -> None:
         raise ConfigError(f"{BWRAP} is not installed", f"install bubblewrap; {hint}", key=_KEY)
     try:
         done = subprocess.run(
-            [*_command(Path("/"), (), ()), sys.executable, "-c", ""],
+            [*confined(Path("/"), (), ()), sys.executable, "-c", ""],
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
@@ -219,7 +219,15 @@ def spawn_isolated(
     theirs = [info_write] if filter_fd is None else [info_write, filter_fd]
     try:
         process = subprocess.Popen(
-            [*_command(writable[-1], writable, readable), *filtered, "--info-fd", str(info_write), "--", *command],
+            [
+                *confined(writable[-1], writable, readable),
+                "--as-pid-1",
+                *filtered,
+                "--info-fd",
+                str(info_write),
+                "--",
+                *command,
+            ],
             pass_fds=[*inherited, *theirs],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
@@ -241,9 +249,15 @@ def spawn_isolated(
         raise OSError(f"{BWRAP} has not started the program") from error
 
 
-def _command(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> list[str]:
-    """Return the command of bubblewrap, up to its last options."""
-    words = [BWRAP, "--unshare-all", "--as-pid-1", "--new-session", "--die-with-parent"]
+def confined(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> list[str]:
+    """Return the command of bubblewrap, up to its last options; what it starts ends when bubblewrap is ended.
+
+    Args:
+        cwd: The working directory.
+        writable: Folders that the process may change.
+        readable: Files and folders that it may read, besides Python and the system.
+    """
+    words = [BWRAP, "--unshare-all", "--new-session", "--die-with-parent"]
     # It leaves them to root, who could mount again for writing what is mounted for reading.
     words += ["--cap-drop", "ALL"]
     words += ["--proc", "/proc", "--dev", "/dev", "--size", str(_TMP_BYTES), "--tmpfs", "/tmp"]

@@ -65,10 +65,12 @@ const session = (() => {
   const find = async () => {
     const [id, leaving] = [kept.getItem("session"), kept.getItem("leaving")];
     kept.removeItem("leaving");
-    const found = (await list()).sessions;
+    const { sessions: found, free } = await list();
     const mine = found.find((one) => one.id === id && (leaving || !one.shown));
     if (mine) return mine.id;
     if (framed && found.length) return found[0].id;
+    // Where there is no choice: a student has one app.
+    if (found.length === 1 && !found[0].shown && free < 1) return found[0].id;
     return found.length ? ask() : "";
   };
 
@@ -101,8 +103,11 @@ const session = (() => {
     // Adds the app to the address of a socket.
     address: (url) => (chosen ? `${url}&session=${chosen}` : url),
     heard: (data) => {
-      if (typeof data !== "string" || !data.startsWith('["session"')) return;
-      [, chosen] = JSON.parse(data);
+      if (typeof data !== "string") return;
+      const [what, told] = JSON.parse(data);
+      if (what === "watched") document.getElementById("watched").hidden = !told;
+      if (what !== "session") return;
+      chosen = told;
       kept.setItem("session", chosen);
     },
     closed: (event) => {
