@@ -15,7 +15,7 @@ from tests.conftest import Command
 from tuisim.commands import serve_class
 from tuisim.errors import ConfigError
 from tuisim.web import server as web_server
-from tuisim.web.room import Room
+from tuisim.web.classroom import Classroom
 from tuisim.web.server import Server, ServerLimits
 from tuisim.web.visit import VisitLimits
 
@@ -135,14 +135,14 @@ def test_a_notebook_of_several_cells_is_listed(here: Command, tmp_path: Path) ->
 
 
 @pytest.fixture
-def a_class(program: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[tuple[Room, str, int]]:
+def a_class(program: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[tuple[Classroom, str, int]]:
     """A list of a class beside the program; notes what would be served."""
     (tmp_path / "class.txt").write_text("Ada\nBob\n")
-    found: list[tuple[Room, str, int]] = []
+    found: list[tuple[Classroom, str, int]] = []
 
-    def note(room: Room, host: str, port: int, announce: Callable[[int], None]) -> int:
+    def note(classroom: Classroom, host: str, port: int, announce: Callable[[int], None]) -> int:
         announce(port)
-        found.append((room, host, port))
+        found.append((classroom, host, port))
         return 0
 
     monkeypatch.setattr(web_server, "serve", note)
@@ -150,7 +150,7 @@ def a_class(program: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> l
 
 
 def test_each_student_gets_a_link_and_it_stays(
-    a_class: list[tuple[Room, str, int]], here: Command, tmp_path: Path
+    a_class: list[tuple[Classroom, str, int]], here: Command, tmp_path: Path
 ) -> None:
     words = "serve prog.py --students class.txt --links links.csv --port 81"
     first, again = here(*words.split()), here(*words.split())
@@ -168,7 +168,7 @@ def test_each_student_gets_a_link_and_it_stays(
 
 @pytest.mark.parametrize(("words", "most"), [("", 2), ("--max-visitors 1", 1)], ids=["a student each", "fewer"])
 def test_the_apps_of_a_class_are_limited(
-    words: str, most: int, a_class: list[tuple[Room, str, int]], here: Command, tmp_path: Path
+    words: str, most: int, a_class: list[tuple[Classroom, str, int]], here: Command, tmp_path: Path
 ) -> None:
     done = here("serve", *words.split(), "--students", "class.txt", "--homes", "elsewhere", "--no-isolate")
     assert done.returncode == 0
@@ -178,7 +178,7 @@ def test_the_apps_of_a_class_are_limited(
 
 
 def test_without_isolation_the_tutor_is_told(
-    a_class: list[tuple[Room, str, int]], here: Command, monkeypatch: pytest.MonkeyPatch
+    a_class: list[tuple[Classroom, str, int]], here: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse() -> None:
         raise ConfigError("bwrap is not installed", "install it", key="--isolate")

@@ -60,7 +60,7 @@ def serve_class(
     from tuisim.web import server
     from tuisim.web.class_links import open_class, write_links
     from tuisim.web.class_list import read_class
-    from tuisim.web.room import Room, limits_of
+    from tuisim.web.classroom import Classroom, limits_of
     from tuisim.web.student_app import app_of, handed_out
 
     if arguments.run is not None:
@@ -81,8 +81,8 @@ def serve_class(
     try:
         handed = handed_out(words, [background(opened.prepared.spec.world.background).image])
         start = partial(app_of, handed=handed, isolated=isolated)
-        room = Room(links, arguments.host, start, limits_of(links, arguments.max_visitors, limits), report)
-        return server.serve(room, arguments.host, arguments.port, announce)
+        classroom = Classroom(links, arguments.host, start, limits_of(links, arguments.max_visitors, limits), report)
+        return server.serve(classroom, arguments.host, arguments.port, announce)
     finally:
         os.close(links.lock_fd)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.web.chromium import chromium, needs_chromium
-from tests.web.test_room import Opened, opened
+from tests.web.test_classroom import Opened, opened
 from tests.web.test_server import heard
 
 __all__ = ["opened"]

@@ -16,9 +16,9 @@ from aiohttp import ClientSession, ClientWebSocketResponse, WSMsgType, WSServerH
 from tests.running import PATIENCE_S
 from tests.web.stand_in import stand_in
 from tests.web.test_server import Visitor, drawn, gone, heard, is_there
-from tuisim.web import room, usage
+from tuisim.web import classroom, usage
 from tuisim.web.class_links import open_class
-from tuisim.web.room import Room
+from tuisim.web.classroom import Classroom
 from tuisim.web.server import ServerLimits, listening
 from tuisim.web.session import Place
 from tuisim.web.visit import VisitLimits
@@ -30,8 +30,10 @@ NAMES = ("Ada", "Bob", "Ümit Çelik")
 class Class:
     """A server of a class, and a client for each link."""
 
-    def __init__(self, client: ClientSession, port: int, folder: Path, room: Room, tokens: Mapping[str, str]) -> None:
-        self.client, self.folder, self.room, self.tokens = client, folder, room, tokens
+    def __init__(
+        self, client: ClientSession, port: int, folder: Path, classroom: Classroom, tokens: Mapping[str, str]
+    ) -> None:
+        self.client, self.folder, self.classroom, self.tokens = client, folder, classroom, tokens
         self.visitors = {name: Visitor(client, port) for name in tokens}
         for name, visitor in self.visitors.items():
             visitor.top = f"{visitor.origin}/{tokens[name]}/"
@@ -70,7 +72,7 @@ async def opened(tmp_path: Path) -> AsyncIterator[Opened]:
             links = open_class(tmp_path / "class", NAMES)
             stack.callback(os.close, links.lock_fd)
             limits = ServerLimits(most, VisitLimits(PATIENCE_S, keep_s))
-            made = Room(
+            made = Classroom(
                 links, "127.0.0.1", lambda one: (stand_in(*words), Place(one.folder, {})), limits, lambda _: None
             )
             port = await stack.enter_async_context(listening(made, "127.0.0.1", 0))
@@ -244,9 +246,9 @@ async def test_a_file_is_brought_to_the_folder_of_the_student(opened: Opened) ->
 
 
 PAGES = {
-    "": "room.js",
-    "page/room.js": "students",
-    "page/room.css": "table",
+    "": "classroom.js",
+    "page/classroom.js": "students",
+    "page/classroom.css": "table",
     "view/Ada/": "view.js",
     "view/%C3%9Cmit%20%C3%87elik/": "view.js",
     "view/Ada/page/view.js": "disableStdin",
@@ -266,20 +268,20 @@ async def test_an_app_that_takes_too_much_ends_and_no_other(opened: Opened, monk
     found = await opened()
     socket, pid = await found["Ada"].started()
     _, other = await found["Bob"].started()
-    await found.room.check(files=True)
+    await found.classroom.check(files=True)
     assert is_there(pid)
     (found.folder / "Ada" / "big").write_bytes(b"x" * 100_000)
     monkeypatch.setattr(usage, "MOST_BYTES", 50_000)
-    await found.room.check(files=False)
+    await found.classroom.check(files=False)
     assert is_there(pid)
-    await found.room.check(files=True)
+    await found.classroom.check(files=True)
     assert "your files are" in await heard(socket)
     await gone(pid)
     assert is_there(other)
 
 
 async def test_the_limits_are_looked_at_by_themselves(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(room, "LOOK_EVERY_S", 0.01)
+    monkeypatch.setattr(classroom, "LOOK_EVERY_S", 0.01)
     monkeypatch.setattr(usage, "MOST_MEMORY_BYTES", 1)
     found = await opened()
     socket = await found["Ada"].socket()

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from tests.proof.room_attacks import ATTACKS, check_room_attack
+from tests.proof.classroom_attacks import ATTACKS, check_classroom_attack
 
 
 @pytest.mark.parametrize("name", ATTACKS)
 def test_a_class_withstands(name: str) -> None:
-    check_room_attack(name)
+    check_classroom_attack(name)

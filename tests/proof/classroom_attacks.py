@@ -16,12 +16,21 @@ from tests.proof.kind import FaultError
 from tests.running import PATIENCE_S
 from tests.web.stand_in import stand_in
 from tuisim.web.class_links import open_class
-from tuisim.web.room import Room
+from tuisim.web.classroom import Classroom
 from tuisim.web.server import ServerLimits, listening
 from tuisim.web.session import Place
 from tuisim.web.visit import VisitLimits
 
-PATHS = ("", "students", "sessions", "view/Ada/", "view/Bob/", "page/room.js", "static/js/textual.js", "download/key")
+PATHS = (
+    "",
+    "students",
+    "sessions",
+    "view/Ada/",
+    "view/Bob/",
+    "page/classroom.js",
+    "static/js/textual.js",
+    "download/key",
+)
 _ORIGINS = ("http://evil.example", "null", "", "http://127.0.0.1:1", "file://")
 
 
@@ -141,8 +150,8 @@ async def _another_download(target: Target) -> None:
 
 async def _paths(target: Target) -> None:
     """Paths that lead out of what a page loads, or to the folders of the class."""
-    for path in ("../../etc/passwd", "..%2f..%2fetc/passwd", "page/%2e%2e/room.py", "page/..%2f..%2froom.py",
-                 "static//etc/passwd", "view/..%2f..%2f.links.json/", "view/Ada/page/%2e%2e/%2e%2e/room.py",
+    for path in ("../../etc/passwd", "..%2f..%2fetc/passwd", "page/%2e%2e/classroom.py", "page/..%2f..%2fclassroom.py",
+                 "static//etc/passwd", "view/..%2f..%2f.links.json/", "view/Ada/page/%2e%2e/%2e%2e/classroom.py",
                  "view/%2e%2e/", "view/%2fetc%2fpasswd/", "view/.links.json/", "view/.homes/", "view/%00/",
                  "view/Ada/../../.links.json", "view/Ada%2f..%2fBob/", "page/.links.json"):  # fmt: skip
         for who in ("Bob", "tutor"):
@@ -235,8 +244,10 @@ async def _attack(name: str) -> None:
         links = open_class(folder, ["Ada", "Bob"])
         stack.callback(os.close, links.lock_fd)
         limits = ServerLimits(2, VisitLimits(PATIENCE_S, PATIENCE_S))
-        room = Room(links, "127.0.0.1", lambda one: (stand_in(), Place(one.folder, {})), limits, reports.append)
-        port = await stack.enter_async_context(listening(room, "127.0.0.1", 0))
+        classroom = Classroom(
+            links, "127.0.0.1", lambda one: (stand_in(), Place(one.folder, {})), limits, reports.append
+        )
+        port = await stack.enter_async_context(listening(classroom, "127.0.0.1", 0))
         client = await stack.enter_async_context(ClientSession())
         tokens = {"tutor": links.tutor} | {pupil.name: pupil.token for pupil in links.pupils}
         target = Target(client, port, folder, tokens)
@@ -247,6 +258,6 @@ async def _attack(name: str) -> None:
         raise FaultError(f"the server's terminal gets {reports}")
 
 
-def check_room_attack(name: str) -> None:
+def check_classroom_attack(name: str) -> None:
     """Attack a class, and see that the one who works is not disturbed."""
     asyncio.run(asyncio.wait_for(_attack(name), PATIENCE_S))

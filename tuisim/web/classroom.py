@@ -53,7 +53,7 @@ class Tutor:
         return _ROUTES
 
     async def _page(self, request: web.Request) -> web.StreamResponse:
-        return web.FileResponse(PAGE / "room.html")
+        return web.FileResponse(PAGE / "classroom.html")
 
     async def _students(self, request: web.Request) -> web.StreamResponse:
         return web.json_response({"students": [self._student(name) for name in self._servers]})
@@ -97,7 +97,7 @@ _ROUTES: Routes = [
 ]
 
 
-class Room:
+class Classroom:
     """Answers the requests of a class.
 
     Args:
