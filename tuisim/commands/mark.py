@@ -30,7 +30,7 @@ from tuisim.marks.entries import entries_of
 from tuisim.marks.feedback import write_feedback
 from tuisim.marks.gradebook import GradebookKind, Roster, read_roster, write_gradebook
 from tuisim.marks.journal import Journal, journal_of
-from tuisim.marks.outcome import Outcome
+from tuisim.marks.outcome import Outcome, unknown_goals
 from tuisim.marks.overrides import Override, overridden, read_overrides
 from tuisim.marks.page import page_of, reports_folder
 from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan, RunEntry, outcomes_of, runs_of
@@ -90,8 +90,8 @@ _OPTIONS = (
     Programs run in the world of GOALS; if it names none, in that of their magic line. A program that hangs, floods or
     crashes affects its own marks only. Where bubblewrap is installed and starts, each program is isolated.
 
-    Exit code: 0 all programs have marks, 1 this machine could not make some runs (--resume makes them), 2 bad
-    input, 130 interrupted (--resume goes on).
+    Exit code: 0 all programs have marks, 1 this machine could not make some runs (--resume makes them), or a goal's
+    regular expression took too long, 2 bad input, 130 interrupted (--resume goes on).
     """,
 )
 def mark(**given: Any) -> int:
@@ -135,7 +135,7 @@ def mark(**given: Any) -> int:
         _tell_refusals(students)
         _write(sheet, task.worlds, students, found.ignored, arguments)
         _write_gradebooks(sheet, students, roster, arguments)
-    return max(_tell_unread(students), _tell_missing(outcomes))
+    return max(_tell_unread(students), _tell_missing(outcomes), _tell_unknown(outcomes))
 
 
 def _isolates(arguments: Arguments) -> bool:
@@ -226,6 +226,16 @@ def _tell_missing(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
     echo_error(f"tuisim: this machine could not make {counted(len(missing), 'run')}; the marks are without: {names}")
     echo_error(f"tuisim: {missing[0][1].failure}; the same command with --resume runs what is missing")
     return 1
+
+
+def _tell_unknown(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
+    """Tell which goals could not be judged, because of a regular expression of the task; return the exit code."""
+    found = unknown_goals(one for every in outcomes.values() for one in every)
+    for goal in sorted(found):
+        by = [name for name, every in outcomes.items() if goal in unknown_goals(every)]
+        echo_error(f"tuisim: “{goal}” cannot be judged and counts as missed, for {listed(map(printable, by))}:")
+        echo_error(f"tuisim: {found[goal]}")
+    return 1 if found else 0
 
 
 def _check(arguments: Arguments, task: GoalsFile) -> None:

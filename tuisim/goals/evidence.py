@@ -13,6 +13,7 @@ from tuisim.core.field import Field
 from tuisim.core.profile import NS_PER_S
 from tuisim.data_class import dataclass
 from tuisim.goals.brick import BRICK_COLUMNS, BRICK_STREAMS, BRICK_TEXTS, brick_column, text_ticks
+from tuisim.goals.patterns import Search, search_in
 from tuisim.protocol import End, Ended, Unended
 from tuisim.runs.frames import column_values, held, tick_times_s
 from tuisim.runs.records import SAMPLE_STREAMS, OutputRow, Stream
@@ -120,6 +121,18 @@ class Evidence:
         """The samples, each with the index of its row."""
         return [(number, sample) for number, row in enumerate(self.rows) for sample in samples_of([row])]
 
+    def search(self, pattern: str) -> Search:
+        """Return the search for a regular expression in the lines that the program printed.
+
+        Raises:
+            LogError: this machine cannot search.
+        """
+        key = f"search {pattern}"
+        if key not in self.memo:
+            self.memo[key] = search_in(pattern, (row.text for row in self.rows if row.stream in SAMPLE_STREAMS))
+        found: Search = self.memo[key]
+        return found
+
     @cached_property
     def brick_rows(self) -> list[OutputRow]:
         """The rows of what the brick showed and played, in order, up to `MAX_ROWS`."""
@@ -146,6 +159,7 @@ class Evidence:
 
         Raises:
             ValueError: what it compares with is no number.
+            SlowPatternError: its regular expression takes too long.
             LogError, ConfigError: as `column`.
         """
         import numpy as np
@@ -161,7 +175,12 @@ class Evidence:
 
         Raises:
             ValueError: what it compares with is no number.
+            SlowPatternError: its regular expression takes too long.
         """
+        if condition.source is ValueSource.PRINT:
+            search = self.search(condition.value)
+            return [number for number, row in enumerate(self.rows)
+                    if row.stream in SAMPLE_STREAMS and search(row.text)]  # fmt: skip
         printed = [row for row in self.rows if row.stream in SAMPLE_STREAMS]
         found = set(map(id, rows_when(condition, printed)))
         return [number for number, row in enumerate(self.rows) if id(row) in found]
