@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from collections.abc import Sequence
 from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
@@ -13,8 +14,9 @@ from tuisim.core.field import Field
 from tuisim.core.profile import NS_PER_S
 from tuisim.data_class import dataclass
 from tuisim.goals.brick import BRICK_COLUMNS, BRICK_STREAMS, BRICK_TEXTS, brick_column, text_ticks
+from tuisim.goals.motion import impossible_motion
 from tuisim.goals.patterns import Search, search_in
-from tuisim.protocol import End, Ended, Unended
+from tuisim.protocol import End, Ended, Unended, UserAction
 from tuisim.runs.frames import column_values, held, tick_times_s
 from tuisim.runs.records import SAMPLE_STREAMS, OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun, open_mat
@@ -90,11 +92,21 @@ class Evidence:
             self.ended = run.ended is not None
             # Those that are known: what the user typed is only in the rows.
             self.answers = run.answers
-        self.falsified = self.end.summary if self.end is not None and self.end.end is End.FALSIFIED else ""
-        """What the program has falsified; empty if its recording can be trusted."""
         self.records: Array = run.telemetry.array()
         self.memo: dict[str, Any] = {}
         """What conditions have computed from it, and may need again."""
+
+    @cached_property
+    def falsified(self) -> str:
+        """What the program has falsified, as a sentence without its end; empty if its recording can be trusted."""
+        if self.end is not None and self.end.end is End.FALSIFIED:
+            return self.end.summary
+        return impossible_motion(self.records, self.spec, self._actions)
+
+    @property
+    def _actions(self) -> Sequence[UserAction]:
+        run = self._run
+        return run.actions if isinstance(run, StoredRun) else read_actions(run.folder)[0]
 
     @cached_property
     def times_s(self) -> Array:
@@ -145,8 +157,7 @@ class Evidence:
             LogError, ConfigError: the mat no longer exists, or its image has changed.
         """
         if name not in self.memo:
-            run = self._run
-            actions = run.actions if isinstance(run, StoredRun) else read_actions(run.folder)[0]
+            actions = self._actions
             if name in BRICK_COLUMNS:
                 self.memo[name] = brick_column(name, len(self.records), self.brick_rows, actions)
                 return self.column(name)
