@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tuisim.charts.files import clean
-from tuisim.core.spec import RobotSpec
 from tuisim.data_class import dataclass
 from tuisim.palette import MET, MISSED
-from tuisim.scene.pictures import world_view
+from tuisim.scene.view import Viewport
 
 _NEAR_PX = 14.0
 """Pins nearer than this share a ring: their labels would cover each other."""
@@ -28,11 +27,14 @@ class Pin:
     """What was decided, shown while the mouse is there."""
 
 
-def svg_of_pins(pins: Sequence[Pin], robot: RobotSpec) -> str:
-    """Return the pins as SVG that lies exactly on the picture of the world; empty without pins."""
+def svg_of_pins(pins: Sequence[Pin], view: Viewport) -> str:
+    """Return the pins as SVG that lies exactly on a picture of the world; empty without pins.
+
+    Args:
+        view: What the picture shows.
+    """
     if not pins:
         return ""
-    view = world_view(robot)
     rings: list[tuple[float, float, list[Pin]]] = []
     for pin in pins:
         x, y = view.to_px(pin.x_mm, pin.y_mm)

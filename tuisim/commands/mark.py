@@ -74,6 +74,8 @@ _OPTIONS = (
            help="Give each goal a column of its own in the gradebook's file."),
     option("--overrides", metavar="FILE", type=WordType(), group=_RESULTS,
            help="A TOML file with your own points and comments by student, which take precedence."),
+    option("--movies", is_flag=True, group=_RESULTS,
+           help="Give the page's report of each run that missed a goal a movie with the goals on it."),
     option("--feedback", metavar="FOLDER", type=WordType(), group=_RESULTS,
            help="Write a text file for each student: what was met, what was missed, and why."),
 )  # fmt: skip
@@ -264,6 +266,8 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
             raise ConfigError(
                 "is for a gradebook", "give --moodle FILE or --canvas FILE", key=f"--{name.replace('_', '-')}"
             )
+    if arguments.movies and not any(target.suffix.lower() in PAGE_SUFFIXES for target in targets):
+        raise ConfigError("is for the page of a class", "give --export FILE.html", key="--movies")
     if arguments.feedback and os.path.exists(arguments.feedback) and not os.path.isdir(arguments.feedback):
         raise ConfigError(f"{arguments.feedback} is no folder", "name a folder", key="--feedback")
 
@@ -305,13 +309,19 @@ def _write(
             tell(f"writing {target}")
             export_marks(sheet, target)
             continue
-        _write_page(sheet, worlds, students, ignored, target)
+        _write_page(sheet, worlds, students, ignored, target, movies=arguments.movies)
     if arguments.feedback:
         write_feedback(Path(arguments.feedback), sheet, [student.text for student in students])
 
 
 def _write_page(
-    sheet: Sheet, worlds: Sequence[TrialWorld], students: Sequence[Student], ignored: Sequence[str], target: Path
+    sheet: Sheet,
+    worlds: Sequence[TrialWorld],
+    students: Sequence[Student],
+    ignored: Sequence[str],
+    target: Path,
+    *,
+    movies: bool,
 ) -> None:
     # Their charts are slow to import, and a table needs none.
     from tuisim.marks.class_map import class_maps
@@ -320,7 +330,7 @@ def _write_page(
 
     kept = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
     links, misses = {}, []
-    for one in write_reports(sheet, worlds, target):
+    for one in write_reports(sheet, worlds, target, movies=movies):
         links[one.student, one.world, one.seed] = one.path
         misses.append(one.misses)
         tell(f"report {len(links)} of {kept}", len(links), kept)
