@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import errno
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
 
 from tests.goals.recorded import Run, goals_of, says, world
 from tuisim.core.conditions import NUMBER
+from tuisim.errors import LogError
 from tuisim.goals import patterns
 from tuisim.goals.judge import judge
 from tuisim.goals.patterns import SlowPatternError, search_in
+from tuisim.regular_file import of_the_machine
 from tuisim.runs.samples import parse_sample
 from tuisim.runs.store import RunStore
 
@@ -98,6 +102,21 @@ def test_a_search_that_cannot_end_raises(monkeypatch: pytest.MonkeyPatch) -> Non
     assert search("aaa")
     with pytest.raises(SlowPatternError, match="that is a fault of the task"):
         search(ENDLESS)
+
+
+@pytest.mark.parametrize("returncode", [-9, 1, None])
+def test_a_search_that_the_machine_ends_is_no_fault_of_the_recording(
+    returncode: int | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def run(command: list[str], **given: object) -> subprocess.CompletedProcess[bytes]:
+        if returncode is None:
+            raise OSError(errno.EAGAIN, "Resource temporarily unavailable")
+        return subprocess.CompletedProcess(command, returncode, b"1")
+
+    monkeypatch.setattr(subprocess, "run", run)
+    with pytest.raises(LogError, match="what was printed cannot be searched") as caught:
+        search_in(CARELESS, ["aaa", ENDLESS])
+    assert isinstance(caught.value.__cause__, OSError) and of_the_machine(caught.value.__cause__)
 
 
 def test_a_line_of_a_million_digits_is_read_at_once() -> None:

@@ -93,11 +93,16 @@ def _searched(pattern: str, texts: list[str]) -> dict[str, bool]:
     try:
         done = subprocess.run(command, input=given, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
     except OSError as error:
-        raise LogError(f"what was printed cannot be searched: {error.strerror or error}") from error
+        raise _of_the_machine(error.strerror or str(error)) from OSError(errno.ENOMEM, str(error))
     if done.returncode not in (0, -signal.SIGXCPU):
-        cause = OSError(errno.EAGAIN, "the process that searches was ended")
-        raise LogError(f"what was printed cannot be searched: {cause.strerror}") from cause
+        why = "the process that searches was ended"
+        raise _of_the_machine(why) from OSError(errno.ENOMEM, why)
     return {text: digit == ord("1") for text, digit in zip(texts, done.stdout, strict=False)}
+
+
+def _of_the_machine(why: str) -> LogError:
+    """Return the error if this machine cannot search. Its cause must be one of the machine, none of the recording."""
+    return LogError(f"what was printed cannot be searched: {why}")
 
 
 def _steps(pattern: str, texts: list[str]) -> float:
