@@ -232,6 +232,32 @@ def test_examples_are_found_by_name(here: Command, home: Path) -> None:
         assert here("goals", "check", f"{name}_goals.toml").returncode == 1
 
 
+@pytest.mark.parametrize("kind", ["bands", "line"])
+def test_a_drawn_mat_is_a_world_of_a_task(kind: str, task: Path, here: Command) -> None:
+    done = here("goals", "mat", kind, "--seed", "7")
+    assert (done.returncode, done.stderr) == (0, "")
+    task.write_text(GOALS + done.stdout)
+    (other,) = load_goals(task).worlds[1:]
+    assert other.hidden and (task.parent / f"{kind}-7.png").read_bytes().startswith(b"\x89PNG")
+    build_run_spec(settings_of(other.settings))
+
+
+WRONG_MATS = {
+    "kind": ("band", "KIND: no such kind of mat 'band' (did you mean bands?)"),
+    "seed": ("bands --seed -1", "--seed: must be from 0 to"),
+    "format": ("bands --out a.jpg", "cannot write a.jpg: unknown format '.jpg' (a mat ends in .png)"),
+    "folder": ("line --out none/a.png", "cannot write none/a.png: there is no folder none"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG_MATS)
+def test_a_mat_that_cannot_be_drawn(case: str, here: Command) -> None:
+    words, said = WRONG_MATS[case]
+    done = here("goals", "mat", *words.split())
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("tuisim: " + said)
+
+
 def test_saving_a_world_keeps_its_goals(task: Path) -> None:
     (task.parent / "base.toml").write_text("seed = 3\nbackground = 'Loop'\n")
     task.write_text(f"world = 'base.toml'\n{GOALS}")

@@ -26,6 +26,7 @@ from tuisim.batch import execute
 from tuisim.cli import run_command
 from tuisim.commands import mark
 from tuisim.errors import HostError
+from tuisim.goals import patterns
 from tuisim.marks.outcome import Outcome
 from tuisim.runs.handle import RunHandle
 
@@ -378,6 +379,23 @@ def test_a_run_that_could_not_be_started_is_missing_in_the_marks_until_it_is_res
 
     assert run_command([*words, "--resume"]) == 0
     assert seeds == [0, 1, 1]
+
+
+def test_a_careless_regular_expression_is_named_and_the_rest_is_marked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(patterns, "LIMIT_S", 0)
+    goals = "[[goal]]\nname = 'said'\nprint = '(a+)+$'\n[[goal]]\nname = 'other'\nprint = '[a-z]'\n"
+    (tmp_path / "goals.toml").write_text(f"background = 'Empty_Map'\n{goals}")
+    (tmp_path / "class").mkdir()
+    for name, text in {"ada": "aaa", "ben": "a" * 60 + "!"}.items():
+        (tmp_path / "class" / f"{name}.py").write_text(f"print({text!r})\n")
+    words = ["mark", str(tmp_path / "goals.toml"), str(tmp_path / "class"), "--seeds", "0", "--jobs", "1"]
+    assert run_command(words) == 1
+    said = capsys.readouterr()
+    assert "ada      2       100%        1     1" in said.out
+    assert "ben      1       0%          0     1      The regular expression '(a+)+$' takes more than" in said.out
+    assert "tuisim: “said” cannot be judged and counts as missed, for ben:" in said.err
 
 
 def test_a_marking_without_a_place_for_copies_says_so(

@@ -102,7 +102,7 @@ PLACES = {
         "pass = { places_mm = [[800, 500], [600, 500]], in_order = false }", ALONG, "met", 1.60, line=3
     ),
     "pass between ticks": Case(
-        "pass = { places_mm = [[560, 500]], within_mm = 1 }", (drive(9000, 9000, 0.05),), "met", 0.02
+        "pass = { places_mm = [[537, 500]], within_mm = 1 }", (drive(3000, 3000, 0.05),), "met", 0.03
     ),
     "inside": Case("inside = { x_mm = 400, y_mm = 400, width_mm = 600, height_mm = 200 }", ALONG, "met", 2.77, line=4),
     "inside left": Case(

@@ -32,7 +32,7 @@ FAILURES = {
     "path": (replace(DONE, end="raised", summary=f"OSError: '{FOLDER}/data.csv'"), "OSError: 'data.csv'"),
     "control characters": (replace(DONE, end="raised", summary="E: \x1b[2J"), "E: \ufffd[2J"),
     "too long": (replace(DONE, end="raised", summary="x" * 1000), "x" * 300 + "…"),
-    "real time": (replace(DONE, end="stopped", summary="stopped"), "stopped, because the run took too much real time"),
+    "real time": (replace(DONE, end="stopped", summary="stopped"), "stopped, because it took too long"),
     "stuck": (
         replace(DONE, end="stalled", summary="no simulated time passed in 10 s of computing, in line 3"),
         "stuck: no simulated time passed",

@@ -84,5 +84,18 @@ def test_goals_are_marked_on_the_mat(report: str) -> None:
     assert "<title>1. Come to x = 400. met at " in pins
 
 
+@pytest.mark.slow
+def test_a_movie_of_a_run_that_missed_a_goal_has_the_goals_on_it(report: str, tmp_path: Path, here: Command) -> None:
+    (tmp_path / "class" / "right.py").write_text("tank_drive.on_for_rotations(50, 50, 1)\n")
+    goals = GOALS.partition('[[goal]]\nname = "free"')[0].replace("x_mm = 400", "x_mm = 550")
+    (tmp_path / "goals.toml").write_text(goals.replace("x_mm = 550, within_mm = 10", "x_mm = 375.9, at_end = true"))
+    words = ("--seeds", "0", "--jobs", "1", "--keep", "all", "--export", "marks.html", "--movies")
+    assert here("mark", "goals.toml", "class", *words).returncode == 0
+    missed, right = ((tmp_path / "marks-runs" / f"{name}-seed-0.html").read_text() for name in ("ada", "right"))
+    assert '<details class="movie">' not in report + right
+    movie = missed.partition('<details class="movie">')[2].partition("</details>")[0]
+    assert "data:image/webp" in movie and movie.count("✗1") == 1
+
+
 def test_no_path_of_the_machine_is_told(report: str, tmp_path: Path) -> None:
     assert str(tmp_path) not in report and "the mat own.png and" in report

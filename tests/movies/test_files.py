@@ -6,12 +6,15 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from tuisim.charts.files import check_format
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.errors import ConfigError, ExportError
 from tuisim.movies import files
 from tuisim.movies.clip import ClipPanel, Recorded
 from tuisim.movies.files import MOVIE_FORMATS, Clip, save_movie, save_picture, small_movie
+from tuisim.scene.pictures import RIM_RGB
 
 
 @pytest.fixture
@@ -56,6 +59,19 @@ def test_too_many_frames_in_memory_name_the_format_that_keeps_none(
     with pytest.raises(ConfigError) as again:
         save_movie(replace(clip, speed=1.0), tmp_path / "a.webp")
     assert "FILE.webp" not in str(again.value)
+
+
+def test_the_view_of_a_clip_lies_on_the_world_in_its_frames(recorded: Recorded, tmp_path: Path) -> None:
+    clip = Clip(recorded, (ClipPanel.WORLD,), recorded.span_s(None, None), size=(400, 500))
+    save_picture(recorded, clip.panels, 0.0, tmp_path / "a.png", clip.size)
+    picture = Image.open(tmp_path / "a.png").convert("RGB")
+    assert (clip.view.width_px, clip.view.height_px) == picture.size
+    x, y = FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2
+    edges = {(0.0, y): (1, 0), (FIELD_WIDTH_MM, y): (-1, 0), (x, 0.0): (0, -1), (x, FIELD_HEIGHT_MM): (0, 1)}
+    for place, (right, down) in edges.items():
+        column, row = clip.view.to_px(*place)
+        outside, inside = (picture.getpixel((int(column + way * right), int(row + way * down))) for way in (-5, 5))
+        assert (outside == RIM_RGB, inside == RIM_RGB) == (True, False), place
 
 
 def test_a_small_movie_is_none_where_it_would_be_large(recorded: Recorded, monkeypatch: pytest.MonkeyPatch) -> None:

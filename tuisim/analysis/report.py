@@ -112,7 +112,11 @@ def report_of(
         "</header>",
         section("Facts", facts(known if runs else log_facts(log)), *map(_error, runs)),
         *parts,
-        section("World", *(_world(run, pins, many=len(runs) > 1) for run in runs), *map(_movie, runs if movie else ())),
+        section(
+            "World",
+            *(_world(run, pins, many=len(runs) > 1) for run in runs),
+            *(_movie(run, pins) for run in runs if movie),
+        ),
         section("Chart", *_chart(model)),
         section("Bands", *_bands(model)),
         section("Statistics", _statistics(model)),
@@ -150,7 +154,7 @@ def _world(run: StoredRun, pins: Sequence[Pin], *, many: bool) -> str:
     text += "; numbers: where goals were met (✓) or missed (✗)" if pins else ""
     size = f'width="{picture.width}" height="{picture.height}"'
     image = f'<img src="{picture_source(picture)}" {size} alt="{text}">'
-    shown = f'<div class="map">{image}{svg_of_pins(pins, run.spec.robot)}</div>' if pins else image
+    shown = f'<div class="map">{image}{svg_of_pins(pins, world_view(run.spec.robot))}</div>' if pins else image
     return f"<figure>{shown}<figcaption>{text}</figcaption></figure>"
 
 
@@ -189,8 +193,12 @@ def _data(kind: str, content: bytes) -> str:
     return f"data:image/{kind};base64,{base64.b64encode(content).decode()}"
 
 
-def _movie(run: StoredRun) -> str:
-    """Return a small movie of a run, closed at first: a page that moves by itself distracts from its text."""
+def _movie(run: StoredRun, pins: Sequence[Pin]) -> str:
+    """Return a small movie of a run, closed at first: a page that moves by itself distracts from its text.
+
+    Args:
+        pins: Places that are marked on it.
+    """
     try:
         made = small_movie(Recorded(run))
     except LogError:
@@ -202,7 +210,8 @@ def _movie(run: StoredRun) -> str:
     speed = f"{clip.speed:g} times real time" if clip.speed > 1 else "real time"
     text = clean(f"Movie of the run: {clip.recorded.end_s:.1f} s in {speed}, {len(content) / 1000:.0f} kB")
     image = f'<img src="{_data("webp", content)}" alt="{text}">'
-    return f'<details class="movie"><summary>{text}</summary>{image}</details>'
+    shown = f'<div class="map">{image}{svg_of_pins(pins, clip.view)}</div>' if pins else image
+    return f'<details class="movie"><summary>{text}</summary>{shown}</details>'
 
 
 def _chart(model: Model) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 from tuisim.batch.parameters import parse_seeds
@@ -13,9 +14,11 @@ from tuisim.commands.batch_options import jobs_option
 from tuisim.commands.echo import Progress, echo, echo_error, echo_json, echo_lines, echo_wrapped, table, tell
 from tuisim.commands.run_options import timeout_option
 from tuisim.config.build import build_run_spec, settings_from
-from tuisim.config.command_line import AS_JSON, Group, argument, command, option
+from tuisim.config.command_line import AS_JSON, Group, WordType, argument, command, option
 from tuisim.config.options import START, settings_of
-from tuisim.errors import ConfigError, counted
+from tuisim.core.values import MAX_SEED
+from tuisim.errors import ConfigError, counted, nearest
+from tuisim.goals.drawn_mats import DRAWN_MATS, drawn_mat, world_lines
 from tuisim.goals.files import GoalsFile, example_names, load_goals
 from tuisim.goals.judge import judge
 from tuisim.goals.judgement import GoalState, Judgement, most_points, points
@@ -225,4 +228,35 @@ def _earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
     return f"{in_words(row.points)} of {in_words(sheet.most_points)}", names
 
 
-goals = Group.of("goals", (check, try_task), help="Check whether runs meet the goals of a task, or try a task out.")
+@command(
+    argument("kind", "KIND", lambda: tuple(DRAWN_MATS)),
+    option("--seed", type=int, default=0, metavar="N", help="Draw it by this number (0)."),
+    option("--out", metavar="FILE", type=WordType(), help="The image: .png (KIND-N.png)."),
+    name="mat",
+    help=f"""Draw a mat by a seed for another world of a task, and print that world for the task's file.
+
+    KIND is one of {", ".join(DRAWN_MATS)}: grey bands at drawn places, the last one black, or a black line in bends.
+    The same seed draws the same mat again.
+    """,
+)
+def draw_mat(kind: str, seed: int, out: str | None) -> int:
+    """Write a drawn mat."""
+    from tuisim.charts.files import check_format, write_whole
+
+    if kind not in DRAWN_MATS:
+        raise ConfigError(f"no such kind of mat {kind!r}", nearest(kind, tuple(DRAWN_MATS)), key="KIND")
+    if not 0 <= seed <= MAX_SEED:
+        raise ConfigError(f"must be from 0 to {MAX_SEED:,}, got {seed:,}", key="--seed")
+    path = Path(out or f"{kind}-{seed}.png")
+    check_format(path, "mat", (".png",))
+    mat = drawn_mat(kind, seed)
+    write_whole(path, mat.png)
+    echo_lines("\n".join(world_lines(mat, path.name)))
+    return 0
+
+
+goals = Group.of(
+    "goals",
+    (check, try_task, draw_mat),
+    help="Check whether runs meet the goals of a task, try a task out, or draw a mat for it.",
+)

@@ -30,7 +30,7 @@ from tuisim.marks.entries import entries_of
 from tuisim.marks.feedback import write_feedback
 from tuisim.marks.gradebook import GradebookKind, Roster, read_roster, write_gradebook
 from tuisim.marks.journal import Journal, journal_of
-from tuisim.marks.outcome import Outcome
+from tuisim.marks.outcome import Outcome, unknown_goals
 from tuisim.marks.overrides import Override, overridden, read_overrides
 from tuisim.marks.page import page_of, reports_folder
 from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan, RunEntry, outcomes_of, runs_of
@@ -74,6 +74,8 @@ _OPTIONS = (
            help="Give each goal a column of its own in the gradebook's file."),
     option("--overrides", metavar="FILE", type=WordType(), group=_RESULTS,
            help="A TOML file with your own points and comments by student, which take precedence."),
+    option("--movies", is_flag=True, group=_RESULTS,
+           help="Give the page's report of each run that missed a goal a movie with the goals on it."),
     option("--feedback", metavar="FOLDER", type=WordType(), group=_RESULTS,
            help="Write a text file for each student: what was met, what was missed, and why."),
 )  # fmt: skip
@@ -90,8 +92,8 @@ _OPTIONS = (
     Programs run in the world of GOALS; if it names none, in that of their magic line. A program that hangs, floods or
     crashes affects its own marks only. Where bubblewrap is installed and starts, each program is isolated.
 
-    Exit code: 0 all programs have marks, 1 this machine could not make some runs (--resume makes them), 2 bad
-    input, 130 interrupted (--resume goes on).
+    Exit code: 0 all programs have marks, 1 this machine could not make some runs (--resume makes them), or a goal's
+    regular expression took too long, 2 bad input, 130 interrupted (--resume goes on).
     """,
 )
 def mark(**given: Any) -> int:
@@ -135,7 +137,7 @@ def mark(**given: Any) -> int:
         _tell_refusals(students)
         _write(sheet, task.worlds, students, found.ignored, arguments)
         _write_gradebooks(sheet, students, roster, arguments)
-    return max(_tell_unread(students), _tell_missing(outcomes))
+    return max(_tell_unread(students), _tell_missing(outcomes), _tell_unknown(outcomes))
 
 
 def _isolates(arguments: Arguments) -> bool:
@@ -228,6 +230,16 @@ def _tell_missing(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
     return 1
 
 
+def _tell_unknown(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
+    """Tell which goals could not be judged, because of a regular expression of the task; return the exit code."""
+    found = unknown_goals(one for every in outcomes.values() for one in every)
+    for goal in sorted(found):
+        by = [name for name, every in outcomes.items() if goal in unknown_goals(every)]
+        echo_error(f"tuisim: “{goal}” cannot be judged and counts as missed, for {listed(map(printable, by))}:")
+        echo_error(f"tuisim: {found[goal]}")
+    return 1 if found else 0
+
+
 def _check(arguments: Arguments, task: GoalsFile) -> None:
     """Raise ConfigError or ExportError if something is wrong that would only be noticed after the runs."""
     if not arguments.folders:
@@ -254,6 +266,8 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
             raise ConfigError(
                 "is for a gradebook", "give --moodle FILE or --canvas FILE", key=f"--{name.replace('_', '-')}"
             )
+    if arguments.movies and not any(target.suffix.lower() in PAGE_SUFFIXES for target in targets):
+        raise ConfigError("is for the page of a class", "give --export FILE.html", key="--movies")
     if arguments.feedback and os.path.exists(arguments.feedback) and not os.path.isdir(arguments.feedback):
         raise ConfigError(f"{arguments.feedback} is no folder", "name a folder", key="--feedback")
 
@@ -295,13 +309,19 @@ def _write(
             tell(f"writing {target}")
             export_marks(sheet, target)
             continue
-        _write_page(sheet, worlds, students, ignored, target)
+        _write_page(sheet, worlds, students, ignored, target, movies=arguments.movies)
     if arguments.feedback:
         write_feedback(Path(arguments.feedback), sheet, [student.text for student in students])
 
 
 def _write_page(
-    sheet: Sheet, worlds: Sequence[TrialWorld], students: Sequence[Student], ignored: Sequence[str], target: Path
+    sheet: Sheet,
+    worlds: Sequence[TrialWorld],
+    students: Sequence[Student],
+    ignored: Sequence[str],
+    target: Path,
+    *,
+    movies: bool,
 ) -> None:
     # Their charts are slow to import, and a table needs none.
     from tuisim.marks.class_map import class_maps
@@ -310,7 +330,7 @@ def _write_page(
 
     kept = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
     links, misses = {}, []
-    for one in write_reports(sheet, worlds, target):
+    for one in write_reports(sheet, worlds, target, movies=movies):
         links[one.student, one.world, one.seed] = one.path
         misses.append(one.misses)
         tell(f"report {len(links)} of {kept}", len(links), kept)

@@ -54,8 +54,8 @@ _SPELLINGS: Mapping[str, Operator] = {"=": Operator.EQUAL}
 """Other spellings."""
 _SIGNS = "|".join(map(re.escape, sorted((*COMPARE, Operator.CONTAINS, *_SPELLINGS), key=len, reverse=True)))
 
-NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-"""Regular expression of a number."""
+NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+"""Regular expression of a number; a text of a million digits fits it in one way only."""
 
 
 class ValueSource(StrEnum):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
+from collections.abc import Sequence
 from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
@@ -13,7 +14,9 @@ from tuisim.core.field import Field
 from tuisim.core.profile import NS_PER_S
 from tuisim.data_class import dataclass
 from tuisim.goals.brick import BRICK_COLUMNS, BRICK_STREAMS, BRICK_TEXTS, brick_column, text_ticks
-from tuisim.protocol import End, Ended, Unended
+from tuisim.goals.motion import impossible_motion
+from tuisim.goals.patterns import Search, search_in
+from tuisim.protocol import End, Ended, Unended, UserAction
 from tuisim.runs.frames import column_values, held, tick_times_s
 from tuisim.runs.records import SAMPLE_STREAMS, OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun, open_mat
@@ -89,11 +92,21 @@ class Evidence:
             self.ended = run.ended is not None
             # Those that are known: what the user typed is only in the rows.
             self.answers = run.answers
-        self.falsified = self.end.summary if self.end is not None and self.end.end is End.FALSIFIED else ""
-        """What the program has falsified; empty if its recording can be trusted."""
         self.records: Array = run.telemetry.array()
         self.memo: dict[str, Any] = {}
         """What conditions have computed from it, and may need again."""
+
+    @cached_property
+    def falsified(self) -> str:
+        """What the program has falsified, as a sentence without its end; empty if its recording can be trusted."""
+        if self.end is not None and self.end.end is End.FALSIFIED:
+            return self.end.summary
+        return impossible_motion(self.records, self.spec, self._actions)
+
+    @property
+    def _actions(self) -> Sequence[UserAction]:
+        run = self._run
+        return run.actions if isinstance(run, StoredRun) else read_actions(run.folder)[0]
 
     @cached_property
     def times_s(self) -> Array:
@@ -120,6 +133,18 @@ class Evidence:
         """The samples, each with the index of its row."""
         return [(number, sample) for number, row in enumerate(self.rows) for sample in samples_of([row])]
 
+    def search(self, pattern: str) -> Search:
+        """Return the search for a regular expression in the lines that the program printed.
+
+        Raises:
+            LogError: this machine cannot search.
+        """
+        key = f"search {pattern}"
+        if key not in self.memo:
+            self.memo[key] = search_in(pattern, (row.text for row in self.rows if row.stream in SAMPLE_STREAMS))
+        found: Search = self.memo[key]
+        return found
+
     @cached_property
     def brick_rows(self) -> list[OutputRow]:
         """The rows of what the brick showed and played, in order, up to `MAX_ROWS`."""
@@ -132,8 +157,7 @@ class Evidence:
             LogError, ConfigError: the mat no longer exists, or its image has changed.
         """
         if name not in self.memo:
-            run = self._run
-            actions = run.actions if isinstance(run, StoredRun) else read_actions(run.folder)[0]
+            actions = self._actions
             if name in BRICK_COLUMNS:
                 self.memo[name] = brick_column(name, len(self.records), self.brick_rows, actions)
                 return self.column(name)
@@ -146,6 +170,7 @@ class Evidence:
 
         Raises:
             ValueError: what it compares with is no number.
+            SlowPatternError: its regular expression takes too long.
             LogError, ConfigError: as `column`.
         """
         import numpy as np
@@ -161,7 +186,12 @@ class Evidence:
 
         Raises:
             ValueError: what it compares with is no number.
+            SlowPatternError: its regular expression takes too long.
         """
+        if condition.source is ValueSource.PRINT:
+            search = self.search(condition.value)
+            return [number for number, row in enumerate(self.rows)
+                    if row.stream in SAMPLE_STREAMS and search(row.text)]  # fmt: skip
         printed = [row for row in self.rows if row.stream in SAMPLE_STREAMS]
         found = set(map(id, rows_when(condition, printed)))
         return [number for number, row in enumerate(self.rows) if id(row) in found]

@@ -15,6 +15,7 @@ from tuisim.goals.condition import WINDOWED, Condition, ConditionKind
 from tuisim.goals.evidence import START, Evidence, EvidencePoint, EvidenceSpan, JudgedRun
 from tuisim.goals.found import Occurrence
 from tuisim.goals.judgement import Change, GoalState, Judgement
+from tuisim.goals.patterns import SlowPatternError
 from tuisim.goals.spec import (
     AllOf,
     AnyOf,
@@ -71,6 +72,8 @@ class _Outcome:
     """0: there is none; None: the line at the moment."""
     happened: EvidencePoint | None = None
     """When that happened which meets it; None: at the moment."""
+    is_unknown: bool = False
+    """Whether it counts as missed because a regular expression of the task takes too long."""
 
 
 def judge(goals: Sequence[Goal], run: JudgedRun, field: Field | None = None) -> tuple[Judgement, ...]:
@@ -106,6 +109,8 @@ class _Judge:
         outcome = self._outcome(goal.name)
         if outcome.state is GoalState.OPEN:
             return Judgement(goal, (), outcome.reason, self._line(outcome))
+        if outcome.is_unknown:
+            return Judgement(goal, (self._change(outcome.moment, outcome.state),), outcome.reason, is_unknown=True)
         changes = (self._change(outcome.moment, outcome.state),)
         happened = self._change(outcome.happened, outcome.state) if outcome.happened else None
         return Judgement(goal, changes, outcome.reason, self._line(outcome), happened)
@@ -155,7 +160,10 @@ class _Judge:
             return self._combined(condition, goal)
         stop = self._stop(goal, condition.KIND, start)
         span = self._evidence.span(start, stop)
-        found = FINDERS[type(condition)](condition, self._evidence, span)
+        try:
+            found = FINDERS[type(condition)](condition, self._evidence, span)
+        except SlowPatternError as error:
+            return _Outcome(GoalState.MISSED, self._evidence.last, f"{error}.", is_unknown=True)
         match condition.KIND:
             case ConditionKind.REACHED:
                 return self._reached(goal, found, stop)
@@ -226,6 +234,8 @@ class _Judge:
 
 def _inverted(name: str, outcome: _Outcome) -> _Outcome:
     """Return the outcome of not meeting a goal."""
+    if outcome.is_unknown:
+        return replace(outcome, reason=f"Whether “{name}” was met is not known.")
     match outcome.state:
         case GoalState.MET:
             return replace(outcome, state=GoalState.MISSED, reason=f"“{name}” was met.", happened=None)

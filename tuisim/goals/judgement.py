@@ -43,6 +43,9 @@ class Judgement:
     happened: Change | None = None
     """When and where that happened which meets it, if a later moment has decided; None: at its last change."""
 
+    is_unknown: bool = False
+    """Whether it counts as missed only because a regular expression of the task takes too long."""
+
     @property
     def state(self) -> GoalState:
         """The state at the end of the recording."""

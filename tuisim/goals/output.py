@@ -10,6 +10,7 @@ from tuisim.core.profile import NS_PER_S
 from tuisim.errors import counted
 from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.goals.found import Occurrence
+from tuisim.goals.patterns import search_in
 from tuisim.goals.provenance import provenance_of
 from tuisim.goals.readings import NOUNS, is_as_read, place_words, range_words, read_ticks, within
 from tuisim.goals.spec import (
@@ -59,7 +60,7 @@ def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSp
     # The row before, since which a reading must have been taken.
     since = -1
     for count, pattern in enumerate(condition.lines):
-        search = re.compile(pattern).search
+        search = evidence.search(pattern)
         start = at if condition.in_order else 0
         fault = Occurrence()
         fitting = (place for place in range(start, len(rows)) if search(rows[place][1].text))
@@ -72,9 +73,9 @@ def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSp
         else:
             # Of the line that the reason quotes.
             about = rows[-1][1].line if rows and line is None else line
-            return (
-                fault if fault.reason else Occurrence(None, _no_line(condition, pattern, rows, line is not None), about)
-            )
+            if fault.reason:
+                return fault
+            return Occurrence(None, _no_line(condition, pattern, rows, line is not None, evidence), about)
         at, line, since = place + 1, row.line, row.tick
         last = max(last, place)
     if condition.once and (open_or_missed := _not_once(condition, rows, span, evidence)):
@@ -87,7 +88,8 @@ def _not_once(
     condition: PrintCondition, rows: list[tuple[int, OutputRow]], span: EvidenceSpan, evidence: Evidence
 ) -> Occurrence | None:
     """Return what is missing of a condition whose lines come only once; None if nothing is."""
-    fits = [(row, sum(bool(re.search(pattern, row.text)) for pattern in condition.lines)) for _, row in rows]
+    searches = list(map(evidence.search, condition.lines))
+    fits = [(row, sum(search(row.text) for search in searches)) for _, row in rows]
     if several := [row for row, count in fits if count > 1]:
         return Occurrence(None, f"{_shown(several[0].text)} says several of the lines at once.", several[0].line)
     fitting = [row for row, count in fits if count]
@@ -100,7 +102,7 @@ def _again(condition: PrintCondition, rows: list[OutputRow], evidence: Evidence)
     """Return which of some rows is the first that says again what one before it says."""
     said: set[str] = set()
     for row in rows:
-        pattern = next(pattern for pattern in condition.lines if re.search(pattern, row.text))
+        pattern = next(pattern for pattern in condition.lines if evidence.search(pattern)(row.text))
         if pattern in said:
             break
         said.add(pattern)
@@ -165,10 +167,12 @@ def _read_between(reading: Reading, first_tick: int, end_tick: int, evidence: Ev
     return bool(((ticks >= first_tick) & (ticks <= end_tick)).any())
 
 
-def _no_line(condition: PrintCondition, pattern: str, rows: list[tuple[int, OutputRow]], some: bool) -> str:
+def _no_line(
+    condition: PrintCondition, pattern: str, rows: list[tuple[int, OutputRow]], some: bool, evidence: Evidence
+) -> str:
     if not rows:
         return "The program printed nothing."
-    if some and condition.in_order and any(re.search(pattern, row.text) for _, row in rows):
+    if some and condition.in_order and any(evidence.search(pattern)(row.text) for _, row in rows):
         return f"A line that {_asked(pattern)} was printed, but not after the lines before it."
     last = _shown(rows[-1][1].text)
     printed = "the only one is" if len(rows) == 1 else f"the last of the {len(rows):,} is"
@@ -292,7 +296,7 @@ def _no_level(condition: LogCondition, count: int, nearest: Sample | None, evide
 
 def _form_fault(name: str, evidence: Evidence) -> str:
     """Return why a line with the name and a number is no sample, as a further sentence; empty if there is none."""
-    like = re.compile(rf"(?:.*\W)?{re.escape(name)}\s*[:=]?\s*[+-]?\.?\d").match
+    like = re.compile(rf"(?:.*\W)?{re.escape(name)}\s*(?:[:=]\s*)?[+-]?\.?\d").match
     row = next((row for row in evidence.rows if row.stream == Stream.STDOUT and like(row.text)), None)
     if row is None:
         return ""
@@ -313,7 +317,7 @@ def find_dialogue(condition: DialogueCondition, evidence: Evidence, span: Eviden
         while at < len(asked) and reply is None:
             end = asked[at + 1] if at + 1 < len(asked) else len(rows)
             if (prompt := _prompt(rows[asked[at]].text, turn.answer, known.get(asked[at]))) is not None:
-                reply, reason = _turn(turn, prompt, rows, range(asked[at], end))
+                reply, reason = _turn(turn, prompt, rows, range(asked[at], end), evidence)
                 line = rows[asked[at]].line
             at += 1
         if reply is None:
@@ -337,18 +341,20 @@ def _prompt(text: str, answer: str, given: str | None) -> str | None:
     return prompt
 
 
-def _turn(turn: DialogueTurn, prompt: str, rows: list[OutputRow], asked: range) -> tuple[int | None, str]:
+def _turn(
+    turn: DialogueTurn, prompt: str, rows: list[OutputRow], asked: range, evidence: Evidence
+) -> tuple[int | None, str]:
     """Return the row that completes a turn or None, and what is wrong with a turn that got its answer.
 
     Args:
         asked: The rows of the turn, from the question to the next one.
     """
-    if turn.prompt and not re.search(turn.prompt, prompt):
+    if turn.prompt and not search_in(turn.prompt, [prompt])(prompt):
         return None, f"The question for {_shown(turn.answer)} was {_shown(prompt)}, not one like {_shown(turn.prompt)}."
     if not turn.reply:
         return asked.start, ""
     printed = [at for at in asked if rows[at].stream == Stream.STDOUT]
-    found = next((at for at in printed if re.search(turn.reply, rows[at].text)), None)
+    found = next((at for at in printed if evidence.search(turn.reply)(rows[at].text)), None)
     if found is not None:
         return found, ""
     said = f"the program printed {_shown(rows[printed[0]].text)}" if printed else "the program printed nothing"

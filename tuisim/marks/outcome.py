@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -47,6 +47,8 @@ class GoalOutcome:
     """Whether it was missed only in hidden worlds, of which no student is told anything."""
     is_penalty: bool = False
     """Whether it takes points off."""
+    is_unknown: bool = False
+    """Whether it counts as missed only because a regular expression of the task takes too long."""
 
     @property
     def is_good(self) -> bool:
@@ -107,9 +109,15 @@ def outcome_of(result: Result, seed: int, folder: Path, world: TrialWorld | None
             goals.append(GoalOutcome(name, True, is_penalty=one.goal.points < 0))
         else:
             cause = _cause(one, judgements)
+            reason = _one_line(portable(cause.reason, folder))
             goals.append(
                 GoalOutcome(
-                    name, False, _one_line(portable(cause.reason, folder)), cause.line, is_penalty=one.goal.points < 0
+                    name,
+                    False,
+                    reason,
+                    cause.line,
+                    is_penalty=one.goal.points < 0,
+                    is_unknown=cause.is_unknown,
                 )
             )
     return Outcome(
@@ -169,6 +177,11 @@ def _merged(seed: int, parts: Sequence[Outcome]) -> Outcome:
     return replace(failed, seed=seed, goals=tuple(goals.values()), failure=f"{failed.world}: {failed.failure}")
 
 
+def unknown_goals(outcomes: Iterable[Outcome]) -> dict[str, str]:
+    """Return the goals that some runs count as missed though nobody knows, by name, each with its reason."""
+    return {goal.name: goal.reason for one in outcomes for goal in one.goals if goal.is_unknown}
+
+
 def portable(text: str, folder: Path | str) -> str:
     """Return a text without addresses in memory, and without what its paths say about this machine.
 
@@ -194,7 +207,7 @@ def _cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Judgeme
 def _failure(result: Result) -> str:
     """Return why a program did not finish."""
     if result.end == End.STOPPED:
-        return "stopped, because the run took too much real time"
+        return "stopped, because it took too long"
     if result.end == End.STALLED:
         # Who has noticed it, the program's process or its host, depends on the machine.
         return "stuck: no simulated time passed"

@@ -47,7 +47,7 @@ class Report:
     """Where it missed goals; none if another run with the same record has said so."""
 
 
-def write_reports(sheet: Sheet, worlds: Sequence[TrialWorld], page: Path) -> Iterator[Report]:
+def write_reports(sheet: Sheet, worlds: Sequence[TrialWorld], page: Path, *, movies: bool = False) -> Iterator[Report]:
     """Write the reports of kept runs; yield each once it is written.
 
     Runs of a student that recorded the same have one report. Runs that were removed from the store are left out.
@@ -55,6 +55,7 @@ def write_reports(sheet: Sheet, worlds: Sequence[TrialWorld], page: Path) -> Ite
 
     Args:
         worlds: The worlds of the task, the first one first.
+        movies: Whether the report of a run that missed a goal has a movie with the goals on it.
 
     Raises:
         ExportError: a report cannot be written.
@@ -78,7 +79,10 @@ def write_reports(sheet: Sheet, worlds: Sequence[TrialWorld], page: Path) -> Ite
                 shown, pins = _verdicts(columns, judged, outcome)
                 misses = _misses(row.name, columns, judged, outcome, run)
                 title = ", ".join(filter(None, (row.name, outcome.world, f"seed {outcome.seed}")))
-                _write(folder / name, report_of(opened, title=title, pins=pins, parts=[shown]))
+                _write(
+                    folder / name,
+                    report_of(opened, title=title, movie=movies and bool(misses), pins=pins, parts=[shown]),
+                )
                 written[recorded] = f"{folder.name}/{name}"
             yield Report(row.name, outcome.world, outcome.seed, written[recorded], MissesOfRun(run, misses))
 

@@ -26,7 +26,7 @@ from tuisim.goals.spec import (
 )
 from tuisim.marks.entries import entries_of
 from tuisim.marks.journal import Journal
-from tuisim.marks.outcome import Outcome
+from tuisim.marks.outcome import Outcome, unknown_goals
 from tuisim.marks.runs import MarkPlan, outcomes_of
 from tuisim.marks.sheet import Sheet, columns_of, in_words, sheet_of
 from tuisim.marks.students import Student, find_students
@@ -128,6 +128,8 @@ def _faults(sheet: Sheet, roles: Sequence[TrialRole]) -> Iterator[str]:
         if by := [_DOES[role] for row, role in rows if role in _DOES and row.cells[at].met and goal.points >= 0]:
             points = f" ({in_words(goal.points)} of {in_words(sheet.most_points)} points)" if goal.points else ""
             yield f"{' and '.join(by)} meets “{goal.name}”{points}: {_remedy(goal)}"
+    for name, reason in unknown_goals(one for row in sheet.rows for one in row.outcomes).items():
+        yield f"“{name}” cannot be judged: {reason}"
     for row, role in rows:
         if role is TrialRole.MODEL and row.robustness < 1:
             where = f"line {row.line}: " if row.line else ""

@@ -15,6 +15,7 @@ from tuisim.errors import ConfigError
 from tuisim.movies import image_files
 from tuisim.movies.clip import ClipPanel, Recorded, Shot, shot_count, shots_of
 from tuisim.movies.painter import FramePainter, Size
+from tuisim.scene.view import Viewport
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -45,6 +46,11 @@ class Clip:
     def shots(self) -> tuple[Shot, ...]:
         """Its frames."""
         return shots_of(*self.span_s, self.speed, self.fps)
+
+    @property
+    def view(self) -> Viewport:
+        """Which part of the field its frames would show if the world filled them; it has the panel of the world."""
+        return FramePainter(self.recorded, self.panels, self.span_s, self.size).view()
 
 
 @dataclass(frozen=True, slots=True)

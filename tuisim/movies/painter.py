@@ -28,6 +28,7 @@ from tuisim.movies.arrays import arrays_drawing
 from tuisim.movies.clip import ClipMoment, ClipPanel, Recorded
 from tuisim.movies.pictures import MovingWorld, SensorArrays
 from tuisim.scene.pictures import fitting_view
+from tuisim.scene.view import Viewport
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -98,6 +99,16 @@ class FramePainter:
         if ClipPanel.CHART in self._panels or ClipPanel.ARRAYS in self._panels:
             height_px += _STRIP_PX
         return WIDTH_PX, height_px + PAD
+
+    def view(self) -> Viewport:
+        """Return which part of the field the whole frame would show if the world filled it.
+
+        What is drawn over a frame in this view lies on the frame's world.
+        """
+        shown = self._world.view
+        box = _centred(self._boxes[ClipPanel.WORLD], (shown.width_px, shown.height_px))
+        left_mm, top_mm = shown.to_mm(-box.left, -box.top)
+        return Viewport(*self.size, shown.mm_per_px, left_mm, top_mm)
 
     def image(self, moment: ClipMoment) -> Image:
         """Return the frame as a Pillow image. The instants of successive calls must not decrease."""
