@@ -30,6 +30,7 @@ def test_a_fault_that_was_found_is_mended(name: str, case: str) -> None:
 
 
 @pytest.mark.proof
+@pytest.mark.usefixtures("real_mats")
 @pytest.mark.parametrize("name", KINDS)
 def test_a_little_of_each_kind_shows_no_fault(name: str) -> None:
     seed = int(os.environ.get("PROOF_SEED") or int.from_bytes(os.urandom(4)))
@@ -39,6 +40,7 @@ def test_a_little_of_each_kind_shows_no_fault(name: str) -> None:
 
 
 @pytest.mark.proof
+@pytest.mark.usefixtures("real_mats")
 def test_a_command_is_killed_before_its_call(tmp_path: Path) -> None:
     ended = killed_at(("-c", "import os; os.mkdir('a'); os.mkdir('b')"), tmp_path, "mkdir", 2)
     assert (ended.code, [path.name for path in tmp_path.iterdir()]) == (-9, ["a"])
