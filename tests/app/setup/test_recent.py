@@ -37,3 +37,16 @@ def test_the_likeliest_comes_first(tmp_path: Path) -> None:
     drop_draft(str(path))
     path.unlink()
     assert kinds() == [(Kind.DRAFT, "new.py"), (Kind.RUN, "Run 1")]
+
+
+def test_there_are_as_many_as_have_a_number_and_the_last_run_is_among_them(tmp_path: Path) -> None:
+    for number in range(4):
+        path = tmp_path / f"{number}.py"
+        path.write_text("import time\ntime.sleep(0.1)\n")
+        over(
+            start_run(Program(path.name, path.read_text(), "none", str(path)), build_run_spec(Settings()), RunOptions())
+        )
+    assert [name for _, name in kinds()] == ["3.py", "2.py", "1.py", "Run 4", "Run 3"]
+    keep_draft("", "x")
+    keep_draft(str(tmp_path / "0.py"), "y")
+    assert [name for _, name in kinds()] == ["0.py", "new.py", "3.py", "2.py", "Run 4"]

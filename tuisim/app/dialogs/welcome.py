@@ -107,5 +107,5 @@ class Welcome(Dialog[Begin | Recent]):
 
 
 def _option(number: int, name: str, title: str) -> Option:
-    numbered = f"{number} {name}" if number <= _MOST_NUMBERED else f"  {name}"
+    numbered = f"{number} {name}"
     return Option(name_and_title(numbered, title, _NAME_CELLS), id=str(number))

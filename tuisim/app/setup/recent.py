@@ -18,8 +18,8 @@ from tuisim.runs.store import RunStore
 
 _RUNS_READ = 20
 """So many of the newest runs are read for their programs."""
-_MOST = 3
-"""Entries of each kind."""
+_MOST, _MOST_OF_KIND = 5, 3
+"""Entries: each has a number beside the four ways to begin, and all are in sight at 80x24."""
 
 
 class Kind(StrEnum):
@@ -47,7 +47,7 @@ def recent(new_name: str) -> list[Recent]:
     Args:
         new_name: Name of a program without a file.
     """
-    kept = [draft for draft in drafts() if not draft.path or _is_own(draft.path)][:_MOST]
+    kept = [draft for draft in drafts() if not draft.path or _is_own(draft.path)][:_MOST_OF_KIND]
     unsaved = [
         Recent(Kind.DRAFT, draft.path, Path(draft.path or new_name).name, f"Not saved, edited {_when(draft.written_s)}")
         for draft in kept
@@ -67,7 +67,10 @@ def recent(new_name: str) -> list[Recent]:
         for run in runs
         if run.ticks
     ]
-    return [*unsaved, *programs[:_MOST], *replays[:_MOST]]
+    texts = [*unsaved, *programs[:_MOST_OF_KIND]]
+    # The last run is always among them.
+    texts = texts[: _MOST - len(replays[:1])]
+    return [*texts, *replays[:_MOST_OF_KIND]][:_MOST]
 
 
 def _programs(runs: list[RunInfo]) -> Iterator[tuple[str, str]]:
