@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tuisim.config.program_robot.thresholds import AIM, Threshold
+from tuisim.config.program_robot.thresholds import AIM, ProgramThreshold
 from tuisim.core.sensors.color import ColorReading, LightRead
 from tuisim.scene.discs import RIM_RGB, RINGS, DiscFace, draw_disc
 
@@ -89,10 +89,10 @@ def test_the_value_is_what_the_program_gets(read: LightRead, most: int, words: s
 
 def test_thresholds_say_what_they_give_now() -> None:
     thresholds = (
-        Threshold(LightRead.PERCENT, ">", 90, 15),
-        Threshold(LightRead.COLOR, "==", 6, 16),
-        Threshold(LightRead.PERCENT, AIM, 50, 17),
-        Threshold(LightRead.REFLECTED, "<", 300, 18),
+        ProgramThreshold(LightRead.PERCENT, ">", 90, 15),
+        ProgramThreshold(LightRead.COLOR, "==", 6, 16),
+        ProgramThreshold(LightRead.PERCENT, AIM, 50, 17),
+        ProgramThreshold(LightRead.REFLECTED, "<", 300, 18),
     )
 
     face = replace(FACE, thresholds=thresholds)

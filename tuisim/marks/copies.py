@@ -42,7 +42,7 @@ _BLANK = frozenset({tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT})
 
 
 @dataclass(frozen=True, slots=True)
-class Pair:
+class SimilarPair:
     """Two programs that share passages."""
 
     names: tuple[str, str]
@@ -53,7 +53,7 @@ class Pair:
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class SimilarGroup:
     """Programs that differ at most in names, numbers, texts and comments."""
 
     names: tuple[str, ...]
@@ -65,9 +65,9 @@ class Group:
 class Similar:
     """What resembles each other in a class."""
 
-    groups: tuple[Group, ...]
+    groups: tuple[SimilarGroup, ...]
     """The largest first."""
-    pairs: tuple[Pair, ...]
+    pairs: tuple[SimilarPair, ...]
     """Of one program of each group and all others, those that share much; the most alike first."""
     compared: int
     """Number of programs that were long enough."""
@@ -130,7 +130,7 @@ def similar(programs: Mapping[str, str], given: Collection[str] = ()) -> Similar
     alike = _groups({name: tuple(token.kind for token in found) for name, found in tokens.items()})
     words = {name: tuple(token.text for token in found) for name, found in tokens.items()}
     groups = tuple(
-        Group(names, tuple(same for same in _groups({name: words[name] for name in names}) if len(same) > 1))
+        SimilarGroup(names, tuple(same for same in _groups({name: words[name] for name in names}) if len(same) > 1))
         for names in alike
         if len(names) > 1
     )
@@ -154,7 +154,7 @@ def _common(prints: Mapping[str, _Prints]) -> set[int]:
     return {key for key, programs in count.items() if programs > most}
 
 
-def _pairs(prints: Mapping[str, _Prints], common: Collection[int]) -> tuple[Pair, ...]:
+def _pairs(prints: Mapping[str, _Prints], common: Collection[int]) -> tuple[SimilarPair, ...]:
     own = {name: {key for key in one if key not in common} for name, one in prints.items()}
     users: dict[int, list[str]] = defaultdict(list)
     for name, keys in own.items():
@@ -168,5 +168,5 @@ def _pairs(prints: Mapping[str, _Prints], common: Collection[int]) -> tuple[Pair
             continue
         lines = frozenset[int]().union(*(prints[first][key] for key in own[first] & own[second]))
         if len(lines) >= LEAST_LINES:
-            found.append(Pair((first, second), share, len(lines)))
+            found.append(SimilarPair((first, second), share, len(lines)))
     return tuple(sorted(found, key=lambda pair: (-pair.share, -pair.lines, pair.names))[:MOST_PAIRS])

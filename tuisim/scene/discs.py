@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.config.program_robot.thresholds import AIM, Threshold, read_in, thresholds_in
+from tuisim.config.program_robot.thresholds import AIM, ProgramThreshold, read_in, thresholds_in
 from tuisim.core.css_colors import Rgb
 from tuisim.core.field import Field, disc_mask
 from tuisim.core.sensors.color import ColorReading, LightRead, pixel_array, reading
@@ -44,7 +44,7 @@ class DiscFace:
     """What the program reads of it."""
     reflected_max: int
     """Value of `reflected_light_intensity` on white."""
-    thresholds: tuple[Threshold, ...] = ()
+    thresholds: tuple[ProgramThreshold, ...] = ()
     """What the program compares it with."""
 
     @property

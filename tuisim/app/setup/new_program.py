@@ -25,7 +25,7 @@ SKELETON_TITLES = {
 }
 
 
-class Reading(NamedTuple):
+class SkeletonSensor(NamedTuple):
     """What a sensor of the usual robot tells a program."""
 
     noun: str
@@ -44,10 +44,12 @@ class Reading(NamedTuple):
 
 _LIGHT = "reflected_light_intensity_pc"
 READINGS = {
-    "colorLeft": Reading("left light sensor", "Light", _LIGHT, "ColorSensor(INPUT_2)", "> 5"),
-    "colorRight": Reading("right light sensor", "Light", _LIGHT, "ColorSensor(INPUT_3)", "> 5"),
-    "ultrasonic": Reading("ultrasonic sensor", "Distance", "distance_centimeters", "UltrasonicSensor(INPUT_1)", "> 20"),
-    "gyro": Reading("gyro", "Angle", "angle", "GyroSensor(INPUT_4)", "< 90", (30, 10)),
+    "colorLeft": SkeletonSensor("left light sensor", "Light", _LIGHT, "ColorSensor(INPUT_2)", "> 5"),
+    "colorRight": SkeletonSensor("right light sensor", "Light", _LIGHT, "ColorSensor(INPUT_3)", "> 5"),
+    "ultrasonic": SkeletonSensor(
+        "ultrasonic sensor", "Distance", "distance_centimeters", "UltrasonicSensor(INPUT_1)", "> 20"
+    ),
+    "gyro": SkeletonSensor("gyro", "Angle", "angle", "GyroSensor(INPUT_4)", "< 90", (30, 10)),
 }
 """By name of its object in the prelude."""
 

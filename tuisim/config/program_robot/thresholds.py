@@ -33,7 +33,7 @@ _PRELUDE = "*prelude"
 
 
 @dataclass(frozen=True, slots=True)
-class Threshold:
+class ProgramThreshold:
     """What a program compares a reading with."""
 
     read: LightRead
@@ -79,7 +79,7 @@ def read_in(program: Program | None) -> LightRead:
 
 
 @lru_cache(maxsize=4)
-def thresholds_in(program: Program, robot: RobotSpec) -> Mapping[str, tuple[Threshold, ...]]:
+def thresholds_in(program: Program, robot: RobotSpec) -> Mapping[str, tuple[ProgramThreshold, ...]]:
     """Return what a program compares its colour sensors with, in the order of its lines, by name of the sensor.
 
     Read from its syntax tree: the program does not run for it. What is computed while it runs is not known; nothing of
@@ -91,7 +91,7 @@ def thresholds_in(program: Program, robot: RobotSpec) -> Mapping[str, tuple[Thre
         return {}
 
 
-def _found(program: Program, robot: RobotSpec) -> Mapping[str, tuple[Threshold, ...]]:
+def _found(program: Program, robot: RobotSpec) -> Mapping[str, tuple[ProgramThreshold, ...]]:
     modules = read_modules(program)
     if not modules:
         return {}
@@ -100,7 +100,7 @@ def _found(program: Program, robot: RobotSpec) -> Mapping[str, tuple[Threshold, 
         star = ast.ImportFrom(_PRELUDE, [ast.alias("*")], 0)
         tree = modules[""].tree
         modules[""] = replace(modules[""], tree=ast.Module([star, *tree.body], tree.type_ignores))
-    found: dict[str, list[Threshold]] = {sensor.name: [] for sensor in robot.color_sensors}
+    found: dict[str, list[ProgramThreshold]] = {sensor.name: [] for sensor in robot.color_sensors}
     for port, threshold in _compared(mentions_in(modules, data_files(program))):
         for sensor in robot.color_sensors:
             if port in ("", sensor.port) and threshold not in found[sensor.name]:
@@ -108,7 +108,7 @@ def _found(program: Program, robot: RobotSpec) -> Mapping[str, tuple[Threshold, 
     return {name: tuple(sorted(some, key=lambda one: one.line)) for name, some in found.items()}
 
 
-def _compared(mentions: Mentions) -> Iterator[tuple[str, Threshold]]:
+def _compared(mentions: Mentions) -> Iterator[tuple[str, ProgramThreshold]]:
     """Yield each comparison of a reading with a constant, with the sensor's port, empty if that is unknown."""
     for scope in mentions.scopes:
         if scope.module.name:
@@ -128,12 +128,12 @@ def _compared(mentions: Mentions) -> Iterator[tuple[str, Threshold]]:
 
 def _pair(
     mentions: Mentions, scope: Scope, reading: ast.expr, sign: str, other: ast.expr
-) -> Iterator[tuple[str, Threshold]]:
+) -> Iterator[tuple[str, ProgramThreshold]]:
     for port, read in dict.fromkeys(_reads(mentions, scope, reading, 0)):
         values = _numbers(mentions, scope, other, read)
         # What a reading drives toward is one number.
         if values and (sign != AIM or (len(values) == 1 and not read.is_color)):
-            yield port, Threshold(read, sign, values[0], reading.lineno)
+            yield port, ProgramThreshold(read, sign, values[0], reading.lineno)
 
 
 def _numbers(mentions: Mentions, scope: Scope, node: ast.expr, read: LightRead) -> list[float]:
