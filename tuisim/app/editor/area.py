@@ -84,7 +84,7 @@ class CodeArea(TextArea):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+f", "want('find')", "Find", show=False),
         Binding("ctrl+g", "want('line')", "Go to a line", show=False),
-        Binding("ctrl+a", "select_all", "Select all", show=False),
+        Binding("ctrl+a", "select_text", "Select all", show=False),
         Binding("ctrl+home", "go_to_end(False)", "Start of the text", show=False),
         Binding("ctrl+end", "go_to_end(True)", "End of the text", show=False),
         Binding("f3", "want('next')", "Next match", show=False),
@@ -325,11 +325,14 @@ class CodeArea(TextArea):
         return self.typing
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave the keys of undo and redo, of the pages, home and end to the app while the user does not type."""
+        """Leave keys that are also the app's, such as those of its layouts, to it while the user does not type."""
         return self.typing if action in _TYPING_ACTIONS else super().check_action(action, parameters)
 
     def action_want(self, command: str) -> None:
         self.post_message(self.Wanted(EditorCommand(command)))
+
+    def action_select_text(self) -> None:
+        self.action_select_all()
 
     def action_go_to_end(self, end: bool) -> None:
         self.move_cursor(self.document.end if end else (0, 0))
@@ -460,9 +463,10 @@ class CodeArea(TextArea):
                 self.post_message(self.GutterClicked(row + 1))
 
 
-_TYPING_ACTIONS = frozenset(
-    {"undo", "redo", "cursor_page_up", "cursor_page_down", "cursor_line_start", "cursor_line_end"}
-)
+_TYPING_ACTIONS = frozenset({
+    "undo", "redo", "cursor_page_up", "cursor_page_down", "cursor_line_start", "cursor_line_end", "select_line",
+    "select_all",
+})  # fmt: skip
 
 _WHILE_TYPING = {"escape": EditorCommand.STOP_TYPING, "ctrl+n": EditorCommand.NEW, "ctrl+o": EditorCommand.OPEN}
 """Usual editor keys; while the user does not type, the last two are keys of the robot and the obstacles."""
