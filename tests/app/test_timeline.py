@@ -137,6 +137,19 @@ async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> 
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
 
 
+async def test_a_click_on_the_bar_or_a_panel_leaves_no_instant() -> None:
+    async with a_run() as (pilot, app):
+        world = app.panel_area.world
+        assert world is not None
+        await until(pilot, lambda: world.time_bar._times is not None and world.time_bar.region.width > 0)
+        await pilot.click(world.time_bar, offset=(20, 0))
+        await until(pilot, lambda: app.run_controller.in_past)
+        at = app.run_controller.timeline.at
+        await until(pilot, lambda: screen_text(app).count(f"past {app.run_controller.timeline.time_s:.2f} s") == 2)
+        await pilot.click("Instrumentation", offset=(5, 1))
+        assert app.run_controller.timeline.at == at
+
+
 @pytest.mark.slow
 async def test_the_bar_is_clicked_and_dragged() -> None:
     async with a_run() as (pilot, app):

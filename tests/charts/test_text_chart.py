@@ -56,6 +56,16 @@ def test_an_empty_chart_says_how_to_log(width: int, height: int) -> None:
     assert "print('Colour: '" in "\n".join(rows)
 
 
+def test_a_chart_without_a_tick_says_so() -> None:
+    logged, measured = traces("Colour"), traces("gyro_deg")
+    for made in (logged, measured):
+        for trace in made:
+            trace.on = False
+    said = ["\n".join(text(ChartPainter().paint(made, ChartState(), 80, 16))) for made in (logged, measured)]
+    assert ["No trace is ticked" in words for words in said] == [True, False]
+    assert ["Nothing logged yet" in words for words in said] == [False, True]
+
+
 @pytest.mark.parametrize(
     ("name", "values", "state", "lowest"),
     [

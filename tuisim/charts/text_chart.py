@@ -116,7 +116,7 @@ class ChartPainter:
         by_mark = state.grey and (len(drawn) > 1 or state.is_ascii)
         lines, boxes = _tick_boxes(traces, state.selected, by_mark, width, height)
         if not drawn:
-            return ChartPicture((lines + _empty(len(traces) > 0, width, height - len(lines)))[:height], boxes)
+            return ChartPicture((lines + _empty(traces, width, height - len(lines)))[:height], boxes)
         with_line = height >= _LINE_ROWS
         rows = max(height - len(lines) - 1 - with_line, 1)
         x_limits = state.x_limits or _time_limits(traces.end_s(), state.grows)
@@ -261,10 +261,14 @@ def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) ->
     return line
 
 
-def _empty(some: bool, width: int, height: int) -> list[list[Run]]:
-    words = EMPTY_TEXT if width >= len(EMPTY_TEXT[0]) else EMPTY_SHORT
-    if some:
-        words = (*words, "", "↑ ↓ and space show a trace") if width >= 26 else words
+def _empty(traces: Traces, width: int, height: int) -> list[list[Run]]:
+    """Return what stands in place of curves: how to log a value, or that the traces there are have no tick."""
+    how = ("↑ ↓ and space show a trace",) if len(traces) and width >= 26 else ()
+    if any(trace.logged for trace in traces):
+        words: tuple[str, ...] = ("No trace is ticked.", *how)
+    else:
+        words = EMPTY_TEXT if width >= len(EMPTY_TEXT[0]) else EMPTY_SHORT
+        words = (*words, "", *how) if how else words
     above = max((height - len(words)) // 2, 0)
     widest = max(map(len, words))
     margin = " " * max((width - widest) // 2, 0)
