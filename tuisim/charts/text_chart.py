@@ -141,7 +141,7 @@ class ChartPainter:
             on_grid = scales.labels[0] if state.grid and not state.is_ascii else {}
             inside = [_styled(self._canvas[row], is_on_grid=row in on_grid) for row in range(rows)]
             if state.spans:
-                inside = shaded(inside, state.spans, x_limits, columns)
+                inside = shaded(inside, state.spans, x_limits, columns, at)
             lines += [scales.framed(row, _with_cursors(inside[row], at)) for row in range(rows)]
             if with_line:
                 lines.append([(" " * (left - 1) + "└" + line, AXIS)])

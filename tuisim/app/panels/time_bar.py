@@ -34,6 +34,10 @@ _MARKS: Mapping[Mark, tuple[str, Style]] = {
 }
 
 
+_ON_LINE = {("╵", "━"): "┷", ("╵", "─"): "┴"}
+"""A sample's marker with the line of the bar through it, which so has no gaps."""
+
+
 @dataclass(frozen=True)
 class BarTimes:
     """The times that the bar shows."""
@@ -98,8 +102,8 @@ def bar_cells(times: BarTimes, marks: Mapping[int, Run], columns: int) -> list[R
     cells: list[Run] = [
         ("━", _PAST) if at <= here else ("─", _LATER) if at <= now else ("·", _BEYOND) for at in range(columns)
     ]
-    for at, mark in marks.items():
-        cells[at] = mark
+    for at, (sign, style) in marks.items():
+        cells[at] = _ON_LINE.get((sign, cells[at][0]), sign), style
     if times.past:
         cells[here] = "▮", _CURSOR
     return cells
