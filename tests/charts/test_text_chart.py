@@ -161,6 +161,18 @@ def test_the_selected_box_is_in_sight() -> None:
     assert "Trace_number_8" in [box.name for box in picture.boxes]
 
 
+@pytest.mark.parametrize("ticked", [("a_long_name_0", "a_long_name_3"), ("a_long_name_3",)])
+def test_what_is_drawn_is_named(ticked: tuple[str, ...]) -> None:
+    made = traces(*(f"a_long_name_{number}" for number in range(9)))
+    for trace in made:
+        trace.on = trace.name in ticked
+
+    rows = text(ChartPainter().paint(made, ChartState("a_long_name_0"), 60, 10))
+
+    assert all(f"[x] {name}" in "\n".join(rows) for name in ticked)
+    assert len(rows) == 10
+
+
 def test_values_at_the_cursor() -> None:
     assert values_at(list(traces("Colour", "way_mm")), 1.25, "s", 80) == "1.25 s  Colour 100  way_mm 101mm"
 

@@ -210,7 +210,7 @@ def _tick_boxes(
         used += len(text) + (2 if used else 0)
         lines[-1].append((text, trace))
     chosen = next((at for at, line in enumerate(lines) for _, trace in line if trace.name == selected), 0)
-    first = max(0, chosen - most_lines + 1)
+    first, most_lines = _lines_in_sight(lines, chosen, most_lines, height)
     shown = lines[first : first + most_lines]
     made, boxes = [], []
     for row, line in enumerate(shown):
@@ -230,6 +230,21 @@ def _tick_boxes(
         arrow = "↕" if all(hidden) else "↓" if hidden[0] else "↑"
         made[-1].append((" " * max(space, 0) + arrow, AXIS))
     return [line for line in made if line], tuple(boxes)
+
+
+def _lines_in_sight(
+    lines: Sequence[Sequence[tuple[str, Trace]]], chosen: int, most_lines: int, height: int
+) -> tuple[int, int]:
+    """Return the first line of tick boxes that is shown, and how many: the chosen one, and what is drawn if it fits."""
+    wanted = [at for at, line in enumerate(lines) if at == chosen or any(trace.on for _, trace in line)]
+    span = wanted[-1] - wanted[0] + 1
+    if span == most_lines + 1 and height > _ROWS_A_LEGEND_LINE:
+        # One row less for the curves is less of a loss than a curve without a name.
+        most_lines += 1
+    first = max(0, chosen - most_lines + 1)
+    if span <= most_lines:
+        first = min(max(first, wanted[-1] - most_lines + 1), wanted[0])
+    return first, most_lines
 
 
 def _box_runs(text: str, trace: Trace, selected: bool, by_mark: bool) -> list[Run]:
