@@ -121,6 +121,7 @@ def test_values() -> None:
 def test_the_heading_is_named() -> None:
     rows = text(moment(Pose(1234.5, 1000.0, -148.2)), 48, 11)
     assert rows[8].split() == ["Pose", "x", "1234.5", "y", "1000.0", "heading", "-148.2°"]
+    assert "x 1000 y 500 h 0°  3.21 s" in "\n".join(text(moment(), 40, 7))
 
 
 @pytest.mark.parametrize("height", [4, 11])

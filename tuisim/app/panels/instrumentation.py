@@ -359,9 +359,11 @@ def _distance_and_angle(now: Snapshot, width: int) -> Line:
 def _place_and_time(now: Snapshot, width: int) -> Line:
     pose = now.instant.pose
     x, y, heading = f"{pose.x_mm:.0f}", f"{pose.y_mm:.0f}", f"{shown_heading_deg(pose.heading_deg):.0f}"
-    where = (_unit("x "), _value(x), _unit(" y "), _value(y), _unit(" "), _value(heading), _unit("°"))
+    at = _unit("x "), _value(x), _unit(" y "), _value(y)
+    where, named = (*at, _unit(" "), _value(heading), _unit("°")), (*at, _unit(" h "), _value(heading), _unit("°"))
     return _fit(
         width,
+        (*named, _value(f"  {now.time_s:.2f}"), _unit(" s  "), _state_word(now)),
         (*where, _value(f"  {now.time_s:.2f}"), _unit(" s  "), _state_word(now)),
         (*where, _value(f" {now.time_s:.2f}"), _unit("s")),
         (_value(x), _unit(","), _value(y), _value(f" {heading}"), _unit("° "), _value(f"{now.time_s:.1f}"), _unit("s")),
