@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,9 +14,12 @@ from tests.app.lesson_help import opened, run_over
 from tests.runs.test_recorded_run import stored
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
-from tuisim.app.earlier_run import is_comparable
+from tuisim.app.earlier_run import is_comparable, stored_before
 from tuisim.app.snapshot import RunPhase
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import Settings
 from tuisim.core.geometry import Pose
+from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.recorded_run import Recording
 
 pytestmark = pytest.mark.usefixtures("home")
@@ -61,7 +65,8 @@ async def test_a_key_goes_to_where_they_parted() -> None:
         app = await ready(pilot)
         await run(pilot, app, STRAIGHT)
         await pilot.press("exclamation_mark")
-        assert "There is no earlier run on this mat: run the program twice, or choose a run with =" in notices(app)
+        none = "There is no earlier run on this mat: run the program twice, or choose a run with ="
+        await until(pilot, lambda: none in notices(app))
         await run(pilot, app, STRAIGHT)
         await pilot.press("exclamation_mark")
         await until(pilot, lambda: any(notice.startswith("The robot has driven as in run") for notice in notices(app)))
@@ -70,6 +75,23 @@ async def test_a_key_goes_to_where_they_parted() -> None:
         timeline = app.run_controller.timeline
         await until(pilot, lambda: timeline.at is not None)
         assert 0 < timeline.tick < 30
+
+
+def test_without_a_run_before_it_is_the_last_stored_one_of_the_program() -> None:
+    def of(path: str, mat: str = "Grey_bands") -> Recording:
+        made = replace(program(STRAIGHT), path=path)
+        run = start_run(made, build_run_spec(Settings({"background": mat})), RunOptions(speed=0.0))
+        run.wait()
+        return Recording(run)
+
+    first = of("line.py")
+    of("other.py")
+    of("line.py", "Two_shapes")
+    later = of("line.py")
+    found = stored_before(later)
+    assert found is not None and found.run_id == first.run_id
+    assert stored_before(first) is None
+    assert stored_before(of("")) is None
 
 
 def test_a_run_on_another_mat_is_not_comparable() -> None:

@@ -118,6 +118,12 @@ async def test_the_robot_can_be_placed_during_a_run() -> None:
         await until(pilot, lambda: app.run_controller.pose.y_mm >= 700)
         await pilot.press("S")
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        recording = app.run_controller.timeline.recording
+        assert recording is not None
+        last = recording.telemetry.last()
+        assert last is not None
+        # The recording ends in the middle of the drive; what is shown is a robot that stands.
+        assert (last.left_speed_dps > 0, app.run_controller.snapshot().instant.left_speed_dps) == (True, 0.0)
         await pilot.press("R")
         await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
         # A run begins where the last one began, unless the robot was placed at rest.

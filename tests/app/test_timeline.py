@@ -14,12 +14,10 @@ from textual.widgets import Input
 
 from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
-from tuisim.app.panels.world import BarTimes, bar_cells, mark_cells, words
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.timeline import Timeline, find
 from tuisim.errors import ConfigError
 from tuisim.protocol import End
-from tuisim.runs.records import Mark
 from tuisim.runs.views import instant_of
 
 pytestmark = pytest.mark.usefixtures("home")
@@ -139,6 +137,19 @@ async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> 
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
 
 
+async def test_a_click_on_the_bar_or_a_panel_leaves_no_instant() -> None:
+    async with a_run() as (pilot, app):
+        world = app.panel_area.world
+        assert world is not None
+        await until(pilot, lambda: world.time_bar._times is not None and world.time_bar.region.width > 0)
+        await pilot.click(world.time_bar, offset=(20, 0))
+        await until(pilot, lambda: app.run_controller.in_past)
+        at = app.run_controller.timeline.at
+        await until(pilot, lambda: screen_text(app).count(f"past {app.run_controller.timeline.time_s:.2f} s") == 2)
+        await pilot.click("Instrumentation", offset=(5, 1))
+        assert app.run_controller.timeline.at == at
+
+
 @pytest.mark.slow
 async def test_the_bar_is_clicked_and_dragged() -> None:
     async with a_run() as (pilot, app):
@@ -218,35 +229,6 @@ async def test_the_dialog_says_what_is_wrong_and_the_keys_go_from_sample_to_samp
         ticks = sorted({row.tick for row in recording.rows.rows(0)})
         await pilot.press("right_parenthesis", "right_parenthesis", "right_parenthesis", "left_parenthesis")
         assert app.run_controller.timeline.at == ticks[1]
-
-
-BAR = BarTimes(tick=200, newest=400, tick_hz=100, past=True, over=True)
-
-
-@pytest.mark.parametrize(
-    ("width", "text"),
-    [
-        (80, "past 2.00 s of 4.00 s  −2.00 s  end: to the present"),
-        (50, "past 2.00 s of 4.00 s  −2.00 s"),
-        (34, "past 2.00 of 4.00 s"),
-        (20, "2.00 s"),
-    ],
-)
-def test_the_words_fit_beside_the_bar(width: int, text: str) -> None:
-    assert words(BAR, width) == text
-
-
-def test_the_bar_has_cursor_and_marks() -> None:
-    marks = mark_cells(BAR, [(0, Mark.SAMPLE), (399, Mark.ERROR), (400, Mark.SAMPLE)], 21)
-    text = "".join(run for run, _ in bar_cells(BAR, marks, 21))
-    assert text == "╵" + "━" * 9 + "▮" + "─" * 9 + "✗"
-    assert [BAR.tick_at(column, 21) for column in (0, 10, 20, 99)] == [0, 200, 400, 400]
-
-
-def test_the_bar_of_a_run_at_work_ends_at_a_round_time() -> None:
-    moment = replace(BAR, past=False, over=False, tick=400)
-    assert moment.end_s == 5.0
-    assert "".join(run for run, _ in bar_cells(moment, {}, 11)) == "━" * 9 + "··"
 
 
 def test_a_timeline_without_a_run_stands_still() -> None:

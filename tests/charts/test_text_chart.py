@@ -56,6 +56,16 @@ def test_an_empty_chart_says_how_to_log(width: int, height: int) -> None:
     assert "print('Colour: '" in "\n".join(rows)
 
 
+def test_a_chart_without_a_tick_says_so() -> None:
+    logged, measured = traces("Colour"), traces("gyro_deg")
+    for made in (logged, measured):
+        for trace in made:
+            trace.on = False
+    said = ["\n".join(text(ChartPainter().paint(made, ChartState(), 80, 16))) for made in (logged, measured)]
+    assert ["No trace is ticked" in words for words in said] == [True, False]
+    assert ["Nothing logged yet" in words for words in said] == [False, True]
+
+
 @pytest.mark.parametrize(
     ("name", "values", "state", "lowest"),
     [
@@ -149,6 +159,18 @@ def test_the_selected_box_is_in_sight() -> None:
     picture = ChartPainter().paint(traces(*names), ChartState("Trace_number_8"), 40, 8)
 
     assert "Trace_number_8" in [box.name for box in picture.boxes]
+
+
+@pytest.mark.parametrize("ticked", [("a_long_name_0", "a_long_name_3"), ("a_long_name_3",)])
+def test_what_is_drawn_is_named(ticked: tuple[str, ...]) -> None:
+    made = traces(*(f"a_long_name_{number}" for number in range(9)))
+    for trace in made:
+        trace.on = trace.name in ticked
+
+    rows = text(ChartPainter().paint(made, ChartState("a_long_name_0"), 60, 10))
+
+    assert all(f"[x] {name}" in "\n".join(rows) for name in ticked)
+    assert len(rows) == 10
 
 
 def test_values_at_the_cursor() -> None:

@@ -577,7 +577,8 @@ class LabApp(PanelMessages):
     def on_click(self, event: events.Click) -> None:
         in_a_dialog = self.screen is not self.panel_area.screen
         if isinstance(event.widget, Widget) and not event.widget.can_focus and not in_a_dialog:
-            self.action_leave_field()
+            # The instant in view stays: a drag along the timeline ends with a click, too.
+            self.panel_area.focus_world()
 
 
 def _footed(state: AppState) -> tuple[Any, ...]:

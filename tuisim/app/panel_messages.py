@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from tuisim.app.panels.obstacles import Obstacles
     from tuisim.app.panels.position import Positioning
     from tuisim.app.panels.settings import Settings
-    from tuisim.app.panels.world import TimeBar, World
+    from tuisim.app.panels.time_bar import TimeBar
+    from tuisim.app.panels.world import World
 
 ROOMY_COLUMNS, ROOMY_ROWS = 86, 15
 """A code panel smaller than this grows while the user types, so that lines of 79 characters are visible."""

@@ -189,6 +189,11 @@ class RunController:
         # After the robot was placed following the run, all its motors are reset.
         has_turned = record is not None and face.turns
         turns = face.turns_at(instant.tick / spec.profile.tick_hz, spec.profile.tick_hz) if has_turned else ()
+        turns = turns or ((0.0, 0.0),) * len(spec.robot.extra_motors)
+        if state is RunPhase.ENDED and not past:
+            # The last record is of the tick before the program's last commands; after its end, nothing turns.
+            instant = replace(instant, left_speed_dps=0.0, right_speed_dps=0.0)
+            turns = tuple((position_deg, 0.0) for position_deg, _ in turns)
         return Snapshot(
             state=state,
             end=self._end if state == RunPhase.ENDED else None,
@@ -201,7 +206,7 @@ class RunController:
             stalled=recording.stalled(record) if record and recording and self._is_of_run else (False, False),
             next_spec=self.next_run.spec,
             face=face,
-            turns=turns or ((0.0, 0.0),) * len(spec.robot.extra_motors),
+            turns=turns,
             pressed=self._pressed_at(record),
             past=past,
             now_tick=now_tick,

@@ -132,8 +132,8 @@ class Snapshot:
 
     @property
     def failed(self) -> bool:
-        """Whether the run has ended with a failure."""
-        return self.state == RunPhase.ENDED and self.end is not None and self.end not in GOOD_ENDS
+        """Whether the end of a failed run is in view."""
+        return not self.past and self.state == RunPhase.ENDED and self.end is not None and self.end not in GOOD_ENDS
 
     @property
     def planned(self) -> RunSpec:

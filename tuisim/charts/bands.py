@@ -23,6 +23,8 @@ _LEAST_COLUMNS = 3
 """Narrower bands have no name."""
 _OVERHANG = 2
 """Columns that a level may be wider than its band: names beside each other are in different rows."""
+_SHIFTS = (0, 1, -1, 2, -2, 3, -3)
+"""Columns from its middle to which the name of a band gives way."""
 FREE = " ┈"
 """What a name may be written over."""
 
@@ -61,6 +63,7 @@ def placed_names(
     rows: int,
     columns: int,
     is_free: Callable[[int, int, int], bool],
+    avoided: Sequence[int] = (),
 ) -> list[tuple[int, int, str]]:
     """Return the names of spans on a canvas: row, first column and text, each in the lowest place that is free.
 
@@ -69,11 +72,14 @@ def placed_names(
         places: Their columns.
         rows, columns: Size of the canvas.
         is_free: Returns whether nothing is drawn in a row between two columns.
+        avoided: Columns, such as that of a cursor, beside which a name stands rather than in them.
     """
     found: list[tuple[int, int, str]] = []
     letters = [len(place) if len(place) >= _LEAST_COLUMNS else 0 for place in places]
     for place, name in zip(places, names_of(spans, letters, _OVERHANG), strict=True):
-        first = min(max(place.start + (len(place) - len(name) + 1) // 2, 0), columns - len(name))
+        middle = min(max(place.start + (len(place) - len(name) + 1) // 2, 0), columns - len(name))
+        near = (middle + by for by in _SHIFTS if 0 <= middle + by <= columns - len(name))
+        first = next((at for at in near if not any(at <= column < at + len(name) for column in avoided)), middle)
         stop = first + len(name)
         for row in reversed(range(rows)) if name else ():
             beside = (at for at in found if at[0] == row)
@@ -83,13 +89,23 @@ def placed_names(
     return found
 
 
-def shaded(rows: Sequence[list[Run]], spans: Sequence[Span], x_limits: Limits, columns: int) -> list[list[Run]]:
-    """Return the rows of a canvas with shaded spans, each with its name in the lowest place where nothing is drawn."""
+def shaded(
+    rows: Sequence[list[Run]], spans: Sequence[Span], x_limits: Limits, columns: int, cursors: Sequence[int] = ()
+) -> list[list[Run]]:
+    """Return the rows of a canvas with shaded spans, each with its name in the lowest place where nothing is drawn.
+
+    Args:
+        rows: The canvas.
+        spans: What is shaded.
+        x_limits: Of the canvas.
+        columns: Its width.
+        cursors: Columns of cursors, beside which names stand.
+    """
     texts = ["".join(text for text, _ in row) for row in rows]
     places = [columns_of(span, x_limits, columns) for span in spans]
     made = list(rows)
     for at, first, name in placed_names(
-        spans, places, len(rows), columns, lambda at, first, stop: not texts[at][first:stop].strip(FREE)
+        spans, places, len(rows), columns, lambda at, first, stop: not texts[at][first:stop].strip(FREE), cursors
     ):
         made[at] = [*_cut(made[at], 0, first), (name, _NAME), *_cut(made[at], first + len(name), columns)]
     return [_shaded(row, places, columns) for row in made]

@@ -134,7 +134,8 @@ def _draw_names(
     def is_free(row: int, first: int, stop: int) -> bool:
         return not any(one[row * height : (row + 1) * height, first * width : stop * width].any() for one in covered)
 
-    for row, first, text in placed_names(plot.spans, places, plot.rows, plot.columns, is_free):
+    cursors = [axes.column_of(x, plot.x_limits, plot.columns) for x in plot.cursors]
+    for row, first, text in placed_names(plot.spans, places, plot.rows, plot.columns, is_free, cursors):
         mask = Image.new("L", (len(text) * width, height))
         ImageDraw.Draw(mask).text((0, height // 2), text, 255, _font(width), anchor="lm")
         place = inside[row * height : (row + 1) * height, first * width : (first + len(text)) * width]

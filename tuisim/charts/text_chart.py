@@ -116,7 +116,7 @@ class ChartPainter:
         by_mark = state.grey and (len(drawn) > 1 or state.is_ascii)
         lines, boxes = _tick_boxes(traces, state.selected, by_mark, width, height)
         if not drawn:
-            return ChartPicture((lines + _empty(len(traces) > 0, width, height - len(lines)))[:height], boxes)
+            return ChartPicture((lines + _empty(traces, width, height - len(lines)))[:height], boxes)
         with_line = height >= _LINE_ROWS
         rows = max(height - len(lines) - 1 - with_line, 1)
         x_limits = state.x_limits or _time_limits(traces.end_s(), state.grows)
@@ -141,7 +141,7 @@ class ChartPainter:
             on_grid = scales.labels[0] if state.grid and not state.is_ascii else {}
             inside = [_styled(self._canvas[row], is_on_grid=row in on_grid) for row in range(rows)]
             if state.spans:
-                inside = shaded(inside, state.spans, x_limits, columns)
+                inside = shaded(inside, state.spans, x_limits, columns, at)
             lines += [scales.framed(row, _with_cursors(inside[row], at)) for row in range(rows)]
             if with_line:
                 lines.append([(" " * (left - 1) + "└" + line, AXIS)])
@@ -210,7 +210,7 @@ def _tick_boxes(
         used += len(text) + (2 if used else 0)
         lines[-1].append((text, trace))
     chosen = next((at for at, line in enumerate(lines) for _, trace in line if trace.name == selected), 0)
-    first = max(0, chosen - most_lines + 1)
+    first, most_lines = _lines_in_sight(lines, chosen, most_lines, height)
     shown = lines[first : first + most_lines]
     made, boxes = [], []
     for row, line in enumerate(shown):
@@ -230,6 +230,21 @@ def _tick_boxes(
         arrow = "↕" if all(hidden) else "↓" if hidden[0] else "↑"
         made[-1].append((" " * max(space, 0) + arrow, AXIS))
     return [line for line in made if line], tuple(boxes)
+
+
+def _lines_in_sight(
+    lines: Sequence[Sequence[tuple[str, Trace]]], chosen: int, most_lines: int, height: int
+) -> tuple[int, int]:
+    """Return the first line of tick boxes that is shown, and how many: the chosen one, and what is drawn if it fits."""
+    wanted = [at for at, line in enumerate(lines) if at == chosen or any(trace.on for _, trace in line)]
+    span = wanted[-1] - wanted[0] + 1
+    if span == most_lines + 1 and height > _ROWS_A_LEGEND_LINE:
+        # One row less for the curves is less of a loss than a curve without a name.
+        most_lines += 1
+    first = max(0, chosen - most_lines + 1)
+    if span <= most_lines:
+        first = min(max(first, wanted[-1] - most_lines + 1), wanted[0])
+    return first, most_lines
 
 
 def _box_runs(text: str, trace: Trace, selected: bool, by_mark: bool) -> list[Run]:
@@ -261,10 +276,14 @@ def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) ->
     return line
 
 
-def _empty(some: bool, width: int, height: int) -> list[list[Run]]:
-    words = EMPTY_TEXT if width >= len(EMPTY_TEXT[0]) else EMPTY_SHORT
-    if some:
-        words = (*words, "", "↑ ↓ and space show a trace") if width >= 26 else words
+def _empty(traces: Traces, width: int, height: int) -> list[list[Run]]:
+    """Return what stands in place of curves: how to log a value, or that the traces there are have no tick."""
+    how = ("↑ ↓ and space show a trace",) if len(traces) and width >= 26 else ()
+    if any(trace.logged for trace in traces):
+        words: tuple[str, ...] = ("No trace is ticked.", *how)
+    else:
+        words = EMPTY_TEXT if width >= len(EMPTY_TEXT[0]) else EMPTY_SHORT
+        words = (*words, "", *how) if how else words
     above = max((height - len(words)) // 2, 0)
     widest = max(map(len, words))
     margin = " " * max((width - widest) // 2, 0)

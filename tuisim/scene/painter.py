@@ -140,7 +140,10 @@ class ScenePainter:
         if self._ground is None or self._ground_key != key:
             self._ground = self._mat.picture(view).copy()
             if self._has_frame:
-                draw_frame(self._ground, view, FRAME_PX if self._is_for_file else 1)
+                if self._is_for_file:
+                    draw_frame(self._ground, view)
+                else:
+                    draw_frame(self._ground, view, 1, _SOFT_FRAME_RGB)
             draw_obstacles(self._ground, view, scene.obstacles, scene.marked)
             if scene.beacon is not None:
                 draw_beacon(self._ground, view, scene.beacon.x_mm, scene.beacon.y_mm)
@@ -173,15 +176,17 @@ FRAME_PX = 2
 _LIGHT = 180
 """On a ground at least so light the edge of a white mat would not be seen without a frame."""
 _FRAME_RGB = (70, 74, 82)
+_SOFT_FRAME_RGB = (168, 172, 178)
+"""In the cells of a screen, where a dark line of one cell looks like a wall."""
 
 
-def draw_frame(picture: Pixels, view: Viewport, width_px: int = FRAME_PX) -> None:
+def draw_frame(picture: Pixels, view: Viewport, width_px: int = FRAME_PX, rgb: Rgb = _FRAME_RGB) -> None:
     """Paint a frame around the field."""
     left, top = (max(round(edge), 0) for edge in view.to_px(0.0, FIELD_HEIGHT_MM))
     right, low = (max(int(edge), 0) for edge in view.to_px(FIELD_WIDTH_MM, 0.0))
     rows, cols = slice(max(top - width_px, 0), low + width_px), slice(max(left - width_px, 0), right + width_px)
     inside = picture[top:low, left:right].copy()
-    picture[rows, cols] = _FRAME_RGB
+    picture[rows, cols] = rgb
     picture[top:low, left:right] = inside
 
 

@@ -47,6 +47,15 @@ async def test_keys_change_the_text(keys: Keys, after: str) -> None:
         assert area.program_text == after
 
 
+async def test_the_keys_of_layouts_select_text_only_while_one_types() -> None:
+    async with CodeApp().run_test(size=(60, 12)) as pilot:
+        _, area = await alone(pilot)
+        await pilot.press("f7", "f6")
+        assert area.selection.is_empty
+        await pilot.press("enter", "f7")
+        assert area.selected_text == TEXT
+
+
 async def test_no_line_is_wrapped_and_the_rest_is_scrolled_to() -> None:
     app = CodeApp()
     async with app.run_test(size=(30, 12)) as pilot:

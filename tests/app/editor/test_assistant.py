@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import pytest
+from textual import events
 from textual.pilot import Pilot
 
-from tests.app.app_help import until
+from tests.app.app_help import ready, settings, until
 from tests.app.code_help import CodeApp, alone
 from tests.app.panel_help import screen_text
+from tests.running import PATIENCE_S
+from tuisim.app.app import LabApp
+from tuisim.app.editor import area as area_module
 from tuisim.app.editor.area import CodeArea
+from tuisim.app.editor.completion import Candidate
 from tuisim.app.panels.code import Code
 
 SIZE = (80, 24)
@@ -47,17 +53,29 @@ async def test_the_only_name_is_put_in(home: Path) -> None:
 @pytest.mark.parametrize(
     ("keys", "text"),
     [
-        (["enter"], "tank_drive.off"),
-        (["down", "tab"], "tank_drive.on"),
+        (["enter"], "tank_drive.on"),
+        (["down", "tab"], "tank_drive.off"),
         (["up", "enter"], "tank_drive.on_for_seconds"),
         (["n", "underscore", "enter"], "tank_drive.on_for_degrees"),
-        (["n", "underscore", "backspace", "backspace", "enter"], "tank_drive.off"),
+        (["n", "underscore", "backspace", "backspace", "enter"], "tank_drive.on"),
         (["pagedown", "enter"], "tank_drive.on_for_seconds"),
         (["escape"], "tank_drive.o"),
-        (["left_parenthesis"], "tank_drive.o("),
+        (["left_parenthesis"], "tank_drive.on("),
+        (["space"], "tank_drive.o "),
         (["x"], "tank_drive.ox"),
     ],
-    ids=["first", "next", "last", "filter", "filter and back", "page", "close", "other character", "no such name"],
+    ids=[
+        "first",
+        "next",
+        "last",
+        "filter",
+        "filter and back",
+        "page",
+        "close",
+        "the next character",
+        "other character",
+        "no such name",
+    ],
 )
 async def test_keys_of_the_list(home: Path, keys: list[str], text: str) -> None:
     async with CodeApp().run_test(size=SIZE) as pilot:
@@ -73,11 +91,32 @@ async def test_the_list_shows_names_signatures_and_help(home: Path) -> None:
     app = CodeApp()
     async with app.run_test(size=SIZE) as pilot:
         await listed(pilot, "tank_drive.o")
-        await pilot.press("down")
         await until(pilot, lambda: "Start rotating" in "".join(screen_text(app)))
         rows = "\n".join(screen_text(app))
         assert "▸on(left_speed, right_speed)" in rows
         assert " on_for_degrees(left_speed, right_speed, degrees, brake=True, block=True)" in rows
+
+
+async def test_what_is_typed_during_a_lookup_goes_on_with_the_name(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    answers = Event()
+    found = Candidate("tank_drive"), Candidate("tank_turn")
+
+    def slow(*_: object) -> tuple[Candidate, ...]:
+        answers.wait(PATIENCE_S)
+        return found
+
+    monkeypatch.setattr(area_module, "candidates", slow)
+    async with LabApp(settings("tan")).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        code = app.query_one(Code)
+        code.start_typing(at_end=True)
+        await until(pilot, lambda: code.typing and code.query_one(CodeArea).has_focus)
+        for key, character in (("tab", "\t"), ("full_stop", "."), ("o", "o"), ("n", "n")):
+            app.post_message(events.Key(key, character))
+        await until(pilot, lambda: str(code.border_subtitle) == "looking up …")
+        answers.set()
+        await until(pilot, lambda: code.query_one(CodeArea).program_text == "tank_drive.on")
+        await until(pilot, lambda: "looking up" not in str(code.border_subtitle))
 
 
 async def test_a_click_chooses_a_name(home: Path) -> None:

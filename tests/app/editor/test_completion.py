@@ -47,9 +47,25 @@ def names(text: str) -> list[str]:
 
 
 @pytest.mark.parametrize(
+    ("text", "first"),
+    [
+        ("tank_drive.", ["on", "off", "on_for_degrees", "on_for_rotations", "on_for_seconds", "follow_gyro_angle"]),
+        ("colorLeft.", ["reflected_light_intensity", "reflected_light_intensity_pc", "color"]),
+        ("ultrasonic.", ["distance_centimeters"]),
+        ("import time\ntime.", ["sleep"]),
+    ],
+)
+def test_what_programs_use_comes_first_and_what_is_inherited_or_internal_last(text: str, first: list[str]) -> None:
+    found = names(text)
+    assert found[: len(first)] == first
+    if text == "tank_drive.":
+        assert found.index("turn_left") < found.index("stop") < found.index("desc")
+
+
+@pytest.mark.parametrize(
     ("text", "found"),
     [
-        ("tank_drive.o", ["off", "on", "on_for_degrees", "on_for_rotations", "on_for_seconds"]),
+        ("tank_drive.o", ["on", "off", "on_for_degrees", "on_for_rotations", "on_for_seconds"]),
         ("col", ["colorLeft", "colorRight", "ColorSensor"]),
         ("get_cl", ["get_clock"]),
         ("print(colorLeft.refl", ["reflected_light_intensity", "reflected_light_intensity_pc"]),

@@ -112,10 +112,23 @@ def test_values() -> None:
         "(0, 0, 255) Blue",
         "Ultrasonic 134.2 cm 1342 mm",
         "Gyro -90° rate 12 °/s",
-        "Pose x 1000.0 y 500.0 0.0°",
+        "Pose x 1000.0 y 500.0 h 0.0°",
         "Clock 3.21 s speed 1×",
         "State running pen down robolab",
     ]
+
+
+def test_the_heading_is_named() -> None:
+    rows = text(moment(Pose(1234.5, 1000.0, -148.2)), 48, 11)
+    assert rows[8].split() == ["Pose", "x", "1234.5", "y", "1000.0", "heading", "-148.2°"]
+    assert "x 1000 y 500 h 0°  3.21 s" in "\n".join(text(moment(), 40, 7))
+
+
+@pytest.mark.parametrize("height", [4, 11])
+def test_a_past_instant_is_not_called_finished(height: int) -> None:
+    rows = text(moment(state=RunPhase.ENDED, end=End.FINISHED, past=True), 78 if height == 4 else 40, height)
+    assert not any("finished" in row for row in rows)
+    assert height == 4 or "past" in rows[-1]
 
 
 def test_how_the_run_ended_is_said() -> None:

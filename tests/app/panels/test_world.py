@@ -13,7 +13,7 @@ from tests.app.app_help import LOGS, ready, settings, until
 from tests.app.panel_help import PanelApp, moment, white_mat
 from tuisim.app.app import LabApp
 from tuisim.app.layout.tree import TIME_BAR_ROWS
-from tuisim.app.panels.world import TURN_STEP_DEG, World, WorldView
+from tuisim.app.panels.world import TURN_STEP_DEG, World, WorldView, legend
 from tuisim.app.snapshot import RunPhase
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
@@ -59,6 +59,28 @@ async def test_the_world_keeps_its_size_when_a_run_starts() -> None:
         app.panel.time_bar.show(moment(now_tick=321))
         await pilot.pause()
         assert (view(app.panel).size, len(app.panel.time_bar._lines)) == (before, 1)
+
+
+_ASTRAY = Pose(-4000.0, 500.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("now_pose", "earlier_pose", "width", "words"),
+    [
+        (None, None, 70, ""),
+        (POSE, None, 70, "outline: the robot now"),
+        (POSE, None, 21, "outline: now"),
+        (None, POSE, 70, "grey: the earlier run"),
+        (POSE, POSE, 70, "outline: the robot now, grey: the earlier run"),
+        (POSE, POSE, 30, "outline: now, grey: earlier"),
+        (POSE, POSE, 21, "line now, grey before"),
+        (_ASTRAY, POSE, 70, "grey: the earlier run"),
+    ],
+)
+def test_the_frame_says_what_the_other_robots_are(
+    now_pose: Pose | None, earlier_pose: Pose | None, width: int, words: str
+) -> None:
+    assert legend(moment(now_pose=now_pose, earlier_pose=earlier_pose), width) == words
 
 
 async def test_it_is_blank_until_the_mat_is_there() -> None:

@@ -26,7 +26,8 @@ def test_a_module_beside_the_program_is_named() -> None:
     looked = Inspected(5, 50_000_000, "main", 0, "", (), frames, (), (), ())
     paused = Paused(5, 50_000_000, 4, PauseReason.STEP, file="/lab/ann/helper.py")
     rows = text(DebugView(RunPhase.PAUSED, paused, looked, source="    return speed\n"), 60)
-    assert rows[:2] == ["line 4 of helper.py · 0.05 s · tick 5", "  return speed"]
+    first = ["line 4 of helper.py · 0.05 s · tick 5", "  return speed", "paused after a step"]
+    assert rows[:3] == first
     assert rows[-2:] == ["▸ drive() line 4 of helper.py", "  program line 3"]
 
 

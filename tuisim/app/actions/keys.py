@@ -324,7 +324,7 @@ def _next_steps(now: Situation) -> tuple[str, ...]:
     if now.state in IN_RUN:
         return ("stop", "pause")
     if now.reads_code:
-        return ("run", *code, "edit")
+        return ("run", *(("analyse", "panel-chart") if now.has_run else ()), "edit", *code)
     return ("run", "analyse", "export", "panel-chart", "edit") if now.has_run else ("run", "open", "edit", "mats")
 
 

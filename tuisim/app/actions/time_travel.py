@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import time
-from functools import partial
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
 from tuisim.app import background
 from tuisim.app.branch import Branch, action_words
-from tuisim.app.earlier_run import left_at_s
+from tuisim.app.earlier_run import left_at_s, stored_before
 from tuisim.app.setup.mat import mat_key
 from tuisim.app.snapshot import RunPhase
 from tuisim.app.timeline import find, forms
@@ -20,6 +19,7 @@ if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext
     from tuisim.runs.recorded_run import Recording
 
+_NO_EARLIER = "There is no earlier run on this mat: run the program twice, or choose a run with {compare}"
 MANY_TICKS = 10
 """Ticks that `:` runs."""
 
@@ -145,23 +145,37 @@ def to_sample(context: ActionContext, words: str) -> None:
 
 
 def to_parting(context: ActionContext) -> None:
-    """Go to the instant at which the run left the earlier one, which is drawn beside it."""
-    later, earlier = context.runs.timeline.recording, context.runs.earlier
-    if later is None or earlier is None:
-        context.app.say("There is no earlier run on this mat: run the program twice, or choose a run with {compare}")
+    """Go to the instant at which the run left the earlier one, which is drawn beside it.
+
+    Without one in this session, it is the last stored run of the same program file.
+    """
+    later, drawn = context.runs.timeline.recording, context.runs.earlier
+    if later is None:
         return
 
-    def go(time_s: float | None) -> None:
+    def compared() -> tuple[Recording | None, float | None]:
+        earlier = drawn or stored_before(later)
+        return earlier, left_at_s(later, earlier) if earlier else None
+
+    def go(found: tuple[Recording | None, float | None]) -> None:
+        earlier, time_s = found
         if context.runs.timeline.recording is not later:
             return
+        if earlier is None:
+            context.app.say(
+                "There is no earlier run on this mat: run the program twice, or choose a run with {compare}"
+            )
+            return
+        if drawn is None:
+            context.runs.show_earlier(earlier)
         if time_s is None:
             context.app.say(f"The robot has driven as in {earlier.name}")
         else:
             to_time(context, time_s)
+            if drawn is None:
+                context.app.say(f"Here it left {earlier.name}, the last one of this program before it")
 
-    background.run(
-        context.panels, partial(left_at_s, later, earlier), go, context.app.complain, group="diff", exclusive=True
-    )
+    background.run(context.panels, compared, go, context.app.complain, group="diff", exclusive=True)
 
 
 def propose_branch(context: ActionContext, then: protocol.Message | None = None, restart: bool = False) -> None:

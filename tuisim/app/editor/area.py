@@ -19,6 +19,7 @@ from textual.containers import Horizontal
 from textual.geometry import Offset, Region
 from textual.message import Message
 from textual.strip import Strip
+from textual.widget import Widget
 from textual.widgets import Input, Static, TextArea
 from textual.widgets.text_area import Edit, EditResult, Selection
 
@@ -84,7 +85,7 @@ class CodeArea(TextArea):
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+f", "want('find')", "Find", show=False),
         Binding("ctrl+g", "want('line')", "Go to a line", show=False),
-        Binding("ctrl+a", "select_all", "Select all", show=False),
+        Binding("ctrl+a", "select_text", "Select all", show=False),
         Binding("ctrl+home", "go_to_end(False)", "Start of the text", show=False),
         Binding("ctrl+end", "go_to_end(True)", "End of the text", show=False),
         Binding("f3", "want('next')", "Next match", show=False),
@@ -96,6 +97,9 @@ class CodeArea(TextArea):
         """Posted for a key that does more than edit the text."""
 
         command: EditorCommand
+
+    class LookedUp(Message):
+        """Posted when the lookup of names begins or ends, see `is_completing`."""
 
     @dataclass
     class GutterClicked(Message):
@@ -325,11 +329,14 @@ class CodeArea(TextArea):
         return self.typing
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave the keys of undo and redo, of the pages, home and end to the app while the user does not type."""
+        """Leave keys that are also the app's, such as those of its layouts, to it while the user does not type."""
         return self.typing if action in _TYPING_ACTIONS else super().check_action(action, parameters)
 
     def action_want(self, command: str) -> None:
         self.post_message(self.Wanted(EditorCommand(command)))
+
+    def action_select_text(self) -> None:
+        self.action_select_all()
 
     def action_go_to_end(self, end: bool) -> None:
         self.move_cursor(self.document.end if end else (0, 0))
@@ -342,7 +349,10 @@ class CodeArea(TextArea):
             return
         # What was typed just before may not have been reported yet.
         self.follow_word()
-        if self.candidates.is_open and event.key in self.candidates.KEYS:
+        if event.character in _AFTER_NAMES and self.candidates.may_complete(self._word() or ""):
+            # Who types on has not waited for the list.
+            self.put_in(self.candidates.take_key("enter"))
+        elif self.candidates.is_open and event.key in self.candidates.KEYS:
             self._done(event)
             if name := self.candidates.take_key(event.key):
                 self.put_in(name)
@@ -383,11 +393,11 @@ class CodeArea(TextArea):
         place = self.cursor_location
         found: tuple[Candidate, ...] = ()
         if self._word() is not None:
-            self.is_completing = True
+            self._set_completing(True)
             try:
                 found = await asyncio.to_thread(candidates, self.program_text, self.path, *place)
             finally:
-                self.is_completing = False
+                self._set_completing(False)
         word = self._word()
         if self.cursor_location != place or not self.selection.is_empty or not self.typing:
             # Something else has moved the cursor, such as the mouse.
@@ -399,6 +409,12 @@ class CodeArea(TextArea):
             self.candidates.open(found, (row, column - len(word)), word, self._place_of(word))
         else:
             self.insert_text(" " * columns_to_tab_stop(self))
+
+    def _set_completing(self, on: bool) -> None:
+        self.is_completing = on
+        # This widget's own messages wait for the key that it handles.
+        if isinstance(self.parent, Widget):
+            self.parent.post_message(self.LookedUp())
 
     def _word(self) -> str | None:
         """Return the word that ends at the cursor, as `word_before`."""
@@ -460,9 +476,13 @@ class CodeArea(TextArea):
                 self.post_message(self.GutterClicked(row + 1))
 
 
-_TYPING_ACTIONS = frozenset(
-    {"undo", "redo", "cursor_page_up", "cursor_page_down", "cursor_line_start", "cursor_line_end"}
-)
+_AFTER_NAMES = frozenset(".(")
+"""What is typed after the name of an object or a function."""
+
+_TYPING_ACTIONS = frozenset({
+    "undo", "redo", "cursor_page_up", "cursor_page_down", "cursor_line_start", "cursor_line_end", "select_line",
+    "select_all",
+})  # fmt: skip
 
 _WHILE_TYPING = {"escape": EditorCommand.STOP_TYPING, "ctrl+n": EditorCommand.NEW, "ctrl+o": EditorCommand.OPEN}
 """Usual editor keys; while the user does not type, the last two are keys of the robot and the obstacles."""

@@ -144,6 +144,10 @@ class CandidateList(Widget):
         self._candidates = self._shown = ()
         self.display = False
 
+    def may_complete(self, word: str) -> bool:
+        """Return whether what follows a word means that the chosen name is to be put in, as the word is none itself."""
+        return self.is_open and bool(word) and all(one.name != word for one in self._shown)
+
     def take_key(self, key: str) -> str:
         """Do what one of `KEYS` does; return the name that is to be put in, empty if none is yet."""
         name = ""

@@ -42,6 +42,12 @@ _GENERAL = frozenset({"ev3dev2", "ev3dev2.sensor"})
 """Modules of the classes that all devices of `ev3dev2` share, which few programs use."""
 _OF_THE_COURSE = frozenset({"reflected_light_intensity_pc", "full_reflected_light_intensity"})
 """Attributes that colour sensors have while a program runs, however they were made."""
+_LIBRARIES = ("ev3dev2", "tuisim.shim.names.course", "time")
+_USUAL = (
+    "on", "off", "on_for_.*",
+    "reflected_light_intensity.*", "color", "distance_centimeters", "angle", "is_pressed", "sleep",
+)  # fmt: skip
+"""Patterns of what most programs use of the libraries, in the order of a list."""
 _UNUSUAL = frozenset({"mro"})
 _EXTENSIONS = [path for path in sys.path if path.endswith("lib-dynload")]
 _asking = Lock()
@@ -108,13 +114,17 @@ def candidates(text: str, path: str, row: int, column: int) -> tuple[Candidate, 
         row: From 0.
         column: From 0.
     """
-    word = word_before(text.split("\n")[row], column)
+    line = text.split("\n")[row]
+    word = word_before(line, column)
     if word is None:
         return ()
+    begin = column - len(word)
     with _asking:
         script, first = _script(text, path)
         found: list[Completion] = _answer(lambda: script.complete(first + row + 1, column), [])
-        shown = sorted((one for one in found if _is_meant(one, word)), key=lambda one: _rank(one, word))
+        after_dot = line[begin - 1 : begin] == "."
+        owner = _answer(lambda: _class_at(script, first + row + 1, begin - 1), "") if after_dot else ""
+        shown = sorted((one for one in found if _is_meant(one, word)), key=lambda one: _rank(one, word, owner))
         described = (_answer(partial(_described, one), Candidate(one.name)) for one in shown[:MOST_DESCRIBED])
         return *described, *(Candidate(one.name) for one in shown[MOST_DESCRIBED:])
 
@@ -206,11 +216,32 @@ def _module_of(one: Completion) -> str:
     return str(places[0].module_name) if places else ""
 
 
-def _rank(one: Completion, word: str) -> tuple[bool, ...]:
-    """Return what sorts a candidate: names in the case that is typed first; private, constant and general ones last."""
+def _class_at(script: Script, line: int, column: int) -> str:
+    """Return the class of the object that ends at a place; empty if it is unknown, or no object of a class."""
+    kinds: list[Any] = script.infer(line, column)
+    return str(kinds[0].full_name) if kinds and kinds[0].type == "instance" else ""
+
+
+def _rank(one: Completion, word: str, owner: str) -> tuple[int, ...]:
+    """Return what sorts a candidate: names in the case that is typed first; private, constant and general ones last.
+
+    Args:
+        one: The candidate.
+        word: What has been typed of it.
+        owner: The class behind the dot, whose own names come before inherited ones; empty if there is none.
+    """
     is_constant = one.name.isupper() and one.type == "statement"
-    is_private, is_general = one.name.startswith("_"), _module_of(one) in _GENERAL
-    return not one.name.startswith(word), is_private, is_constant, is_general
+    module = _module_of(one)
+    is_private, is_general = one.name.startswith("_"), module in _GENERAL
+    use = len(_USUAL)
+    if module.startswith(_LIBRARIES):
+        use = next((at for at, pattern in enumerate(_USUAL) if re.fullmatch(pattern, one.name)), use)
+    is_inherited = is_internal = False
+    if owner and use == len(_USUAL):
+        is_inherited = not _answer(lambda: str(one.full_name), "").startswith(f"{owner}.")
+        # What methods assign, and what its author has not described, is seldom meant.
+        is_internal = one.type == "statement" or not _answer(partial(one.docstring, raw=True), "")
+    return not one.name.startswith(word), is_private, is_constant, is_general, use, is_internal, is_inherited
 
 
 def _described(one: Completion) -> Candidate:

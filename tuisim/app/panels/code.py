@@ -171,6 +171,8 @@ class Code(Vertical):
         words = self._error_words if self.error_line else ""
         told = words or ("running text differs" if self.differs else "")
         helped = Text() if words else self._assistant.said(self.size.width - _FRAME)
+        if self._area.is_completing:
+            helped = Text("looking up …")
         self.border_subtitle = helped if helped else as_markup(told)
 
     def set_running(self, text: str | None, tells: bool = True) -> None:
@@ -332,6 +334,10 @@ class Code(Vertical):
 
     def action_want(self, command: str) -> None:
         self.post_message(self.Wanted(ProgramCommand(command)))
+
+    def on_code_area_looked_up(self, event: CodeArea.LookedUp) -> None:
+        event.stop()
+        self._say()
 
     def on_code_area_gutter_clicked(self, event: CodeArea.GutterClicked) -> None:
         event.stop()

@@ -32,7 +32,7 @@ class Controls(ActionWords, can_focus=False):
         """Show a moment."""
         shown = (
             (snapshot.state, snapshot.end, snapshot.speed, snapshot.pen_down),
-            (snapshot.spec, snapshot.instant.noise),
+            (snapshot.spec, snapshot.instant.noise, snapshot.past and snapshot.time_s),
         )
         if shown != self._shown:
             self._shown, self._snapshot = shown, snapshot
@@ -96,6 +96,8 @@ class Controls(ActionWords, can_focus=False):
 
 
 def _state_label(now: Snapshot) -> str:
+    if now.past:
+        return f"past {now.time_s:.2f} s"
     match now.state:
         case RunPhase.IDLE:
             return "ready"

@@ -301,7 +301,8 @@ def _pose(now: Snapshot, width: int) -> Line:
     x, y, heading = f"{pose.x_mm:.1f}", f"{pose.y_mm:.1f}", f"{shown_deg:.1f}"
     return _fit(
         width,
-        (_label("Pose"), _unit("x"), *_values(f"{x:>7}", "  y", f"{y:>7}"), *_values(f"{heading:>8}", "°")),
+        (_label("Pose"), _unit("x"), *_values(f"{x:>7}", "  y", f"{y:>7}", "  heading", f"{heading:>7}", "°")),
+        (_label("Pose"), _unit("x"), *_values(f"{x:>7}", " y", f"{y:>7}", " h", f"{heading:>7}", "°")),
         (_unit("x "), *_values(x, " y ", y, " ", heading, "°")),
         (*_values(f"{pose.x_mm:.0f}", ",", f"{pose.y_mm:.0f}"), *_values(f" {shown_deg:.0f}", "°")),
     )
@@ -322,6 +323,8 @@ def _clock(now: Snapshot, width: int) -> Line:
 
 
 def _state_word(now: Snapshot) -> Run:
+    if now.past:
+        return "past", _VALUE
     word = end_label(now.end) if now.state == RunPhase.ENDED and now.end else now.state
     return word, _WARNING if now.failed else _VALUE
 
@@ -356,9 +359,11 @@ def _distance_and_angle(now: Snapshot, width: int) -> Line:
 def _place_and_time(now: Snapshot, width: int) -> Line:
     pose = now.instant.pose
     x, y, heading = f"{pose.x_mm:.0f}", f"{pose.y_mm:.0f}", f"{shown_heading_deg(pose.heading_deg):.0f}"
-    where = (_unit("x "), _value(x), _unit(" y "), _value(y), _unit(" "), _value(heading), _unit("°"))
+    at = _unit("x "), _value(x), _unit(" y "), _value(y)
+    where, named = (*at, _unit(" "), _value(heading), _unit("°")), (*at, _unit(" h "), _value(heading), _unit("°"))
     return _fit(
         width,
+        (*named, _value(f"  {now.time_s:.2f}"), _unit(" s  "), _state_word(now)),
         (*where, _value(f"  {now.time_s:.2f}"), _unit(" s  "), _state_word(now)),
         (*where, _value(f" {now.time_s:.2f}"), _unit("s")),
         (_value(x), _unit(","), _value(y), _value(f" {heading}"), _unit("° "), _value(f"{now.time_s:.1f}"), _unit("s")),

@@ -1,42 +1,37 @@
-"""The world panel: the mat from above with robot, pen trace, rays and obstacles, and the time bar below it."""
+"""The world panel: the mat from above with robot, pen trace, rays and obstacles."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
-from rich.style import Style
 from textual import events
 from textual.app import ComposeResult
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim import palette
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.obstacles import BoxGrip, box_at
-from tuisim.app.snapshot import AT_REST, RunPhase, Snapshot
-from tuisim.charts.axes import time_limits
+from tuisim.app.panels.time_bar import TimeBar
+from tuisim.app.snapshot import AT_REST, Snapshot
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec
 from tuisim.data_class import dataclass
-from tuisim.runs.records import Mark
 from tuisim.scene.mono_robot import body, pointer
 from tuisim.scene.off_field import off_field_words
 from tuisim.scene.painter import Faint, ScenePainter, SceneState
 from tuisim.scene.pen import PenTrace, Piece
 from tuisim.scene.robot import drawn_scale
 from tuisim.scene.view import ZOOMS, Viewport, following
-from tuisim.terminal.cell_view import LinesView, PixelView
+from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.cells import MONO
 from tuisim.terminal.picture_mode import BLOCKS
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import Pixels
-from tuisim.terminal.text_runs import Run
 
 TURN_STEP_DEG = 5.0
 """Turn of the robot per notch of the mouse wheel."""
@@ -51,6 +46,11 @@ _PAPER = (255, 255, 255)
 _INFO = PANELS["world"]
 _PIVOT, _GHOST_PIVOT = "O", "x"
 _ANY_PEN = PenSpec()
+
+_FRAME = 4
+"""Cells of the frame beside what it says."""
+_LEGEND_COLS = 22
+"""Room for one of the other robots in whole words."""
 
 _SHOWS_UNTIL_TAKEN = 10
 """Number of updates after which a dropped robot that was not accepted jumps back."""
@@ -137,12 +137,15 @@ class World(Widget, can_focus=True):
         self.border_title = _INFO.titled(self._mat) + (f" {self.zoom}×" if self.zoom > 1 else "")
 
     def _say_below(self) -> None:
-        """Say below the picture what the mouse does, where a robot is that is not seen, or what the outline is."""
+        """Say below the picture what the mouse does, where a robot is that is not seen, or what the others are."""
         words = "drag to draw or move an obstacle" if self._edits_boxes else ""
         if (now := self._snapshot) is not None and not words:
-            words = off_field_words(now.instant.pose) or ("outline: the robot now" if now.now_pose else "")
+            words = off_field_words(now.instant.pose) or legend(now, self.size.width - _FRAME)
         if self.border_subtitle != words:
             self.border_subtitle = words
+
+    def on_resize(self) -> None:
+        self._say_below()
 
     def cycle_zoom(self) -> None:
         """Go to the next zoom factor, and from the last to the first."""
@@ -180,6 +183,25 @@ class World(Widget, can_focus=True):
         self._snapshot = snapshot
         self._say_below()
         self._view.show(snapshot)
+
+
+def legend(now: Snapshot, width: int) -> str:
+    """Return what the robots are that are drawn beside the one in view, in words that fit."""
+    drawn = now.now_pose is not None and not off_field_words(now.now_pose), now.earlier_pose is not None
+    match drawn:
+        case True, True:
+            fits = (
+                "outline: the robot now, grey: the earlier run",
+                "outline: now, grey: earlier",
+                "line now, grey before",
+            )
+            return next((words for words in fits if len(words) <= width), fits[-1])
+        case True, False:
+            return "outline: the robot now" if width >= _LEGEND_COLS else "outline: now"
+        case False, True:
+            return "grey: the earlier run" if width >= _LEGEND_COLS else "grey: earlier"
+        case _:
+            return ""
 
 
 def _pointers(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:
@@ -429,169 +451,3 @@ class WorldView(PixelView):
             float(round(min(max(start.y_mm + y_mm - grip.y_mm, 0), FIELD_HEIGHT_MM))),
             start.heading_deg,
         )
-
-
-MIN_BAR_COLS = 12
-"""Minimum length of the bar, whatever the text beside it."""
-
-_PAST, _LATER, _BEYOND = Style(color=palette.BLUE), Style(color=palette.LINE), Style(color=palette.TRACK)
-_CURSOR = Style(color=palette.GROUND, bgcolor=palette.YELLOW, bold=True)
-_WORDS, _STRONG = Style(color=palette.SOFT), Style(color=palette.YELLOW, bold=True)
-
-# By priority: of several markers in one cell, the first in this order is shown.
-_MARKS: Mapping[Mark, tuple[str, Style]] = {
-    Mark.ERROR: ("✗", Style(color=palette.RED, bold=True)),
-    Mark.BREAK: ("●", Style(color=palette.BREAKPOINT)),
-    Mark.ACTION: ("◆", Style(color=palette.KEYWORD)),
-    Mark.SAMPLE: ("╵", Style(color=palette.GREEN)),
-}
-
-
-@dataclass(frozen=True)
-class BarTimes:
-    """The times that the bar shows."""
-
-    tick: int
-    """The tick in view."""
-    newest: int
-    tick_hz: int
-    past: bool
-    over: bool
-    """Whether the run has ended, so that the bar ends at the run's end."""
-
-    @cached_property
-    def end_s(self) -> float:
-        """Time at the right end: the end of a finished run, else a round time."""
-        now_s = self.newest / self.tick_hz
-        return max(now_s, 1 / self.tick_hz) if self.over else _round_end_s(math.ceil(now_s))
-
-    def column(self, tick: int, columns: int) -> int:
-        """Return the column of a tick in a bar of that length."""
-        return min(columns - 1, round(tick / self.tick_hz / self.end_s * (columns - 1)))
-
-    def tick_at(self, column: int, columns: int) -> int:
-        """Return the tick at a column, at most the newest one."""
-        share = min(max(column, 0), columns - 1) / max(columns - 1, 1)
-        return min(self.newest, round(share * self.end_s * self.tick_hz))
-
-
-@lru_cache(maxsize=1)
-def _round_end_s(now_s: int) -> float:
-    """Return where the bar of a run at work ends, which changes at whole seconds only."""
-    return time_limits(now_s)[1]
-
-
-def words(times: BarTimes, width: int) -> str:
-    """Return the text beside the bar, as much as fits."""
-    at_s, now_s = times.tick / times.tick_hz, times.newest / times.tick_hz
-    if not times.past:
-        return f"{now_s:.2f} s"
-    short = f"past {at_s:.2f} of {now_s:.2f} s"
-    long = f"past {at_s:.2f} s of {now_s:.2f} s  −{now_s - at_s:.2f} s"
-    longest = f"{long}  end: to the present"
-    fits = (text for text in (longest, long, short) if len(text) + 1 + MIN_BAR_COLS <= width)
-    return next(fits, f"{at_s:.2f} s")
-
-
-def mark_cells(times: BarTimes, marks: Iterable[tuple[int, Mark]], columns: int) -> dict[int, Run]:
-    """Return the markers by column."""
-    order = list(_MARKS)
-    found: dict[int, int] = {}
-    for tick, kind in marks:
-        at = times.column(tick, columns)
-        found[at] = min(found.get(at, len(order)), order.index(kind))
-    return {at: _MARKS[order[kind_at]] for at, kind_at in found.items()}
-
-
-def bar_cells(times: BarTimes, marks: Mapping[int, Run], columns: int) -> list[Run]:
-    """Return the cells of the bar."""
-    here, now = times.column(times.tick, columns), times.column(times.newest, columns)
-    cells: list[Run] = [
-        ("━", _PAST) if at <= here else ("─", _LATER) if at <= now else ("·", _BEYOND) for at in range(columns)
-    ]
-    for at, mark in marks.items():
-        cells[at] = mark
-    if times.past:
-        cells[here] = "▮", _CURSOR
-    return cells
-
-
-class TimeBar(LinesView):
-    """The time bar."""
-
-    DEFAULT_CSS = "TimeBar { height: 1; width: 1fr; }"
-
-    @dataclass
-    class Scrubbed(Message):
-        """Posted when the user chooses an instant; None is now."""
-
-        tick: int | None
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.marks: Callable[[], Sequence[tuple[int, Mark]]] = tuple
-        """Returns the marked ticks, with the kind of each marker."""
-        self._times: BarTimes | None = None
-        self._columns = 0
-        self._marked: tuple[object, dict[int, Run]] = None, {}
-        """The markers as drawn, and the data they were made from."""
-        self._dragging = False
-
-    def show(self, snapshot: Snapshot) -> None:
-        """Show a moment of a run; before the first run the row is empty, so that the world keeps its size."""
-        if snapshot.state == RunPhase.IDLE or not (snapshot.now_tick > 0 or snapshot.past):
-            self._times = None
-            self.set_lines([])
-            return
-        tick = snapshot.instant.tick if snapshot.past else snapshot.now_tick
-        hz = snapshot.spec.profile.tick_hz
-        self._times = BarTimes(tick, snapshot.now_tick, hz, snapshot.past, snapshot.state == RunPhase.ENDED)
-        self._draw()
-
-    def on_resize(self) -> None:
-        self._draw()
-
-    def _draw(self) -> None:
-        if self._times is None or not self.size:
-            return
-        times = self._times
-        text = words(times, self.size.width)
-        self._columns = columns = max(1, self.size.width - len(text) - 1)
-        marks = self.marks()
-        key = (len(marks), marks[0] if marks else None, columns, times.end_s)
-        if key != self._marked[0]:
-            self._marked = key, mark_cells(times, marks, columns)
-        style = _STRONG if times.past else _WORDS
-        self.set_lines([[*bar_cells(times, self._marked[1], columns), (" ", _WORDS), (text, style)]])
-
-    def _choose(self, event: events.MouseEvent) -> None:
-        event.stop()
-        if self._times is not None:
-            tick = self._times.tick_at(int(event.screen_x) - self.region.x, self._columns)
-            self.post_message(self.Scrubbed(None if tick >= self._times.newest else tick))
-
-    def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Go to the instant at the mouse, and follow it; the text beside the bar returns to now."""
-        if event.button != 1 or self._times is None:
-            return
-        if event.x >= self._columns:
-            event.stop()
-            self.post_message(self.Scrubbed(None))
-        else:
-            self._dragging = True
-            self.capture_mouse()
-            self._choose(event)
-
-    def on_mouse_move(self, event: events.MouseMove) -> None:
-        if self._dragging:
-            self._choose(event)
-
-    def on_mouse_up(self, event: events.MouseUp) -> None:
-        if self._dragging:
-            event.stop()
-            self._dragging = False
-            self.release_mouse()
-
-    def on_mouse_release(self) -> None:
-        """Stop following the mouse: a dialog has captured it."""
-        self._dragging = False

@@ -78,7 +78,9 @@ def reason_label(reason: PauseReason) -> str:
             return "recorded"
         case PauseReason.END:
             return "end of the program"
-        case PauseReason.STEP | PauseReason.BREAK:
+        case PauseReason.STEP:
+            return "paused after a step"
+        case PauseReason.BREAK:
             return reason.value
         case _:
             assert_never(reason)

@@ -1,0 +1,190 @@
+"""The time bar below the world: the run as a line with markers, the instant in view on it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property, lru_cache
+
+from rich.style import Style
+from textual import events
+from textual.message import Message
+
+from tuisim import palette
+from tuisim.app.snapshot import RunPhase, Snapshot
+from tuisim.charts.axes import time_limits
+from tuisim.data_class import dataclass
+from tuisim.runs.records import Mark
+from tuisim.terminal.cell_view import LinesView
+from tuisim.terminal.text_runs import Run
+
+MIN_BAR_COLS = 40
+"""Minimum length of the bar beside the time in view and that of the run; a shorter one has the time in view alone."""
+
+_PAST, _LATER, _BEYOND = Style(color=palette.BLUE), Style(color=palette.LINE), Style(color=palette.TRACK)
+_CURSOR = Style(color=palette.GROUND, bgcolor=palette.YELLOW, bold=True)
+_WORDS, _STRONG = Style(color=palette.SOFT), Style(color=palette.YELLOW, bold=True)
+
+# By priority: of several markers in one cell, the first in this order is shown.
+_MARKS: Mapping[Mark, tuple[str, Style]] = {
+    Mark.ERROR: ("✗", Style(color=palette.RED, bold=True)),
+    Mark.BREAK: ("●", Style(color=palette.BREAKPOINT)),
+    Mark.ACTION: ("◆", Style(color=palette.KEYWORD)),
+    Mark.SAMPLE: ("╵", Style(color=palette.GREEN)),
+}
+
+
+_ON_LINE = {("╵", "━"): "┷", ("╵", "─"): "┴"}
+"""A sample's marker with the line of the bar through it, which so has no gaps."""
+
+
+@dataclass(frozen=True)
+class BarTimes:
+    """The times that the bar shows."""
+
+    tick: int
+    """The tick in view."""
+    newest: int
+    tick_hz: int
+    past: bool
+    over: bool
+    """Whether the run has ended, so that the bar ends at the run's end."""
+
+    @cached_property
+    def end_s(self) -> float:
+        """Time at the right end: the end of a finished run, else a round time."""
+        now_s = self.newest / self.tick_hz
+        return max(now_s, 1 / self.tick_hz) if self.over else _round_end_s(math.ceil(now_s))
+
+    def column(self, tick: int, columns: int) -> int:
+        """Return the column of a tick in a bar of that length."""
+        return min(columns - 1, round(tick / self.tick_hz / self.end_s * (columns - 1)))
+
+    def tick_at(self, column: int, columns: int) -> int:
+        """Return the tick at a column, at most the newest one."""
+        share = min(max(column, 0), columns - 1) / max(columns - 1, 1)
+        return min(self.newest, round(share * self.end_s * self.tick_hz))
+
+
+@lru_cache(maxsize=1)
+def _round_end_s(now_s: int) -> float:
+    """Return where the bar of a run at work ends, which changes at whole seconds only."""
+    return time_limits(now_s)[1]
+
+
+def words(times: BarTimes, width: int) -> str:
+    """Return the text beside the bar: as wide in the past as now, so that the columns of the bar keep their times.
+
+    Args:
+        times: What the bar shows.
+        width: Of bar and text.
+    """
+    at, now = (f"{tick / times.tick_hz:.2f}" for tick in (times.tick, times.newest))
+    both = f"{at:>{len(now)}} of {now} s"
+    if width - len(both) - 1 >= MIN_BAR_COLS:
+        return both if times.past else f"{now} s".rjust(len(both))
+    return f"{at if times.past else now:>{len(now)}} s"
+
+
+def mark_cells(times: BarTimes, marks: Iterable[tuple[int, Mark]], columns: int) -> dict[int, Run]:
+    """Return the markers by column."""
+    order = list(_MARKS)
+    found: dict[int, int] = {}
+    for tick, kind in marks:
+        at = times.column(tick, columns)
+        found[at] = min(found.get(at, len(order)), order.index(kind))
+    return {at: _MARKS[order[kind_at]] for at, kind_at in found.items()}
+
+
+def bar_cells(times: BarTimes, marks: Mapping[int, Run], columns: int) -> list[Run]:
+    """Return the cells of the bar."""
+    here, now = times.column(times.tick, columns), times.column(times.newest, columns)
+    cells: list[Run] = [
+        ("━", _PAST) if at <= here else ("─", _LATER) if at <= now else ("·", _BEYOND) for at in range(columns)
+    ]
+    for at, (sign, style) in marks.items():
+        cells[at] = _ON_LINE.get((sign, cells[at][0]), sign), style
+    if times.past:
+        cells[here] = "▮", _CURSOR
+    return cells
+
+
+class TimeBar(LinesView):
+    """The time bar."""
+
+    DEFAULT_CSS = "TimeBar { height: 1; width: 1fr; }"
+
+    @dataclass
+    class Scrubbed(Message):
+        """Posted when the user chooses an instant; None is now."""
+
+        tick: int | None
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.marks: Callable[[], Sequence[tuple[int, Mark]]] = tuple
+        """Returns the marked ticks, with the kind of each marker."""
+        self._times: BarTimes | None = None
+        self._columns = 0
+        self._marked: tuple[object, dict[int, Run]] = None, {}
+        """The markers as drawn, and the data they were made from."""
+        self._dragging = False
+
+    def show(self, snapshot: Snapshot) -> None:
+        """Show a moment of a run; before the first run the row is empty, so that the world keeps its size."""
+        if snapshot.state == RunPhase.IDLE or not (snapshot.now_tick > 0 or snapshot.past):
+            self._times = None
+            self.set_lines([])
+            return
+        tick = snapshot.instant.tick if snapshot.past else snapshot.now_tick
+        hz = snapshot.spec.profile.tick_hz
+        self._times = BarTimes(tick, snapshot.now_tick, hz, snapshot.past, snapshot.state == RunPhase.ENDED)
+        self._draw()
+
+    def on_resize(self) -> None:
+        self._draw()
+
+    def _draw(self) -> None:
+        if self._times is None or not self.size:
+            return
+        times = self._times
+        text = words(times, self.size.width)
+        self._columns = columns = max(1, self.size.width - len(text) - 1)
+        marks = self.marks()
+        key = (len(marks), marks[0] if marks else None, columns, times.end_s)
+        if key != self._marked[0]:
+            self._marked = key, mark_cells(times, marks, columns)
+        style = _STRONG if times.past else _WORDS
+        self.set_lines([[*bar_cells(times, self._marked[1], columns), (" ", _WORDS), (text, style)]])
+
+    def _choose(self, event: events.MouseEvent) -> None:
+        event.stop()
+        if self._times is not None:
+            tick = self._times.tick_at(int(event.screen_x) - self.region.x, self._columns)
+            self.post_message(self.Scrubbed(None if tick >= self._times.newest else tick))
+
+    def on_mouse_down(self, event: events.MouseDown) -> None:
+        """Go to the instant at the mouse, and follow it; the text beside the bar returns to now."""
+        if event.button != 1 or self._times is None:
+            return
+        if event.x >= self._columns:
+            event.stop()
+            self.post_message(self.Scrubbed(None))
+        else:
+            self._dragging = True
+            self.capture_mouse()
+            self._choose(event)
+
+    def on_mouse_move(self, event: events.MouseMove) -> None:
+        if self._dragging:
+            self._choose(event)
+
+    def on_mouse_up(self, event: events.MouseUp) -> None:
+        if self._dragging:
+            event.stop()
+            self._dragging = False
+            self.release_mouse()
+
+    def on_mouse_release(self) -> None:
+        """Stop following the mouse: a dialog has captured it."""
+        self._dragging = False
