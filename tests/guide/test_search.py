@@ -51,6 +51,25 @@ def test_words_need_not_be_exact(question: str, page: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("question", "page", "section"),
+    [
+        ("How do I stop at the wall", "how-sensors-see", "Ultrasonic: stop at a wall"),
+        ("stop in front of an obstacle", "how-sensors-see", "Ultrasonic: stop at a wall"),
+        ("wrong sign line follower", "going-back", "Find where a program goes wrong"),
+        ("robot drives through the wall", "when-it-goes-wrong", "The robot drives through the wall"),
+    ],
+)
+def test_the_answer_comes_first(question: str, page: str, section: str) -> None:
+    first = search(question)[0]
+    assert (first.name, first.heading) == (page, section)
+
+
+@pytest.mark.parametrize("question", ["wrong order", "reading with noise", "wall", "key", "sensor value"])
+def test_a_passage_is_neither_a_fence_nor_a_rule(question: str) -> None:
+    assert not [one for one in search(question) if one.passage.startswith(("```", "| ---"))]
+
+
+@pytest.mark.parametrize(
     ("question", "section"),
     [
         ("run faster than real time", "Faster or slower than real time"),
