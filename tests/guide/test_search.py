@@ -10,6 +10,7 @@ import pytest
 from tests.guide.questions import QUESTIONS
 from tuisim.guide.catalogue import pages
 from tuisim.guide.search import search
+from tuisim.guide.text import page_lines, rows_of
 
 STUDENTS = tomllib.loads((Path(__file__).parent / "questions.toml").read_text(encoding="utf-8"))
 """What students ask, with the pages that answer it."""
@@ -83,3 +84,11 @@ def test_the_section_that_answers_is_named(question: str, section: str) -> None:
 @pytest.mark.parametrize("question", ["", "how do I", "xyzzy", "%&"])
 def test_nothing_is_found_where_nothing_is_asked(question: str) -> None:
     assert search(question) == []
+
+
+@pytest.mark.parametrize(("width", "begins"), [(36, "gyro"), (76, "gyro"), (118, " gyro  ")])
+def test_a_row_of_a_table_is_found_in_each_width(width: int, begins: str) -> None:
+    first = search("connect a gyro to port 4")[0]
+    lines = page_lines(pages()[first.name], width)
+    _, row = rows_of(lines, first.heading, first.passage)
+    assert "".join(part for part, _ in lines[row]).startswith(begins)
