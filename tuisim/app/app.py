@@ -25,6 +25,7 @@ from tuisim.app.background import enter, leave
 from tuisim.app.branch import branch_message
 from tuisim.app.debugger import DebugController
 from tuisim.app.editor.document import Document
+from tuisim.app.error_words import remedy
 from tuisim.app.feed import PanelFeed
 from tuisim.app.form import NumberInput
 from tuisim.app.goals import GoalsController
@@ -416,7 +417,9 @@ class LabApp(PanelMessages):
         good = ended.end in GOOD_ENDS
         if not good:
             self.panel_area.bring("output")
-        notice, self._last_words = end_words(ended, stood)
+        notice, last = end_words(ended, stood)
+        helps = "" if good else self.with_keys(remedy(ended.summary))
+        self._last_words = ": ".join(filter(None, (last, helps)))
         self.document.run_ended_at(ended.error_line, "" if good else notice)
         # The output ends with the same words.
         if not self.panel_area.shown("output"):
