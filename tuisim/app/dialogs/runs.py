@@ -57,7 +57,7 @@ def _when(run: RunInfo) -> str:
 
 
 # As wide as fits a terminal of 80 columns; the list is indented by one.
-_HEADS = f"{'run':>5} {'when':<11} {'program':<12} {'mat':<10} {'end':<9} {'s':>6} {'samples':>7}"
+_HEADS = f"{'run':>5} {'when':<11} {'program':<12} {'mat':<10} {'end':<9} {'s':>6} {'samples':>7}  note"
 
 
 def run_line(run: RunInfo, marked: bool = False) -> Text:
@@ -69,8 +69,9 @@ def run_line(run: RunInfo, marked: bool = False) -> Text:
     line.append(f"{cut(Path(run.background).name, 10):<10} ")
     line.append(f"{cut(end_label(run.end), 9):<9} ", "" if run.end in GOOD_ENDS else palette.RED)
     line.append(f"{run.time_s or 0:>6.2f} {run.samples or 0:>7,}")
-    if run.tags or run.summary:
-        line.append(f"  {run.tags or run.summary}", palette.SOFT)
+    # Of most runs the summary is the end, which has its own column.
+    if note := run.tags or (run.summary if run.summary != end_label(run.end) else ""):
+        line.append(f"  {note}", palette.SOFT)
     return line
 
 
