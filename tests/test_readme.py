@@ -76,7 +76,7 @@ def block(language: str, holding: str) -> str:
 
 
 def test_a_students_first_program_runs_also_with_a_robot_of_ones_own(tmp_path: Path, here: Command) -> None:
-    (tmp_path / "my_program.py").write_text(block("python", "tank_drive.on("))
+    (tmp_path / "my_program.py").write_text(block("python", "tank_drive.on(SpeedPercent(50), SpeedPercent(50))"))
     (tmp_path / "robot.toml").write_text(block("toml", "# robot.toml"))
     for robot in ("Default_Robot", "robot.toml"):
         done = here("run", "my_program.py", "-r", robot)

@@ -413,6 +413,16 @@ class Spoke(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class Circling(Message):
+    """A loop has gone on for long without a wait; sent once, in a live run."""
+
+    line: int
+    """A line in the loop, or of a function that it calls."""
+    since_ns: int
+    """When it began."""
+
+
+@dataclass(frozen=True, slots=True)
 class InputWanted(Message):
     """The program waits in `input()`."""
 
@@ -494,7 +504,7 @@ class LineHistory(Message):
     lines: tuple[ExecutedLine, ...]
 
 
-_EVENTS = (Started, Paused, Resumed, Inspected, LineHistory, Spoke, InputWanted, ReplyWanted, Wheels, Ended)
+_EVENTS = (Started, Paused, Resumed, Inspected, LineHistory, Spoke, Circling, InputWanted, ReplyWanted, Wheels, Ended)
 EVENTS: dict[str, type[Message]] = {event.kind: event for event in _EVENTS}
 
 

@@ -136,7 +136,7 @@ async def test_an_error_is_shown_with_its_line() -> None:
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await until(pilot, lambda: all(words in screen_text(app) for words in ("NameError", "✗ 2")))
         assert screen_text(app).count("Traceback") == 1
-        await until(pilot, lambda: "NameError" in str(app.query_one(Code).border_subtitle))
+        await until(pilot, lambda: "name 'nothing' is not defined" in str(app.query_one(Code).border_subtitle))
         assert not any("NameError" in notice for notice in notices(app))
 
 

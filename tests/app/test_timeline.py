@@ -209,7 +209,9 @@ async def test_words_find_their_instants() -> None:
         timeline.go(None)
         # At the end there is nothing after.
         assert find("sample Colour", timeline) == find("sample", timeline) == newest
-        assert find("sample Colour < 90 first", timeline) == dark
+        assert find("sample Colour < 90 first", timeline) == find("first sample Colour < 90", timeline) == dark
+        assert find("sample Colour < 90", timeline, first_at_end=True) == dark
+        assert find("back sample Colour", timeline, first_at_end=True) == newest
         timeline.go(dark)
         assert find("sample Colour changes back", timeline) == max(tick for tick in changed if tick < dark)
         assert find("sample Colour back", timeline) == max(r.tick for r in rows if r.tick < dark)

@@ -10,6 +10,7 @@ import pytest
 from tests.guide.questions import QUESTIONS
 from tuisim.guide.catalogue import pages
 from tuisim.guide.search import search
+from tuisim.guide.text import page_lines, rows_of
 
 STUDENTS = tomllib.loads((Path(__file__).parent / "questions.toml").read_text(encoding="utf-8"))
 """What students ask, with the pages that answer it."""
@@ -51,6 +52,25 @@ def test_words_need_not_be_exact(question: str, page: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("question", "page", "section"),
+    [
+        ("How do I stop at the wall", "how-sensors-see", "Ultrasonic: stop at a wall"),
+        ("stop in front of an obstacle", "how-sensors-see", "Ultrasonic: stop at a wall"),
+        ("wrong sign line follower", "going-back", "Find where a program goes wrong"),
+        ("robot drives through the wall", "when-it-goes-wrong", "The robot drives through the wall"),
+    ],
+)
+def test_the_answer_comes_first(question: str, page: str, section: str) -> None:
+    first = search(question)[0]
+    assert (first.name, first.heading) == (page, section)
+
+
+@pytest.mark.parametrize("question", ["wrong order", "reading with noise", "wall", "key", "sensor value"])
+def test_a_passage_is_neither_a_fence_nor_a_rule(question: str) -> None:
+    assert not [one for one in search(question) if one.passage.startswith(("```", "| ---"))]
+
+
+@pytest.mark.parametrize(
     ("question", "section"),
     [
         ("run faster than real time", "Faster or slower than real time"),
@@ -64,3 +84,11 @@ def test_the_section_that_answers_is_named(question: str, section: str) -> None:
 @pytest.mark.parametrize("question", ["", "how do I", "xyzzy", "%&"])
 def test_nothing_is_found_where_nothing_is_asked(question: str) -> None:
     assert search(question) == []
+
+
+@pytest.mark.parametrize(("width", "begins"), [(36, "gyro"), (76, "gyro"), (118, " gyro  ")])
+def test_a_row_of_a_table_is_found_in_each_width(width: int, begins: str) -> None:
+    first = search("connect a gyro to port 4")[0]
+    lines = page_lines(pages()[first.name], width)
+    _, row = rows_of(lines, first.heading, first.passage)
+    assert "".join(part for part, _ in lines[row]).startswith(begins)

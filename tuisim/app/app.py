@@ -25,6 +25,7 @@ from tuisim.app.background import enter, leave
 from tuisim.app.branch import branch_message
 from tuisim.app.debugger import DebugController
 from tuisim.app.editor.document import Document
+from tuisim.app.error_words import remedy
 from tuisim.app.feed import PanelFeed
 from tuisim.app.form import NumberInput
 from tuisim.app.goals import GoalsController
@@ -36,7 +37,7 @@ from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages, looks_at_buttons
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
 from tuisim.app.setup import next_run as plans
-from tuisim.app.snapshot import AT_REST, GOOD_ENDS, AppState, RunPhase, Situation, end_words
+from tuisim.app.snapshot import AT_REST, GOOD_ENDS, AppState, RunPhase, Situation, circling_words, end_words
 from tuisim.app.speech import Voice
 from tuisim.app.terminal_app import picture_mode_at_start
 from tuisim.config.options import DEFAULT_FPS, Settings
@@ -397,6 +398,8 @@ class LabApp(PanelMessages):
         if not self.has_hinted and any(row.stream in (Stream.DISPLAY, Stream.CONSOLE) for row in news.rows):
             self.hint_at_brick("uses the brick's display")
         if output := self.panel_area.output:
+            if news.circling:
+                output.note(self.with_keys(circling_words(news.circling)))
             if news.prompt is not None and not output.asking:
                 self._ask_user(news.prompt)
             elif news.prompt is None and output.asking:
@@ -421,7 +424,9 @@ class LabApp(PanelMessages):
         good = ended.end in GOOD_ENDS
         if not good:
             self.panel_area.bring("output")
-        notice, self._last_words = end_words(ended, stood)
+        notice, last = end_words(ended, stood)
+        helps = "" if good else self.with_keys(remedy(ended.summary))
+        self._last_words = ": ".join(filter(None, (last, helps)))
         self.document.run_ended_at(ended.error_line, "" if good else notice)
         # The output ends with the same words.
         if not self.panel_area.shown("output"):

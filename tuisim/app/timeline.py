@@ -148,19 +148,21 @@ _FORMS = (
     ("left_red_pc < 50", "{which} tick at which a column becomes so; also left_color changes, gyro_deg > 90, x_mm …"),
     ("print REGEX", "{which} printed line that matches the regular expression"),
     ("start, end", "the first and the latest instant"),
-    ("… back, … first", "a line, sample or print: searched backwards, or from the start of the run"),
+    ("… back, … first", "any of these but times: searched backwards, or from the start of the run"),
 )
 """The accepted forms, with what they mean."""
 
 
 def forms(timeline: Timeline) -> list[tuple[str, str]]:
     """Return the accepted forms, with what they mean at the instant in view."""
-    # Nothing can be found after the newest instant: the search goes backwards from there.
-    which = "the last" if timeline.tick >= timeline.newest else "the next"
+    # Nothing can be found after the newest instant: the search goes from the start.
+    which = "the first" if timeline.tick >= timeline.newest else "the next"
     return [(form, meaning.replace("{which}", which)) for form, meaning in _FORMS]
 
 
 _HINT = f"3.5, tick 120, line 12, sample NAME, sample {comparison_form()}, COLUMN < 50, print REGEX, start or end"
+_IN_FRONT = re.compile(r"^(back|first)\s+(.+)$", re.IGNORECASE)
+"""The direction, where it stands in front."""
 _SECONDS = re.compile(r"([0-9]+\.?[0-9]*|\.[0-9]+)\s*s?")
 
 
@@ -196,13 +198,15 @@ class _Search:
         return ticks[where] if 0 <= where < len(ticks) else None
 
 
-def find(text: str, timeline: Timeline, mat: Field | None = None) -> int:
+def find(text: str, timeline: Timeline, mat: Field | None = None, *, first_at_end: bool = False) -> int:
     """Return the tick that an expression means, relative to the instant in view.
 
     Args:
         text: One of `forms`.
         timeline: The run, and where one is in it.
         mat: The run's mat, which readings are taken from; None if there is none yet.
+        first_at_end: Whether a search at the newest instant, after which there is nothing, begins at the start of the
+            run; else it goes backwards.
 
     Raises:
         ConfigError: the words are not understood, or there is no such instant.
@@ -210,9 +214,10 @@ def find(text: str, timeline: Timeline, mat: Field | None = None) -> int:
     recording = timeline.recording
     if recording is None or recording.newest < 0:
         raise ConfigError("there is no run yet")
-    word, _, rest = text.strip().partition(" ")
+    text = _IN_FRONT.sub(r"\2 \1", text.strip())
+    word, _, rest = text.partition(" ")
     rest, back = re.subn(r"(?:^|\s+)back$", "", rest.strip())
-    rest, first = re.subn(r"\s+first$", "", rest)
+    rest, first = re.subn(r"(?:^|\s+)first$", "", rest)
     word = word.lower()
     if not back and (word == "start" or word == "end") and not rest:
         return 0 if word == "start" else recording.newest
@@ -220,9 +225,13 @@ def find(text: str, timeline: Timeline, mat: Field | None = None) -> int:
         return _within(round(float(seconds[1]) * timeline.tick_hz), recording)
     if not back and word == "tick" and rest.isdecimal():
         return _within(int(rest), recording)
-    # Nothing can be found after the newest instant.
-    backwards = bool(back) or timeline.tick >= recording.newest
-    search = _Search(recording, -1, False) if first else _Search(recording, timeline.tick, backwards)
+    at_end = timeline.tick >= recording.newest
+    backwards = bool(back) or (at_end and not first_at_end)
+    search = (
+        _Search(recording, -1, False)
+        if first or (at_end and not backwards)
+        else _Search(recording, timeline.tick, backwards)
+    )
     if word == "line" and rest.isdecimal():
         return _line(search, int(rest))
     if (condition := _condition(word, rest, text)) is None:

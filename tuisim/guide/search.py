@@ -16,9 +16,11 @@ from tuisim.guide.tables import markdown_of
 
 _WORD = re.compile(r"\w+")
 _HEADING = re.compile(r"^##+ (.+)$", re.MULTILINE)
-_FENCE = re.compile(r"^```.*$", re.MULTILINE)
-_PASSAGE_END = re.compile(r"\n\s*\n|\n(?=- |\| )")
-"""A passage is a paragraph, an item of a list or a row of a table."""
+_FENCE = re.compile(r"^```.*\n?", re.MULTILINE)
+_PASSAGE_END = re.compile(r"\n\s*\n(?!    )|\n(?=- |\| )")
+"""A passage is a paragraph, with a text set in below it, an item of a list or a row of a table."""
+_RULE = re.compile(r"[-| ]*")
+"""The line below the head of a table."""
 _CONTRACTED = re.compile(r"(n't|['’](s|m|d|re|ve|ll|t))\b")
 """The ends of `doesn't`, `it's`, `I'm`."""
 _SAYS_NOTHING = """
@@ -54,7 +56,8 @@ def _passages() -> Iterator[tuple[str, ...]]:
     for name, page in pages().items():
         parts = ["", *_HEADING.split(_FENCE.sub("", markdown_of(page)))]
         for heading, text in zip(parts[::2], parts[1::2], strict=True):
-            for passage in filter(None, map(str.strip, _PASSAGE_END.split(text))):
+            found = map(str.strip, _PASSAGE_END.split(text))
+            for passage in (one for one in found if not _RULE.fullmatch(one)):
                 yield name, heading, passage, f"{page.title} {name} {heading}", f"{page.words} {page.about}"
 
 

@@ -17,7 +17,7 @@ from tuisim.terminal.text_runs import Line
 _LINK = re.compile(r"\[([^\[\]]+)\]\(([\w-]+)\.md\)")
 _HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
 _LETTERS = re.compile(r"[\W_]+")
-_ENOUGH_LETTERS = 40, 20, 10, 5
+_MANY_LETTERS, _FEW_LETTERS = (40, 20), (10, 5)
 """How many letters tell where a passage begins, those that tell it best first."""
 _PASSAGE_LINES = 2
 """How much of a passage is shown among results."""
@@ -65,9 +65,13 @@ def result_lines(found: list[SearchResult], width: int) -> list[Line]:
 
 def passage_text(markdown: str) -> str:
     """Return a passage of a page as one line of plain text."""
-    cells = [cell.strip() for cell in markdown.strip("|").split(" | ")] if markdown.startswith("|") else [markdown]
-    text = _LINK.sub(lambda link: link[1], " · ".join(filter(None, cells)))
+    text = _LINK.sub(lambda link: link[1], " · ".join(filter(None, cells_of(markdown))))
     return " ".join(plain_text(text).removeprefix(" •").split())
+
+
+def cells_of(markdown: str) -> list[str]:
+    """Return the cells of a passage that is a row of a table, else the passage."""
+    return [cell.strip() for cell in markdown.strip("|").split(" | ")] if markdown.startswith("|") else [markdown]
 
 
 def rows_of(lines: list[Line], heading: str, passage: str) -> tuple[int, int]:
@@ -80,13 +84,18 @@ def rows_of(lines: list[Line], heading: str, passage: str) -> tuple[int, int]:
     """
     texts = ["".join(part for part, _ in line) for line in lines]
     top = next((row for row, text in enumerate(texts) if heading and text.strip() == heading), 0)
-    # Lines break elsewhere than in the source, and a table puts cells side by side.
+    # Lines break elsewhere than in the source, and a table puts cells side by side or names each.
     letters = [_LETTERS.sub("", text) for text in texts[top:]]
-    wanted = _LETTERS.sub("", passage_text(passage))
-    starts = ("".join(letters).find(wanted[:count]) for count in _ENOUGH_LETTERS if wanted)
+    wanted = [_LETTERS.sub("", text) for text in (passage_text(passage), max(cells_of(passage), key=len))]
+    tried = [wanted[0][:count] for count in _MANY_LETTERS]
+    tried += [text[:count] for text in wanted[::-1] for count in (*_MANY_LETTERS[1:], *_FEW_LETTERS)]
+    starts = ("".join(letters).find(text) for text in tried if text)
     at = next((start for start in starts if start >= 0), 0)
     ends = accumulate(map(len, letters))
-    return top, top + next((row for row, end in enumerate(ends) if end > at), 0)
+    row = top + next((row for row, end in enumerate(ends) if end > at), 0)
+    while passage.startswith("|") and row > top and texts[row].startswith("  "):
+        row -= 1  # the row's first cell
+    return top, row
 
 
 def written(lines: list[Line], *, styled: bool) -> str:

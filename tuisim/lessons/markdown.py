@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import io
+from typing import ClassVar
 
 from rich.console import Console
-from rich.markdown import Markdown
+from rich.markdown import Markdown, MarkdownElement
 from rich.style import Style
 from rich.theme import Theme
 
 from tuisim import palette
+from tuisim.lessons.markdown_table import WholeTable
 from tuisim.terminal.text_runs import Line, Run
 
 _THEME = Theme(
@@ -28,12 +30,16 @@ PLAIN = Style(color=palette.INK)
 """The style of a text that is nothing special."""
 
 
+class _Markdown(Markdown):
+    elements: ClassVar[dict[str, type[MarkdownElement]]] = {**Markdown.elements, "table_open": WholeTable}
+
+
 def markdown_lines(text: str, width: int) -> list[Line]:
     """Return Markdown as lines of at most a number of columns; lists are indented, code is coloured."""
     console = Console(
         file=io.StringIO(), width=max(10, width), theme=_THEME, force_terminal=True, color_system="truecolor"
     )
-    drawn = Markdown(text, code_theme="ansi_dark", justify="left")
+    drawn = _Markdown(text, code_theme="ansi_dark", justify="left")
     lines = console.render_lines(drawn, console.options.update(width=max(10, width)), pad=False)
     found = [[_run(segment.text, segment.style) for segment in line if segment.text] for line in lines]
     return [_stripped(line) for line in found]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from textual.widgets import Input
 
-from tests.app.app_help import ready, settings, until
+from tests.app.app_help import lab, ready, screen_text, settings, until
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.palette import Entry, matching
@@ -27,6 +27,9 @@ ENTRIES = [Entry(one.id, one.title, one.group, one.key_label, one.words) for one
         ("speed", "panel-controls"),
         ("save the program", "edit"),
         ("quit", "quit"),
+        ("grey robot", "earlier"),
+        ("ghost", "earlier"),
+        ("grey bands", "mats"),
     ],
 )
 def test_words_that_people_use_find_an_action(typed: str, first: str) -> None:
@@ -48,3 +51,4 @@ async def test_the_palette_keeps_its_place_while_the_list_becomes_shorter() -> N
         await pilot.pause()
         assert frame.region == before
         assert pilot.app.screen.query_one("#message").display
+        await until(pilot, lambda: "Nothing found. Try" in screen_text(lab(pilot)))

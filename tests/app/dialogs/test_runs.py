@@ -17,7 +17,7 @@ from tests.conftest import Command
 from tests.running import PATIENCE_S
 from tests.runs.earlier_pack import pack_as_earlier
 from tuisim.app.app import AppSettings, LabApp
-from tuisim.app.dialogs.runs import RunChooser, matching
+from tuisim.app.dialogs.runs import RunChooser, matching, run_line
 from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
 from tuisim.config.command_line import Arguments
@@ -181,6 +181,21 @@ def test_the_command_refuses(tuisim: Command, words: list[str], said: str) -> No
 def info(number: int, **facts: Any) -> RunInfo:
     base = RunInfo(number, f"id{number}", "2026-01-02T03:04:05+00:00", "line.py", "Loop", "robolab", 0, End.FINISHED)
     return replace(base, **facts)
+
+
+@pytest.mark.parametrize(
+    ("facts", "noted", "end"),
+    [
+        ({"end": End.STOPPED, "summary": "stopped"}, True, "0"),
+        ({"end": End.TIME_LIMIT, "summary": "stopped at the limit of 20 s"}, True, "0"),
+        ({"end": End.RAISED, "summary": "KeyError: 'a'"}, True, "0  KeyError: 'a'"),
+        ({"end": End.RAISED, "summary": "KeyError: 'a'"}, False, "0"),
+        ({"tags": "branch:3"}, True, "0  branch:3"),
+    ],
+    ids=["the end only", "the limit", "an error", "no room", "tags"],
+)
+def test_the_note_of_a_run_does_not_repeat_its_end(facts: dict[str, Any], noted: bool, end: str) -> None:
+    assert run_line(info(1, **facts), noted=noted).plain.partition("0.00       ")[2] == end
 
 
 @pytest.mark.parametrize(

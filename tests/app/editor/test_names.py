@@ -25,6 +25,9 @@ def found(text: str) -> list[tuple[int, int, int, str]] | None:
         ("é = 'é'; a = foo", [(0, 13, 16, "")]),
         ("def f():\n    speed = 1\n\nprint(speed)", [(3, 6, 11, "it exists only inside `f`")]),
         ("import tim\ntime.sleep(1)", [(1, 0, 4, "`import time`")]),
+        ("slept = 1\nsleep(1)", [(1, 0, 5, "did you mean `time.sleep`? `import time`")]),
+        ("randint(1, 6)", [(0, 0, 7, "did you mean `random.randint`? `import random`")]),
+        ("sqrt(2)", [(0, 0, 4, "did you mean `math.sqrt`? `import math`")]),
         ("# %%sim_magic\nSpeedPercent(1)", [(1, 0, 12, "`from ev3dev2.motor import SpeedPercent`")]),
         ("# %%sim_magic\ntank_drive", [(1, 0, 10, "put `# %%sim_magic_preloaded` into line 1")]),
         ("from ev3dev2.motor import MoveTank\ntank_drive", [(1, 0, 10, "put `# %%sim_magic_preloaded` into line 1")]),
@@ -33,7 +36,8 @@ def found(text: str) -> list[tuple[int, int, int, str]] | None:
         ("for n in rnge(\n    print(n, foo)", [(1, 13, 16, "")]),
     ],
     ids=[
-        "prelude", "builtin and case", "not ASCII", "local elsewhere", "import", "other prelude", "no prelude",
+        "prelude", "builtin and case", "not ASCII", "local elsewhere", "import", "function of time",
+        "of random", "of math", "other prelude", "no prelude",
         "library", "class", "unfinished line", "unfinished head",
     ],
 )  # fmt: skip

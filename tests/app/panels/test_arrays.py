@@ -54,10 +54,15 @@ async def test_both_discs_are_whole_with_what_the_program_gets(size: tuple[int, 
     assert text.count("50.2") == 2
 
 
+@pytest.mark.parametrize("size", [(40, 10), (44, 12), (60, 14), (66, 11), (20, 30)])
+async def test_the_means_of_the_rings_are_called_the_same_everywhere(size: tuple[int, int]) -> None:
+    assert (await shown(size))[1].count("in→out") == 2
+
+
 async def test_a_threshold_is_on_the_scale_and_in_words() -> None:
     _, text = await shown((60, 14), PROGRAM)
 
-    assert "50.2 %" in text and "> 5: yes" in text and "┃" in text and "line 1 asks" in text and "from centre" in text
+    assert "50.2 %" in text and "> 5: yes" in text and "┃" in text and "line 1 asks" in text and "in→out" in text
 
 
 @pytest.mark.parametrize("cells", [CellSet.HALF, CellSet.SEXTANT, CellSet.OCTANT, CellSet.BRAILLE, CellSet.ASCII])

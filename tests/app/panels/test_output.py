@@ -37,13 +37,29 @@ def lines(app: App[None]) -> list[str]:
         ("Colour: 1", Stream.STDOUT, 10, ["Colour: 1"]),
         ("hello there", Stream.STDOUT, 10, ["hello ", "there"]),
         ("x" * 25, Stream.STDOUT, 10, ["x" * 10, "x" * 10, "x" * 5]),
+        ('File "programs/typo.py", line', Stream.STDERR, 20, ['File "programs/', 'typo.py", line']),
+        ("— error at 0.00 s", Stream.NOTE, 12, ["— error at ", "0.00 s"]),
+        ("print(colorLeft.reflected_light)", Stream.STDERR, 20, ["print(colorLeft.", "reflected_light)"]),
         ("hi", Stream.SPEECH, 20, ["says: hi"]),
         ("[beep]", Stream.SPEECH, 20, ["[beep]"]),
         ("42", Stream.INPUT, 20, ["> 42"]),
         ("a\tb\x1b[31m", Stream.STDERR, 20, ["a   b·[31m"]),
         ("漢字漢字", Stream.STDOUT, 5, ["漢字", "漢字"]),
     ],
-    ids=["empty", "fits", "at a blank", "cut", "speech", "sound", "answer", "controls", "wide"],
+    ids=[
+        "empty",
+        "fits",
+        "at a blank",
+        "cut",
+        "at a separator",
+        "dash",
+        "at a sign",
+        "speech",
+        "sound",
+        "answer",
+        "controls",
+        "wide",
+    ],
 )
 def test_a_row_as_lines(text: str, stream: Stream, width: int, expected: list[str]) -> None:
     assert shown_lines(row(text, stream), width) == expected
@@ -68,6 +84,20 @@ async def test_the_newest_line_is_followed_until_scrolled_up() -> None:
         log.add([row("line 21")])
         await pilot.pause()
         assert lines(pilot.app)[-1].startswith("line 21")
+
+
+async def test_carets_are_left_out_where_they_would_point_elsewhere() -> None:
+    async with Frame(Log()).run_test(size=(30, 8)) as pilot:
+        log = pilot.app.query_one(Log)
+        texts = ["    print(left.red_light_of_it)", "          ^^^^", "    x = y", "        ^"]
+        log.add([row(text, Stream.STDERR) for text in texts])
+        await pilot.pause()
+        assert [line for line in lines(pilot.app) if line] == [
+            "    print(left.red_light_of_",
+            "it)",
+            "    x = y",
+            "        ^",
+        ]
 
 
 async def test_only_the_newest_lines_are_kept_and_the_others_counted() -> None:

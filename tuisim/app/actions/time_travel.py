@@ -129,11 +129,12 @@ def ask_where(context: ActionContext) -> None:
 
     def go(text: str) -> None:
         mat = context.runs.mat
-        to_tick(context, find(text, timeline, mat.field if mat is not None else None))
+        to_tick(context, find(text, timeline, mat.field if mat is not None else None, first_at_end=True))
 
     words = column_names(context.runs.spec.robot)
     now = f"now at {timeline.time_s:.2f} s"
-    context.app.push_screen(LinePrompt("Go to", go, forms=forms(timeline), words=words, placeholder=now))
+    prompt = LinePrompt("Go to", go, forms=forms(timeline), words=words, placeholder=now, sees_below=True)
+    context.app.push_screen(prompt)
 
 
 def to_sample(context: ActionContext, words: str) -> None:

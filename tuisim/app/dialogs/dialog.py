@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import partial
 from typing import ClassVar, Generic, TypeVar
@@ -33,6 +34,9 @@ Result = TypeVar("Result")
 _HEIGHTS = [(0, "-low"), (18, "-high"), (34, "-roomy")]
 """Classes of a dialog by the rows of the terminal."""
 
+_ENTER = re.compile(r"\bEnter\b(?: (\w+))?")
+_IMPERATIVES = {"applies": "apply", "goes": "go"}
+
 
 def name_and_title(name: str, title: str, name_cells: int) -> Table:
     """Return a line of a list: a name, and a title that wraps beside it."""
@@ -56,6 +60,15 @@ def _without_links(strip: Strip) -> Strip:
 
 def _short_label(key: str) -> str:
     return label_of_key(key).replace("ctrl+", "^").replace("escape", "esc")
+
+
+def _enter_does(hint: str) -> str:
+    """Return what Enter does in a dialog, from the words in its frame; empty if they do not name it."""
+    found = _ENTER.search(hint)
+    if found is None:
+        return ""
+    verb = found[1] or "chooses"
+    return _IMPERATIVES.get(verb, verb.removesuffix("s"))
 
 
 class ClosesOnce(HookedScreen[Result], Generic[Result]):
@@ -166,12 +179,14 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
 
     @property
     def keys(self) -> tuple[KeyWord, ...]:
-        """Its own keys that work where the focus is, then those of every dialog; none if the keys of the app work."""
-        kinds = [kind for kind in type(self).__mro__ if issubclass(kind, ClosesOnce)]
+        """Enter, then its own keys that work where the focus is, then Escape; none if the keys of the app work."""
+        kinds = [kind for kind in type(self).__mro__ if issubclass(kind, Dialog)]
         bound = [one for kind in kinds for one in kind.__dict__.get("BINDINGS", ()) if isinstance(one, Binding)]
         words = ((one.key.split(","), one.description.lower()) for one in bound if one.description)
         working = ((next((key for key in keys if self._gets(key)), ""), word) for keys, word in words)
-        return tuple((_short_label(key), word) for key, word in working if key)
+        own = tuple((_short_label(key), word) for key, word in working if key)
+        enter = _enter_does(self.HINT)
+        return own if not enter or "enter" in dict(own) else (("enter", enter), *own)
 
     def _gets(self, key: str) -> bool:
         """Return whether a field with the focus leaves a key to the dialog."""

@@ -13,7 +13,7 @@ from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim import palette
-from tuisim.app.action import Action
+from tuisim.app.action import Action, with_keys_of
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.terminal.text_runs import cut
 
@@ -69,6 +69,8 @@ class SearchList(Dialog[str]):
     """
 
     HINT: str = "type to search · ↑ ↓ and Enter · Escape closes"
+    NOTHING: str = "Nothing found"
+    """What to say where the list is empty, with ids of actions in braces."""
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding(key, f"move('{action}')", show=False)
         for key, action in (
@@ -83,7 +85,7 @@ class SearchList(Dialog[str]):
     def content(self) -> ComposeResult:
         yield Input(placeholder="Search", compact=True, select_on_focus=False)
         yield OptionList()
-        yield Static("Nothing found", id="message", markup=False)
+        yield Static(with_keys_of(self.app, self.NOTHING), id="message", markup=False)
 
     def on_mount(self) -> None:
         # It keeps its place while the list becomes shorter.
@@ -135,6 +137,10 @@ class Palette(SearchList):
     """Returns the id of an action: those that work now come first."""
 
     TITLE_TEXT: str = "Commands"
+    NOTHING: str = (
+        "Nothing found. Try one word for what you see or do, such as mat, grey, chart, pen or speed. {help} and / "
+        "search the guide for questions."
+    )
 
     def __init__(self, actions: Iterable[Action[Any, Any]], now: object) -> None:
         entries = (

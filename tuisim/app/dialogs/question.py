@@ -123,6 +123,9 @@ class LeaveQuestion(Dialog[bool]):
 
 _LAST_WORD = re.compile(r"`[^`]+$|[^\W\d]\w*$")
 
+_LOW = 30
+"""Rows of a terminal that is low."""
+
 Form = tuple[str, str]
 """An accepted form, and what it means."""
 
@@ -191,6 +194,7 @@ class LinePrompt(Dialog[bool]):
         words: Possible completions of the current word; tab accepts one.
         placeholder: Text of the empty field.
         text: What stands above the field; empty for nothing.
+        sees_below: Whether the screen below should stay in view: a low terminal has the forms without their meanings.
     """
 
     HINT = "Enter applies · Escape closes"
@@ -204,9 +208,12 @@ class LinePrompt(Dialog[bool]):
         words: Sequence[str] = (),
         placeholder: str = "",
         text: str = "",
+        *,
+        sees_below: bool = False,
     ) -> None:
         super().__init__()
         self._text = text
+        self._sees_below = sees_below
         self._placeholder = placeholder
         self._words = words
         self.TITLE_TEXT = as_markup(title)
@@ -219,7 +226,12 @@ class LinePrompt(Dialog[bool]):
             yield Static(self._text, markup=False, classes="start")
         yield LineInput(self._value, self._words, self._placeholder)
         yield Static(id="message", classes="wrong", markup=False)
-        yield form_list(self._forms)
+        is_brief = self._sees_below and self.app.size.height < _LOW
+        self.set_class(is_brief, "-brief")
+        if is_brief:
+            yield Static(" · ".join(form for form, _ in self._forms), markup=False)
+        else:
+            yield form_list(self._forms)
 
     @on(Input.Submitted)
     def _entered(self, event: Input.Submitted) -> None:

@@ -23,6 +23,7 @@ from tuisim.app.branch import BRANCH_TAG
 from tuisim.app.dialogs.chooser import ListDialog, field_view
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.snapshot import GOOD_ENDS, end_label
+from tuisim.protocol import End
 from tuisim.runs.catalogue import RunInfo
 from tuisim.runs.store import RunStore
 from tuisim.scene.view import Viewport
@@ -58,10 +59,12 @@ def _when(run: RunInfo) -> str:
 
 # As wide as fits a terminal of 80 columns; the list is indented by one.
 _HEADS = f"{'run':>5} {'when':<11} {'program':<12} {'mat':<10} {'end':<9} {'s':>6} {'samples':>7}"
+_NOTE_AT = 100
+"""Columns of a terminal from which the list has notes."""
 
 
-def run_line(run: RunInfo, marked: bool = False) -> Text:
-    """Return one line of the list, below `_HEADS`."""
+def run_line(run: RunInfo, marked: bool = False, *, noted: bool = True) -> Text:
+    """Return one line of the list, below `_HEADS`; `noted` with tags or what went wrong."""
     line = Text(no_wrap=True, overflow="ellipsis")
     line.append(f"{run.number:>4}{'●' if marked else ' '}", "bold")
     line.append(f"{_when(run)[5:]:<11} ", palette.SOFT)
@@ -69,8 +72,11 @@ def run_line(run: RunInfo, marked: bool = False) -> Text:
     line.append(f"{cut(Path(run.background).name, 10):<10} ")
     line.append(f"{cut(end_label(run.end), 9):<9} ", "" if run.end in GOOD_ENDS else palette.RED)
     line.append(f"{run.time_s or 0:>6.2f} {run.samples or 0:>7,}")
-    if run.tags or run.summary:
-        line.append(f"  {run.tags or run.summary}", palette.SOFT)
+    # Of most runs the summary says the end, which has its own column.
+    if noted and (
+        note := run.tags or ("" if run.end is End.TIME_LIMIT or run.summary == end_label(run.end) else run.summary)
+    ):
+        line.append(f"  {note}", palette.SOFT)
     return line
 
 
@@ -112,7 +118,7 @@ class RunChooser(ListDialog):
 
     def content(self) -> ComposeResult:
         yield Input(placeholder="Search: number, program, mat, end, tag, date", compact=True, select_on_focus=False)
-        yield Static(_HEADS, markup=False, classes="heads")
+        yield Static(f"{_HEADS}  note" if self._noted else _HEADS, markup=False, classes="heads")
         yield OptionList()
         with Horizontal(classes="way"):
             yield PixelView()
@@ -133,9 +139,14 @@ class RunChooser(ListDialog):
             numbers = [run.number for run in matching(self._runs, "")[:MOST_LISTED]]
             options.highlighted = numbers.index(root) if root in numbers else 0
 
+    @property
+    def _noted(self) -> bool:
+        """Whether there is room for notes."""
+        return self.app.size.width >= _NOTE_AT
+
     def line(self, run: RunInfo) -> Text:
         """Return one line of the list."""
-        return run_line(run)
+        return run_line(run, noted=self._noted)
 
     def _list(self, search: str) -> None:
         found = matching(self._runs, search)
@@ -209,7 +220,7 @@ class RunsChooser(RunChooser):
 
     def line(self, run: RunInfo) -> Text:
         """Return one line of the list."""
-        return run_line(run, run.id in self._marked)
+        return run_line(run, run.id in self._marked, noted=self._noted)
 
     def action_mark(self) -> None:
         options = self.query_one(OptionList)

@@ -60,7 +60,7 @@ class SettingsScreen(Dialog[None]):
 
     TITLE_TEXT: str = "Settings"
     HINT: str = "Enter changes · Delete resets · Escape closes"
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("delete,backspace", "usual", "As without the file", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("delete,backspace", "usual", "Back to the default", show=False)]
 
     def __init__(self, change: Change, themes: Callable[[], Dialog[str]]) -> None:
         super().__init__()

@@ -12,6 +12,7 @@ import warnings
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import field
 from functools import cache
+from importlib import import_module
 
 from tuisim.config.program_file import parse_unfinished
 from tuisim.config.program_robot.course import global_names
@@ -28,6 +29,8 @@ _READS_ANY_NAME = frozenset({"eval", "exec", "globals", "locals", "vars"})
 """Functions that may define names that do not appear in the program."""
 _BUILTINS = frozenset(dir(builtins))
 _OF_EVERY_MODULE = frozenset({"__file__", "__builtins__", "__annotations__", "__path__", "__cached__"})
+_WELL_KNOWN = ("time", "random", "math", "statistics", "threading", "datetime")
+"""Modules of the standard library that programs for robots use, those first that a name is looked for in first."""
 _WORD = re.compile(r"[^\W\d]\w*")
 
 
@@ -170,12 +173,26 @@ def _modules() -> Mapping[str, str]:
     return {alias.name: str(node.module) for node in imports for alias in node.names}
 
 
+@cache
+def _functions() -> Mapping[str, str]:
+    """Return the module of each function of the standard library that programs for robots use."""
+    modules = {name: import_module(name) for name in reversed(_WELL_KNOWN)}
+    return {name: module for module, made in modules.items() for name in dir(made) if _is_function(made, name)}
+
+
+def _is_function(module: types.ModuleType, name: str) -> bool:
+    value = getattr(module, name)
+    return name[0] != "_" and callable(value) and getattr(value, "__module__", None) in (module.__name__, None)
+
+
 def _hint(name: str, follows: str, own: set[str], within: Mapping[str, str]) -> str:
     """Return what may help with a name that is not defined; `follows` is the character after it."""
     if follows == "." and name in sys.stdlib_module_names:
         return f"`import {name}`"
     if function := within.get(name):
         return f"it exists only inside `{function}`"
+    if follows == "(" and (module := _functions().get(name)):
+        return f"did you mean `{module}.{name}`? `import {module}`"
     if close := likely(name, own | within.keys()) or likely(name, _BUILTINS):
         return did_you_mean([f"`{close}`"])
     if module := _modules().get(name):

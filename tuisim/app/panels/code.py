@@ -22,6 +22,7 @@ from tuisim.app.editor.assistant import Assistant
 from tuisim.app.editor.candidate_list import CandidateList
 from tuisim.app.editor.line_values import line_values
 from tuisim.app.editor.text_lines import LineMap, places
+from tuisim.app.error_words import fitting
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
 from tuisim.data_class import dataclass
@@ -168,12 +169,16 @@ class Code(Vertical):
     def _say(self) -> None:
         title, edited = self._said
         self.border_title = title + edited
-        words = self._error_words if self.error_line else ""
+        words = fitting(self._error_words, self.size.width - _FRAME) if self.error_line else ""
         told = words or ("running text differs" if self.differs else "")
         helped = Text() if words else self._assistant.said(self.size.width - _FRAME)
         if self._area.is_completing:
             helped = Text("looking up …")
         self.border_subtitle = helped if helped else as_markup(told)
+
+    def on_resize(self) -> None:
+        """Say as much as there is room for."""
+        self._say()
 
     def set_running(self, text: str | None, tells: bool = True) -> None:
         """Set the text of the run in view.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import deque
 from collections.abc import Iterable, Sequence
 from typing import ClassVar
@@ -131,6 +132,11 @@ _STYLES = {
     Stream.NOTE: "log--note",
 }  # fmt: skip
 
+_BREAKS = " /\\", "(,._"
+"""Behind which a line breaks, those that read best first."""
+_CARETS = re.compile(r" +[~^]+")
+"""A line of a traceback that points at a part of the line above."""
+
 Line = tuple[str, Stream]
 """Text and stream."""
 
@@ -148,15 +154,20 @@ def shown_lines(row: OutputRow, width: int) -> list[str]:
     if len(text) > MAX_LINE_CHARS:
         text = f"{text[:MAX_LINE_CHARS]} … ({counted(len(text) - MAX_LINE_CHARS, 'more character')})"
     text = plain(text)
-    if not text.isascii():
+    if cell_len(text) != len(text):
         return chop_cells(text, max(width, 2)) or [""]
     lines = []
     while len(text) > width:
-        # A break at a blank reads better, unless it leaves half of the row empty.
-        cut = text.rfind(" ", width // 2, width) + 1 or width
+        cut = _break_in(text, width)
         lines.append(text[:cut])
         text = text[cut:]
     return [*lines, text]
+
+
+def _break_in(text: str, width: int) -> int:
+    """Return where a text of more letters breaks: behind a blank or a separator, if no half of the row stays empty."""
+    places = (max(text.rfind(sign, width // 2, width) for sign in signs) + 1 for signs in _BREAKS)
+    return next(filter(None, places), width)
 
 
 class Log(Widget, can_focus=True):
@@ -180,6 +191,8 @@ class Log(Widget, can_focus=True):
         self._count = 0
         """Number of rows ever added."""
         self._lines: list[Line] = []
+        self._has_broken = False
+        """Whether the newest row takes several lines."""
         self._top: int | None = None
         """First visible line; None follows the newest."""
         self._shown: list[tuple[Line, bool]] = []
@@ -218,7 +231,11 @@ class Log(Widget, can_focus=True):
         if width < 1:
             return
         for row in rows:
-            self._lines.extend((line, row.stream) for line in shown_lines(row, width))
+            lines = shown_lines(row, width)
+            points = row.stream is Stream.STDERR and _CARETS.fullmatch(row.text)
+            if not points or (not self._has_broken and len(lines) == 1):
+                self._lines.extend((line, row.stream) for line in lines)
+            self._has_broken = len(lines) > 1
         too_many = len(self._lines) - KEPT_LINES
         if too_many > 0:
             del self._lines[:too_many]

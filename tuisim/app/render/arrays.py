@@ -10,7 +10,7 @@ from rich.style import Style
 
 from tuisim import palette
 from tuisim.core.sensors.color import ColorReading
-from tuisim.scene.discs import RINGS, DiscFace
+from tuisim.scene.discs import DiscFace
 from tuisim.terminal.text_runs import Line, Run, cut
 
 FULL_COLS, LARGE_COLS = 20, 40
@@ -22,6 +22,9 @@ _FAIR_ROWS = 6
 
 UP_WORDS = "up is up on the mat"
 """What the frame says where it has no names to say."""
+
+_RINGS_ARE, _RING_DIGITS = "in→out", 3
+"""What the means of the rings are, in their order, and the digits of the longest."""
 
 _LABEL, _VALUE, _UNIT = Style(color=palette.LABEL), Style(color=palette.WHITE, bold=True), Style(color=palette.SOFT)
 _FILLED, _REST = Style(color=palette.BLUE), Style(color=palette.LINE)
@@ -88,7 +91,9 @@ def face_lines(face: DiscFace, width: int, rows: int, *, has_limits: bool) -> li
     """
     lines = [_value_line(face, width), _scale_line(face, width)]
     lines += [[(cut(face.limit_words(width), width), _LIMIT)]] if has_limits else []
-    lines.append(_ring_line(face, width))
+    rings = _ring_lines(face, width)
+    # The label is of no use without its numbers.
+    lines += rings if len(lines) + len(rings) <= rows else []
     return [[(cut(face.name, width), _LABEL)], *lines] if rows > len(lines) else lines[:rows]
 
 
@@ -117,13 +122,13 @@ def _scale_line(face: DiscFace, width: int) -> Line:
     return cells
 
 
-def _ring_line(face: DiscFace, width: int) -> Line:
-    values = face.ring_words
-    named: list[str] = [part for pair in zip(RINGS, values, strict=True) for part in pair]
-    for words in (named, ["from", "centre", *values], ["in→out", *values], values):
-        if len(" ".join(words)) <= width:
-            break
-    return [part for word in words for part in ((word, _LABEL if word[0].isalpha() else _VALUE), (" ", _UNIT))][:-1]
+def _ring_lines(face: DiscFace, width: int) -> list[Line]:
+    """Return the means of the rings and what they are, on two lines where one is too short for the longest numbers."""
+    values: Line = [part for word in face.ring_words for part in ((word.rjust(_RING_DIGITS), _VALUE), (" ", _UNIT))][
+        :-1
+    ]
+    longest = len(_RINGS_ARE) + len(face.ring_words) * (1 + _RING_DIGITS)
+    return [[(_RINGS_ARE, _LABEL), (" ", _UNIT), *values]] if longest <= width else [[(_RINGS_ARE, _LABEL)], values]
 
 
 def names_in_border(names: Sequence[str], where: Arrangement, *, has_limits: bool) -> str:

@@ -13,6 +13,7 @@ from functools import wraps
 from typing import Any
 
 from tuisim.core.profile import NS_PER_S
+from tuisim.protocol import Circling
 from tuisim.runtime import wallclock as real
 from tuisim.runtime.modules import OWN_FILES
 from tuisim.runtime.patches.replacement import replace
@@ -245,6 +246,10 @@ def finish_pandas(session: Session, module: types.ModuleType) -> None:
     stamp.__new__ = new
 
 
+LONG_NS = 5 * NS_PER_S
+"""Simulated time after which a loop without a wait is told to the user."""
+
+
 def loop_hook(session: Session, turns: int, cost_ns: int) -> Callable[[], None]:
     """Return the function called at the start of each loop body.
 
@@ -253,11 +258,11 @@ def loop_hook(session: Session, turns: int, cost_ns: int) -> Callable[[], None]:
         turns: After this number of iterations without time passing …
         cost_ns: … this much time passes.
     """
-    left, mark = turns, -1
+    left, mark, began, told = turns, -1, -1, False
 
     @waits_for(Wait.LOOP)
     def turn() -> None:
-        nonlocal left, mark
+        nonlocal left, mark, began, told
         left -= 1
         if left:
             return
@@ -265,6 +270,12 @@ def loop_hook(session: Session, turns: int, cost_ns: int) -> Callable[[], None]:
         session.output.drain()
         if session.now == mark:
             session.spend(cost_ns)
+            if not told and session.now - began >= LONG_NS:
+                told = True
+                if session.steering.live:
+                    session.channel.send(Circling(session.sim.line, began))
+        else:
+            began = session.now
         mark = session.now
 
     return turn

@@ -1,0 +1,51 @@
+"""What matters of an error, in the room that there is."""
+
+from __future__ import annotations
+
+import pytest
+
+from tuisim.app.error_words import fitting, remedy
+
+PORT = (
+    "ev3dev2.DeviceNotFound: ColorSensor(ev3-ports:in1) is not connected. This robot has: in1 lego-ev3-us, "
+    "in2 lego-ev3-color, in4 lego-ev3-gyro. Another robot: -r ROBOT; `tuisim robots --from PROGRAM --out FILE` writes "
+    "the program's own."
+)
+TYPO = (
+    "AttributeError: 'ColorSensor' object has no attribute 'reflected_lihgt_intensity'. "
+    "Did you mean: 'reflected_light_intensity'?"
+)
+NAME = "NameError: name 'tank_drvie' is not defined. Did you mean: 'tank_drive'?"
+
+
+@pytest.mark.parametrize(
+    ("words", "width", "told"),
+    [
+        pytest.param(NAME, 76, NAME, id="it fits"),
+        pytest.param(NAME, 64, NAME.removeprefix("NameError: "), id="without its class"),
+        pytest.param(NAME, 50, "no tank_drvie: did you mean tank_drive?", id="without its sentence"),
+        pytest.param(TYPO, 76, "no reflected_lihgt_intensity: did you mean reflected_light_intensity?", id="80x24"),
+        pytest.param(TYPO, 39, "did you mean reflected_light_intensity?", id="what is meant"),
+        pytest.param(TYPO, 28, "reflected_light_intensity?", id="only the name"),
+        pytest.param(PORT, 76, "no ColorSensor on in1; the robot has in1 us, in2 color, in4 gyro", id="port, 80x24"),
+        pytest.param(PORT, 54, "no ColorSensor on in1: in1 us, in2 color, in4 gyro", id="port and parts"),
+        pytest.param(PORT, 39, "in1 us, in2 color, in4 gyro", id="parts"),
+        pytest.param("ZeroDivisionError: division by zero", 20, "division by zero", id="another error"),
+        pytest.param("SyntaxError: a very long sentence about it", 20, "a very long sentenc…", id="cut"),
+        pytest.param("boom", 0, "", id="no room"),
+    ],
+)
+def test_what_matters_comes_first(words: str, width: int, told: str) -> None:
+    assert fitting(words, width) == told
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (PORT, "no ColorSensor on in1: in1 us, in2 color, in4 gyro. {robot} chooses another robot"),
+        (TYPO, "did you mean reflected_light_intensity?"),
+        ("ValueError: no", ""),
+    ],
+)
+def test_the_remedy_is_told(words: str, told: str) -> None:
+    assert remedy(words) == told
