@@ -84,7 +84,7 @@ def test_the_tour_can_be_typed(terminal: Terminal, tmp_path: Path) -> None:
         if row[0] == "`d`":
             # Once more, as it says: this leaves the code.
             terminal.keys("Escape")
-            terminal.until(lambda text: "to cursor" not in text.splitlines()[-1])
+            terminal.until(ends("export"))
         if row[0] == "arrows":
             terminal.until(partial(_is_at, x_mm(before) + 10))
     terminal.keys("q")
