@@ -165,9 +165,15 @@ def shown_lines(row: OutputRow, width: int) -> list[str]:
 
 
 def _break_in(text: str, width: int) -> int:
-    """Return where a text of more letters breaks: behind a blank or a separator, if no half of the row stays empty."""
-    places = (max(text.rfind(sign, width // 2, width) for sign in signs) + 1 for signs in _BREAKS)
-    return next(filter(None, places), width)
+    """Return where a text of more letters breaks.
+
+    Behind a blank or a separator, if no half of the row stays empty; else before a word that has room in one row.
+    """
+    good, fair = (max(text.rfind(sign, width // 2, width) for sign in signs) + 1 for signs in _BREAKS)
+    blank = text.rfind(" ", 0, width) + 1
+    end = text.find(" ", blank)
+    fits = text[:blank].strip() and (end if end >= 0 else len(text)) - blank <= width
+    return good or (blank if fits else 0) or fair or width
 
 
 class Log(Widget, can_focus=True):
