@@ -16,7 +16,17 @@ STYLE = """\
   text-align: center; font-size: .75rem; color: var(--soft); }
 .bars i { display: block; background: var(--soft); min-height: 1px; opacity: .55; }
 meter { width: 7rem; }
-.goals tbody th { white-space: normal; overflow-wrap: anywhere; max-width: 10rem; }
+.goals tbody th { white-space: normal; overflow-wrap: break-word; max-width: 10rem; }
+.goals td:nth-child(2), .goals td:last-child { min-width: 12rem; }
+@media (max-width: 45rem) {
+  .goals thead { display: none; }
+  .goals, .goals tbody, .goals tr, .goals tbody th, .goals td { display: block; max-width: none; border: 0; padding: 0;
+    text-align: left; }
+  .goals tr { border-top: 1px solid var(--rule); padding: .5rem 0; }
+  .goals td:nth-child(3)::before { content: "points: "; }
+  .goals td:nth-child(4)::before { content: "mean: "; }
+  .goals td:nth-child(5)::before { content: "met by "; }
+}
 """
 
 

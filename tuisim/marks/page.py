@@ -26,8 +26,8 @@ _VERDICTS = f"""\
 _STYLE = """\
 body { max-width: 90rem; }
 td.number, th.number, td:last-child, th:last-child { padding-left: .7rem; }
-.student { min-width: 6rem; max-width: 14rem; overflow-wrap: anywhere; }
-.head { white-space: normal; overflow-wrap: anywhere; min-width: 5.4rem; max-width: 9rem; }
+.student { min-width: 7.5rem; max-width: 14rem; overflow-wrap: anywhere; }
+.head { white-space: normal; overflow-wrap: break-word; min-width: 5.4rem; max-width: 9rem; }
 .students td:last-child { min-width: 16rem; }
 .sheet { max-height: 92vh; overflow: auto; }
 @media print { .sheet { max-height: none; } .filter { display: none; } }
