@@ -413,7 +413,7 @@ class Spoke(Message):
 
 
 @dataclass(frozen=True, slots=True)
-class Circling(Message):
+class BusyLoop(Message):
     """A loop has gone on for long without a wait; sent once, in a live run."""
 
     line: int
@@ -504,7 +504,7 @@ class LineHistory(Message):
     lines: tuple[ExecutedLine, ...]
 
 
-_EVENTS = (Started, Paused, Resumed, Inspected, LineHistory, Spoke, Circling, InputWanted, ReplyWanted, Wheels, Ended)
+_EVENTS = (Started, Paused, Resumed, Inspected, LineHistory, Spoke, BusyLoop, InputWanted, ReplyWanted, Wheels, Ended)
 EVENTS: dict[str, type[Message]] = {event.kind: event for event in _EVENTS}
 
 

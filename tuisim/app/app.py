@@ -37,7 +37,7 @@ from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages, looks_at_buttons
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
 from tuisim.app.setup import next_run as plans
-from tuisim.app.snapshot import AT_REST, GOOD_ENDS, AppState, RunPhase, Situation, circling_words, end_words
+from tuisim.app.snapshot import AT_REST, GOOD_ENDS, AppState, RunPhase, Situation, busy_loop_words, end_words
 from tuisim.app.speech import Voice
 from tuisim.app.terminal_app import picture_mode_at_start
 from tuisim.config.options import DEFAULT_FPS, Settings
@@ -398,8 +398,8 @@ class LabApp(PanelMessages):
         if not self.has_hinted and any(row.stream in (Stream.DISPLAY, Stream.CONSOLE) for row in news.rows):
             self.hint_at_brick("uses the brick's display")
         if output := self.panel_area.output:
-            if news.circling:
-                output.note(self.with_keys(circling_words(news.circling)))
+            if news.busy_loop:
+                output.note(self.with_keys(busy_loop_words(news.busy_loop)))
             if news.prompt is not None and not output.asking:
                 self._ask_user(news.prompt)
             elif news.prompt is None and output.asking:

@@ -498,7 +498,7 @@ class RunController:
         recording = self.timeline.recording
         if recording is None:
             return RunUpdate([])
-        ended = branched = circling = None
+        ended = branched = busy_loop = None
         spoken: list[protocol.Spoke] = []
         pauses: list[protocol.Message] = []
         for event in self.run.pump() if self.run else ():
@@ -515,12 +515,12 @@ class RunController:
                         self.timeline.breaks.append(event.tick)
                 case protocol.Spoke() if self._branch is None:
                     spoken.append(event)
-                case protocol.Circling() if self._branch is None:
-                    circling = event
+                case protocol.BusyLoop() if self._branch is None:
+                    busy_loop = event
         stood = standstill_words(recording.telemetry, recording.spec) if ended else ""
         rows = recording.rows.take(ROWS_A_POLL)
         prompt = self.run.waiting_for_input if self.run and self.in_run else None
-        return RunUpdate(rows, ended, stood, tuple(spoken), prompt, branched, tuple(pauses), circling)
+        return RunUpdate(rows, ended, stood, tuple(spoken), prompt, branched, tuple(pauses), busy_loop)
 
 
 @dataclass(frozen=True, slots=True)
@@ -540,9 +540,9 @@ class RunUpdate:
     """Set once, when a branch has reached its instant, or has ended before it."""
     pauses: tuple[protocol.Message, ...] = ()
     """Reports that the program has paused or resumed, and its frames and variables."""
-    circling: protocol.Circling | None = None
+    busy_loop: protocol.BusyLoop | None = None
     """Set once, when a loop has gone on for long without a wait."""
 
     def __bool__(self) -> bool:
         """Return whether anything has arrived; a prompt that is still open does not count."""
-        return bool(self.rows or self.ended or self.spoken or self.branched or self.pauses or self.circling)
+        return bool(self.rows or self.ended or self.spoken or self.branched or self.pauses or self.busy_loop)

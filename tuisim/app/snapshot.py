@@ -15,7 +15,7 @@ from tuisim.core.sensors.color import ColorReading
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
 from tuisim.data_class import dataclass
-from tuisim.protocol import Circling, End, Ended, Inspected, Paused, RunState, Unended
+from tuisim.protocol import BusyLoop, End, Ended, Inspected, Paused, RunState, Unended
 from tuisim.runs.brick_state import BrickState
 from tuisim.source import Program
 
@@ -216,10 +216,10 @@ def end_words(ended: Ended, stood: str) -> tuple[str, str]:
     return ", ".join(filter(None, (words, stood))), ", ".join(filter(None, (last, stood)))
 
 
-def circling_words(circling: Circling) -> str:
+def busy_loop_words(busy_loop: BusyLoop) -> str:
     """Return what the output says of a loop without a wait, with ids of actions in braces."""
-    since = f"{circling.since_ns / 1e9:.2f} s"
-    return f"— line {circling.line}: a loop without a wait since {since}. {{stop}} stops it"
+    since = f"{busy_loop.since_ns / 1e9:.2f} s"
+    return f"— line {busy_loop.line}: a loop without a wait since {since}. {{stop}} stops it"
 
 
 _NUMBERS = re.compile(r"""'[^']*'|"[^"]*"|(?<![\w.])-?\d+\.\d+(?:e[+-]?\d+)?(?![\w.])""")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.running import Run, Start, until
-from tuisim.app.snapshot import circling_words
-from tuisim.protocol import Circling, Message
+from tuisim.app.snapshot import busy_loop_words
+from tuisim.protocol import BusyLoop, Message
 
 PROGRAMS = {
     "sleep": ("import time\ntime.sleep(1.5)\nprint(round(time.monotonic(), 3))", ["1.5"]),
@@ -141,18 +141,18 @@ def test_lines_of_the_program_are_recorded(run: Run) -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("import time\ntime.sleep(1)\nx = 0\nwhile True:\n    x += 1\n", [Circling(5, 1_000_000_000)]),
+        ("import time\ntime.sleep(1)\nx = 0\nwhile True:\n    x += 1\n", [BusyLoop(5, 1_000_000_000)]),
         ("while True:\n    x = colorLeft.reflected_light_intensity_pc\n", []),
     ],
     ids=["computes", "reads"],
 )
-def test_a_long_loop_without_a_wait_is_told(start: Start, text: str, told: list[Circling]) -> None:
+def test_a_long_loop_without_a_wait_is_told(start: Start, text: str, told: list[BusyLoop]) -> None:
     seen: list[Message] = []
     run = start(text, live=True, speed=0.0, time_limit_s=7.0)
     until(run, lambda: run.ended is not None, seen)
-    assert [event for event in seen if isinstance(event, Circling)] == told
+    assert [event for event in seen if isinstance(event, BusyLoop)] == told
 
 
 def test_the_output_says_what_stops_a_long_loop() -> None:
     words = "— line 5: a loop without a wait since 1.00 s. {stop} stops it"
-    assert circling_words(Circling(5, 1_000_000_000)) == words
+    assert busy_loop_words(BusyLoop(5, 1_000_000_000)) == words

@@ -11,7 +11,7 @@ from tuisim.errors import HostError
 from tuisim.protocol import (
     EVENTS,
     PROTOCOL_VERSION,
-    Circling,
+    BusyLoop,
     Ended,
     InputWanted,
     Inspected,
@@ -36,7 +36,7 @@ _MOST_NUMBER = 1 << 53
 """Larger than any integer in an event, in either direction; that of nanoseconds is 104 days."""
 
 _Kinds = tuple[type[Message], ...]
-DEBUGGED: _Kinds = (Paused, Resumed, Inspected, LineHistory, Circling)
+DEBUGGED: _Kinds = (Paused, Resumed, Inspected, LineHistory, BusyLoop)
 """Events of a run that can be paused."""
 
 

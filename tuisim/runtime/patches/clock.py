@@ -13,7 +13,7 @@ from functools import wraps
 from typing import Any
 
 from tuisim.core.profile import NS_PER_S
-from tuisim.protocol import Circling
+from tuisim.protocol import BusyLoop
 from tuisim.runtime import wallclock as real
 from tuisim.runtime.modules import OWN_FILES
 from tuisim.runtime.patches.replacement import replace
@@ -273,7 +273,7 @@ def loop_hook(session: Session, turns: int, cost_ns: int) -> Callable[[], None]:
             if not told and session.now - began >= LONG_NS:
                 told = True
                 if session.steering.live:
-                    session.channel.send(Circling(session.sim.line, began))
+                    session.channel.send(BusyLoop(session.sim.line, began))
         else:
             began = session.now
         mark = session.now
