@@ -154,17 +154,6 @@ async def test_a_pane_tells_which_row_is_selected_where_not_all_fit(
         assert (words in subtitle) if words else not subtitle
 
 
-async def test_nine_bands_are_all_in_sight_in_the_smallest_terminal(tmp_path: Path) -> None:
-    levels = [100.0, 86.27, 100.0, 82.75, 100.0, 50.2, 100.0, 0.0, 100.0]
-    file = tmp_path / "log.txt"
-    file.write_text("".join(f"Light: {level}\n" * 7 for level in levels))
-    async with AnalyserApp(LogRequest(file=str(file))).run_test(size=(80, 24)) as pilot:
-        _, model = await opened(pilot)
-        await pilot.press("b")
-        await until(pilot, lambda: len(model.bands()) == len(levels))
-        await until(pilot, lambda: "black" in text_of(pilot))
-
-
 @pytest.mark.slow
 async def test_runs_to_open_are_listed_and_several_may_be_marked(run: StoredRun) -> None:
     handle = start_run(program("print('Colour: 7')\n"), build_run_spec(Settings()), RunOptions(speed=0.0))

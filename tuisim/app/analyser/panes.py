@@ -13,7 +13,6 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Generic, TypeVar, overload
 
 from rich.style import Style
-from textual.widget import Widget
 from textual.worker import get_current_worker
 
 from tuisim import palette
@@ -51,8 +50,6 @@ _MEASURED = 1000
 SEARCHED_AT_ONCE = 20_000
 """Up to this many rows, the search for bands takes a few hundredths of a second."""
 
-_LEAST_CHART = 10
-"""Rows of the chart that a list of bands leaves to it."""
 _LEAST_ROWS = 10
 """A pane with few rows leaves the rest of its lines to the chart, but these."""
 
@@ -433,12 +430,7 @@ class PaneView(LinesPanel):
             if not is_table:
                 self.border_subtitle = place_in(self.name_shown, model, self.chosen, width, height)
             self._text.set_lines(pane_lines(self.name_shown, model, self.chosen, width, height))
-            wanted = max(_wanted_rows(self.name_shown, model, width), _LEAST_ROWS) + 2
-            self.styles.max_height = wanted
-            # The bands are the answer that the chart beside them only shows.
-            around = self.parent.size.height if isinstance(self.parent, Widget) else 0
-            has_more = self.name_shown == "bands" and around > 2 * _LEAST_CHART
-            self.styles.min_height = min(wanted, around - _LEAST_CHART) if has_more else None
+            self.styles.max_height = max(_wanted_rows(self.name_shown, model, width), _LEAST_ROWS) + 2
 
     def _compute(self, model: Model, pane: str) -> None:
         """Compute the missing content of a pane, once at a time; that of a small log at once."""
