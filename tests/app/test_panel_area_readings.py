@@ -19,6 +19,7 @@ async def test_all_readings_are_of_one_instant() -> None:
         assert isinstance(readings, Instrumentation)
         assert isinstance(arrays, Arrays)
         bar, seen = area.world.time_bar, set[int]()
+        await until(pilot, lambda: bar._times is not None)
 
         def has_seen_five() -> bool:
             assert bar._times is not None
