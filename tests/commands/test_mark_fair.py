@@ -64,7 +64,7 @@ def busy() -> Iterator[None]:
 
 def _marks(folder: Path, isolation: str) -> bytes:
     (folder / "class").mkdir(parents=True)
-    for name, text in islice(FAIR.items(), 0, None, 3):
+    for name, text in islice(FAIR.items(), 0, None, 8):
         (folder / "class" / f"{name}.py").write_text(f"# {MAGIC}\n{text}\n")
     (folder / "goals.toml").write_text(GOALS)
     words = ("mark", "goals.toml", "class", "--export", "marks.csv", "--keep", "none", isolation)
@@ -83,7 +83,7 @@ def _marks(folder: Path, isolation: str) -> bytes:
 
 @pytest.fixture(scope="module")
 def idle(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    """The marks of a third of the fifty while the tests run nothing else."""
+    """The marks of every eighth of the fifty while the tests run nothing else."""
     return _marks(tmp_path_factory.mktemp("idle") / "place", "--no-isolate")
 
 
