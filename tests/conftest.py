@@ -17,6 +17,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from tests.running import PATIENCE_S, Done, Run, Start, over
+from tuisim.app.editor.text_file import FOLDER as DRAFTS
 from tuisim.atomic import make_private_folder
 from tuisim.cli import run_command
 from tuisim.config import mat_cache
@@ -109,7 +110,7 @@ def _own_home(tmp_path_factory: pytest.TempPathFactory) -> object:
 def _no_draft_stays() -> Iterator[None]:
     """Remove what a test left unsaved in the home of all: the next app that starts without a program would offer it."""
     yield
-    shutil.rmtree(home_folder() / "drafts", ignore_errors=True)
+    shutil.rmtree(home_folder() / DRAFTS, ignore_errors=True)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Command
-from tuisim.commands import serve_class
+from tuisim.commands import isolation
 from tuisim.errors import ConfigError
 from tuisim.web import server as web_server
 from tuisim.web.classroom import Classroom
@@ -183,7 +183,7 @@ def test_without_isolation_the_tutor_is_told(
     def refuse() -> None:
         raise ConfigError("bwrap is not installed", "install it", key="--isolate")
 
-    monkeypatch.setattr(serve_class, "check_isolation", refuse)
+    monkeypatch.setattr(isolation, "check_isolation", refuse)
     done = here("serve", "--students", "class.txt")
     assert done.returncode == 0
     assert done.stderr.startswith("note: bwrap is not installed: students' programs can read and change")

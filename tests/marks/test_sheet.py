@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -14,6 +13,7 @@ import pytest
 
 from tests.marks.hazards import EVIL
 from tests.running import PATIENCE_S
+from tests.web.chromium import needs_chromium
 from tuisim.config.program_file import ProgramSource
 from tuisim.errors import printable
 from tuisim.goals.spec import FinishCondition, Goal
@@ -122,7 +122,7 @@ document.title = edge <= innerWidth ? "all in view" : "marks end at " + edge;
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(shutil.which("chromium") is None, reason="needs a browser: chromium")
+@needs_chromium
 @pytest.mark.parametrize("width", [800, 1400])
 def test_a_long_name_pushes_no_mark_off_the_page(tmp_path: Path, width: int) -> None:
     (tmp_path / "marks.html").write_text(page_of(LONG_SHEET).replace("</body>", f"{GEOMETRY}</body>"))

@@ -249,7 +249,7 @@ async def _attack(name: str) -> None:
         )
         port = await stack.enter_async_context(listening(classroom, "127.0.0.1", 0))
         client = await stack.enter_async_context(ClientSession())
-        tokens = {"tutor": links.tutor} | {pupil.name: pupil.token for pupil in links.pupils}
+        tokens = {"tutor": links.tutor} | {student.name: student.token for student in links.students}
         target = Target(client, port, folder, tokens)
         await target.begin()
         await ATTACKS[name](target)

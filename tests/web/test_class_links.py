@@ -21,7 +21,7 @@ def opened(folder: Path, *names: str) -> ClassLinks:
 
 
 def tokens(links: ClassLinks) -> dict[str, str]:
-    return {"tutor": links.tutor} | {pupil.name: pupil.token for pupil in links.pupils}
+    return {"tutor": links.tutor} | {student.name: student.token for student in links.students}
 
 
 def mode(path: Path) -> int:
@@ -37,7 +37,7 @@ def test_links_are_valid_at_the_next_start(tmp_path: Path) -> None:
 
 
 def test_nobody_else_can_read_what_the_class_has(tmp_path: Path) -> None:
-    (one,) = opened(tmp_path / "class", "Ada").pupils
+    (one,) = opened(tmp_path / "class", "Ada").students
     assert mode(tmp_path / "class" / LINKS_FILE) == 0o600
     assert {mode(folder) for folder in (tmp_path / "class", one.folder, one.home, one.home.parent)} == {0o700}
     # A file that others could read is one that they cannot after the next start.
@@ -47,10 +47,10 @@ def test_nobody_else_can_read_what_the_class_has(tmp_path: Path) -> None:
 
 
 def test_what_students_have_made_stays(tmp_path: Path) -> None:
-    (one,) = opened(tmp_path, "Ada").pupils
+    (one,) = opened(tmp_path, "Ada").students
     (one.folder / "main.py").write_text("pass")
     (one.home / "runs.db").write_text("")
-    (again,) = opened(tmp_path, "Ada").pupils
+    (again,) = opened(tmp_path, "Ada").students
     assert (again.folder / "main.py").read_text() == "pass"
     assert (again.home / "runs.db").exists()
     # `tuisim mark` takes visible folders for students.

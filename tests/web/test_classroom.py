@@ -77,7 +77,7 @@ async def opened(tmp_path: Path) -> AsyncIterator[Opened]:
             )
             port = await stack.enter_async_context(listening(made, "127.0.0.1", 0))
             client = await stack.enter_async_context(ClientSession())
-            tokens = {"tutor": links.tutor} | {pupil.name: pupil.token for pupil in links.pupils}
+            tokens = {"tutor": links.tutor} | {student.name: student.token for student in links.students}
             found = Class(client, port, tmp_path / "class", made, tokens)
             for visitor in found.visitors.values():
                 stack.push_async_callback(visitor.leave)

@@ -5,25 +5,12 @@ from __future__ import annotations
 import os
 import subprocess
 from pathlib import Path
-from shutil import which
 
 import pytest
 
-from tuisim.errors import ConfigError
-from tuisim.runs.child.isolation import check_isolation
-from tuisim.web.class_links import Pupil
+from tests.isolated import needs_isolation
+from tuisim.web.class_links import StudentLink
 from tuisim.web.student_app import Handed, app_of, handed_out
-
-
-def is_isolated() -> bool:
-    try:
-        check_isolation()
-    except ConfigError:
-        return False
-    return True
-
-
-needs_isolation = pytest.mark.skipif(which("bwrap") is None or not is_isolated(), reason="needs bubblewrap")
 
 
 @pytest.fixture
@@ -37,12 +24,12 @@ def tutor(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def ada(tmp_path: Path) -> Pupil:
-    return pupil(tmp_path, "Ada")
+def ada(tmp_path: Path) -> StudentLink:
+    return student(tmp_path, "Ada")
 
 
-def pupil(folder: Path, name: str) -> Pupil:
-    made = Pupil(name, "x" * 32, folder / "class" / name, folder / "class" / ".homes" / name)
+def student(folder: Path, name: str) -> StudentLink:
+    made = StudentLink(name, "x" * 32, folder / "class" / name, folder / "class" / ".homes" / name)
     made.folder.mkdir(parents=True)
     made.home.mkdir(parents=True)
     return made
@@ -72,7 +59,7 @@ def test_files_are_copied_or_named_by_their_path(
     )
 
 
-def test_a_copy_is_the_students_and_is_not_replaced(tutor: Path, ada: Pupil) -> None:
+def test_a_copy_is_the_students_and_is_not_replaced(tutor: Path, ada: StudentLink) -> None:
     for text in ("lab.py", "changed by Ada"):
         command, place = app_of(ada, handed_out(["lab.py"]), isolated=False)
         assert (ada.folder / "lab.py").read_text() == text
@@ -82,13 +69,13 @@ def test_a_copy_is_the_students_and_is_not_replaced(tutor: Path, ada: Pupil) -> 
 
 
 @pytest.mark.usefixtures("tutor")
-def test_a_copy_does_not_follow_a_link(ada: Pupil, tmp_path: Path) -> None:
+def test_a_copy_does_not_follow_a_link(ada: StudentLink, tmp_path: Path) -> None:
     (ada.folder / "lab.py").symlink_to(tmp_path / "elsewhere")
     app_of(ada, handed_out(["lab.py"]), isolated=False)
     assert not (tmp_path / "elsewhere").exists()
 
 
-def test_what_the_tutors_environment_says_is_not_passed_on(ada: Pupil, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_the_tutors_environment_says_is_not_passed_on(ada: StudentLink, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("API_KEY", "secret")
     _, place = app_of(ada, Handed((), (), ()), isolated=False)
     assert place.variables is not None
@@ -101,7 +88,7 @@ KERNELS = {"6.18.44-x": True, "5.14.0": True, "5.13.9": False, "4.20": False, "u
 
 @pytest.mark.parametrize(("release", "limited"), KERNELS.items())
 def test_processes_are_limited_where_each_app_is_counted_by_itself(
-    release: str, limited: bool, ada: Pupil, monkeypatch: pytest.MonkeyPatch
+    release: str, limited: bool, ada: StudentLink, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("platform.release", lambda: release)
     commands = [" ".join(app_of(ada, Handed((), (), ()), isolated=isolated)[0]) for isolated in (True, False)]
@@ -125,10 +112,10 @@ ATTACKS = {
 
 
 @needs_isolation
-def test_an_isolated_app_reaches_nothing_of_others(tutor: Path, ada: Pupil, tmp_path: Path) -> None:
+def test_an_isolated_app_reaches_nothing_of_others(tutor: Path, ada: StudentLink, tmp_path: Path) -> None:
     import socket
 
-    bob = pupil(tmp_path, "Bob")
+    bob = student(tmp_path, "Bob")
     for path in (bob.folder / "secret", bob.home / "runs", bob.folder.parent / ".links.json"):
         path.write_text("secret")
     command, place = app_of(ada, handed_out(["-b", "mat.png"]), isolated=True)

@@ -29,7 +29,11 @@ class Browser:
 
     send_bytes = send_str
 
-    async def close(self, message: bytes) -> None:
+    @property
+    def closed(self) -> bool:
+        return self.is_closed.is_set()
+
+    async def close(self, *, code: int, message: bytes) -> None:
         self.reason = message
         self.is_closed.set()
 

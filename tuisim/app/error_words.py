@@ -19,8 +19,7 @@ def _tellings(words: str) -> Iterator[str]:
     """Yield an error in fewer and fewer words; each says what to do about it, if the error does."""
     yield words
     if (parts := _parts(words)) is not None:
-        asked = _ASKED.search(words)
-        missing = f"no {asked['what']} on {asked['port']}" if asked else "not on this port"
+        missing = _missing(words)
         yield f"{missing}; the robot has {parts}"
         yield f"{missing}: {parts}"
         yield parts
@@ -28,9 +27,18 @@ def _tellings(words: str) -> Iterator[str]:
     elif meant := _MEANT.search(words):
         yield _KIND.sub("", words)
         yield f"no {meant['wrong']}: did you mean {meant['meant']}?"
-        yield f"did you mean {meant['meant']}?"
+        yield _asked_for(meant)
         yield f"{meant['meant']}?"
     yield _KIND.sub("", words)
+
+
+def _missing(words: str) -> str:
+    asked = _ASKED.search(words)
+    return f"no {asked['what']} on {asked['port']}" if asked else "not on this port"
+
+
+def _asked_for(meant: re.Match[str]) -> str:
+    return f"did you mean {meant['meant']}?"
 
 
 def _parts(words: str) -> str | None:
@@ -47,7 +55,7 @@ def fitting(words: str, width: int) -> str:
 
 def remedy(words: str) -> str:
     """Return what to do about an error in few words, with ids of actions in braces; empty if it does not say that."""
-    told = list(_tellings(words))
-    if _parts(words) is not None:
-        return f"{told[2]}. {{robot}} chooses another robot"
-    return told[3] if _MEANT.search(words) else ""
+    if (parts := _parts(words)) is not None:
+        return f"{_missing(words)}: {parts}. {{robot}} chooses another robot"
+    meant = _MEANT.search(words)
+    return _asked_for(meant) if meant else ""

@@ -17,12 +17,13 @@ from tuisim.charts.files import write_whole
 from tuisim.commands.batch_options import jobs_option, keep_option
 from tuisim.commands.echo import Progress, echo, echo_error, echo_lines, echo_wrapped, table, tell
 from tuisim.commands.interruption import Interrupted, signals_raise
+from tuisim.commands.isolation import isolates
 from tuisim.commands.listings import names_of
 from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.command_line import Arguments, WordType, argument, command, option
 from tuisim.config.options import APP, PANEL, settings_of
 from tuisim.config.shared_options import shared_options
-from tuisim.errors import ConfigError, ExportError, counted, listed, printable, see_page
+from tuisim.errors import ConfigError, ExportError, counted, listed, printable
 from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.goals.trial_world import TrialWorld
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
@@ -36,7 +37,6 @@ from tuisim.marks.page import page_of, reports_folder
 from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan, RunEntry, outcomes_of, runs_of
 from tuisim.marks.sheet import Sheet, columns_of, export_marks, lines_of, sheet_of, summary_of
 from tuisim.marks.students import Student, StudentsFound, find_students
-from tuisim.runs.child.isolation import check_isolation
 from tuisim.runs.child.supervisor import supervised
 from tuisim.runs.handle import RunOptions
 
@@ -119,7 +119,7 @@ def mark(**given: Any) -> int:
         options=RunOptions(time_limit_s=arguments.timeout, stall_limit_s=STALL_LIMIT_S, answers=arguments.input),
         keep=Keep(arguments.keep or USUAL_KEEP),
         jobs=arguments.jobs,
-        isolate=_isolates(arguments),
+        isolate=isolates(arguments, "programs can read and change your files", "security"),
         version=__version__,
         arguments=settings_of(task.settings)["arguments"],
     )
@@ -138,27 +138,6 @@ def mark(**given: Any) -> int:
         _write(sheet, task.worlds, students, found.ignored, arguments)
         _write_gradebooks(sheet, students, roster, arguments)
     return max(_tell_unread(students), _tell_missing(outcomes), _tell_unknown(outcomes))
-
-
-def _isolates(arguments: Arguments) -> bool:
-    """Return whether programs are isolated; say so if they are not, and nobody has asked for that.
-
-    Raises:
-        ConfigError: they cannot be isolated, and must be; or the options contradict each other.
-    """
-    if arguments.isolate and arguments.no_isolate:
-        raise ConfigError("is given together with --no-isolate", "give only one of them", key="--isolate")
-    if arguments.no_isolate:
-        return False
-    try:
-        check_isolation()
-    except ConfigError as error:
-        if arguments.isolate:
-            raise
-        reason = error.message.removeprefix(f"{error.key}: ")
-        echo_error(f"note: {reason}: programs can read and change your files ({see_page('security')})")
-        return False
-    return True
 
 
 def _tutor_files(found: StudentsFound, task: GoalsFile, arguments: Arguments) -> tuple[Roster, Mapping[str, Override]]:
@@ -232,9 +211,10 @@ def _tell_missing(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
 
 def _tell_unknown(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
     """Tell which goals could not be judged, because of a regular expression of the task; return the exit code."""
-    found = unknown_goals(one for every in outcomes.values() for one in every)
+    by_student = {name: unknown_goals(every) for name, every in outcomes.items()}
+    found = {goal: reason for unknown in by_student.values() for goal, reason in unknown.items()}
     for goal in sorted(found):
-        by = [name for name, every in outcomes.items() if goal in unknown_goals(every)]
+        by = [name for name, unknown in by_student.items() if goal in unknown]
         echo_error(f"tuisim: “{goal}” cannot be judged and counts as missed, for {listed(map(printable, by))}:")
         echo_error(f"tuisim: {found[goal]}")
     return 1 if found else 0

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.commands.app import Opened
-from tuisim.commands.echo import echo, echo_error, echo_written
+from tuisim.commands.echo import echo, echo_written
+from tuisim.commands.isolation import isolates
 from tuisim.config.command_line import Arguments
 from tuisim.config.mats import background
-from tuisim.errors import ConfigError, see_page
-from tuisim.runs.child.isolation import check_isolation
+from tuisim.errors import ConfigError
 
 if TYPE_CHECKING:
     from tuisim.web.visit import VisitLimits
@@ -66,11 +66,12 @@ def serve_class(
     if arguments.run is not None:
         raise ConfigError("a stored run is yours only", "leave it out, or --students", key="--run")
     names = read_class(Path(arguments.students))
-    isolated = _isolates(arguments)
+    danger = "students' programs can read and change your files and those of others"
+    isolated = isolates(arguments, danger, "in-a-browser")
     links = open_class(Path(arguments.homes or DEFAULT_HOMES), names)
 
     def announce(port: int) -> None:
-        rows = [("tutor", links.tutor), *((pupil.name, pupil.token) for pupil in links.pupils)]
+        rows = [("tutor", links.tutor), *((student.name, student.token) for student in links.students)]
         rows = [(name, address_of(port, token)) for name, token in rows]
         _print_links(rows)
         if arguments.links:
@@ -94,27 +95,3 @@ def _print_links(rows: Sequence[tuple[str, str]]) -> None:
     for name, link in rows:
         echo(f"{name:{width}}  {link}")
     echo("Give each student the link of the name only, and keep the first to yourself; ctrl+c ends the server.")
-
-
-def _isolates(arguments: Arguments) -> bool:
-    """Return whether apps are isolated; say so if they are not, and nobody has asked for that.
-
-    Raises:
-        ConfigError: they cannot be isolated, and must be; or the options contradict each other.
-    """
-    if arguments.isolate and arguments.no_isolate:
-        raise ConfigError("is given together with --no-isolate", "give only one of them", key="--isolate")
-    if arguments.no_isolate:
-        return False
-    try:
-        check_isolation()
-    except ConfigError as error:
-        if arguments.isolate:
-            raise
-        reason = error.message.removeprefix(f"{error.key}: ")
-        echo_error(
-            f"note: {reason}: students' programs can read and change your files and those of others "
-            f"({see_page('in-a-browser')})"
-        )
-        return False
-    return True

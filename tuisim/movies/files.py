@@ -14,7 +14,7 @@ from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.movies import image_files
 from tuisim.movies.clip import ClipPanel, Recorded, Shot, shot_count, shots_of
-from tuisim.movies.painter import FramePainter, Size
+from tuisim.movies.painter import FramePainter, Size, view_of_frame
 from tuisim.scene.view import Viewport
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class Clip:
     @property
     def view(self) -> Viewport:
         """Which part of the field its frames would show if the world filled them; it has the panel of the world."""
-        return FramePainter(self.recorded, self.panels, self.span_s, self.size).view()
+        return view_of_frame(self.recorded.run.spec.robot, self.panels, self.size)
 
 
 @dataclass(frozen=True, slots=True)

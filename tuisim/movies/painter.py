@@ -22,6 +22,7 @@ from tuisim.charts.layout import (
     moved,
 )
 from tuisim.charts.sample_chart import sample_chart
+from tuisim.core.spec import RobotSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, printable
 from tuisim.movies.arrays import arrays_drawing
@@ -62,6 +63,33 @@ class PictureBox:
     height: int
 
 
+def _fitting_size(panels: Sequence[ClipPanel], robot: RobotSpec) -> Size:
+    height_px = _CAPTION_PX
+    if ClipPanel.WORLD in panels:
+        height_px += fitting_view(robot, WIDTH_PX - 2 * PAD, MOST[1]).height_px
+    if ClipPanel.CHART in panels or ClipPanel.ARRAYS in panels:
+        height_px += _STRIP_PX
+    return WIDTH_PX, height_px + PAD
+
+
+def view_of_frame(robot: RobotSpec, panels: Sequence[ClipPanel], size: Size | None = None) -> Viewport:
+    """Return which part of the field a whole frame would show if its world, which it has, filled it.
+
+    What is drawn over a frame in this view lies on the frame's world.
+
+    Args:
+        robot: The robot of the run.
+        panels: What is shown.
+        size: Width and height in pixels; None for the size that fits the panels.
+    """
+    size = size or _fitting_size(panels, robot)
+    room = _boxes(panels, size, len(robot.color_sensors))[ClipPanel.WORLD]
+    shown = fitting_view(robot, room.width, room.height)
+    box = _centred(room, (shown.width_px, shown.height_px))
+    left_mm, top_mm = shown.to_mm(-box.left, -box.top)
+    return Viewport(*size, shown.mm_per_px, left_mm, top_mm)
+
+
 class FramePainter:
     """Draws a recorded run at one instant after the other.
 
@@ -81,7 +109,7 @@ class FramePainter:
     ) -> None:
         run = recorded.run
         self._recorded, self._panels = recorded, panels
-        self.size = size or self._fitting_size()
+        self.size = size or _fitting_size(panels, run.spec.robot)
         boxes = self._boxes = _boxes(panels, self.size, len(run.spec.robot.color_sensors))
         if ClipPanel.WORLD in boxes:
             box = boxes[ClipPanel.WORLD]
@@ -91,24 +119,6 @@ class FramePainter:
             self._chart = laid_out(_chart(recorded, box.width, span_s), box.width, box.height, titled=False)
         if ClipPanel.ARRAYS in boxes:
             self._arrays = SensorArrays(recorded)
-
-    def _fitting_size(self) -> Size:
-        height_px = _CAPTION_PX
-        if ClipPanel.WORLD in self._panels:
-            height_px += fitting_view(self._recorded.run.spec.robot, WIDTH_PX - 2 * PAD, MOST[1]).height_px
-        if ClipPanel.CHART in self._panels or ClipPanel.ARRAYS in self._panels:
-            height_px += _STRIP_PX
-        return WIDTH_PX, height_px + PAD
-
-    def view(self) -> Viewport:
-        """Return which part of the field the whole frame would show if the world filled it.
-
-        What is drawn over a frame in this view lies on the frame's world.
-        """
-        shown = self._world.view
-        box = _centred(self._boxes[ClipPanel.WORLD], (shown.width_px, shown.height_px))
-        left_mm, top_mm = shown.to_mm(-box.left, -box.top)
-        return Viewport(*self.size, shown.mm_per_px, left_mm, top_mm)
 
     def image(self, moment: ClipMoment) -> Image:
         """Return the frame as a Pillow image. The instants of successive calls must not decrease."""

@@ -30,7 +30,7 @@ class MovingWorld:
     """
 
     def __init__(self, recorded: Recorded, view: Viewport) -> None:
-        self._recorded, self._spec, self.view = recorded, recorded.run.spec, view
+        self._recorded, self._spec, self._view = recorded, recorded.run.spec, view
         self._painter = world_painter(mat_pixels(mat_files(recorded.run)))
         self._traced = 0
         """Records whose pen traces are drawn."""
@@ -41,7 +41,7 @@ class MovingWorld:
 
         self._painter.trace.add(pen_trace(self._spec, self._recorded.telemetry[self._traced : moment.tick + 1]))
         self._traced = moment.tick + 1
-        return Image.fromarray(self._painter.paint(self.view, scene_of(self._spec, sound_pose(moment.record))))
+        return Image.fromarray(self._painter.paint(self._view, scene_of(self._spec, sound_pose(moment.record))))
 
 
 class SensorArrays:

@@ -16,6 +16,7 @@ from tuisim.atomic import make_private_folder, replacing
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, ExportError
 from tuisim.logs.csv_cells import harmless
+from tuisim.regular_file import read_regular
 from tuisim.web.gate import new_token
 
 LINKS_FILE = ".links.json"
@@ -25,7 +26,7 @@ _MOST_BYTES = 1 << 20
 
 
 @dataclass(frozen=True, slots=True)
-class Pupil:
+class StudentLink:
     """One student of the class."""
 
     name: str
@@ -43,7 +44,7 @@ class ClassLinks:
 
     tutor: str
     """The secret part of the tutor's link."""
-    pupils: tuple[Pupil, ...]
+    students: tuple[StudentLink, ...]
     lock_fd: int
     """Held while the server runs: two of them would give a student two sessions."""
 
@@ -82,12 +83,12 @@ def _opened(folder: Path, names: Sequence[str], lock_fd: int) -> ClassLinks:
         tokens.setdefault(name, new_token())
     with replacing(file, owner_only=True, follow_links=False) as handle:
         handle.write(json.dumps({"tutor": tutor, "students": tokens}, ensure_ascii=False, indent=1).encode())
-    pupils = [Pupil(name, tokens[name], folder / name, folder / _HOMES / name) for name in names]
-    for each in (path for pupil in pupils for path in (pupil.folder, pupil.home)):
+    students = [StudentLink(name, tokens[name], folder / name, folder / _HOMES / name) for name in names]
+    for each in (path for student in students for path in (student.folder, student.home)):
         make_private_folder(each)
         if each.is_symlink():
             raise ConfigError("is a link; a student's folder must be one", file=str(each))
-    return ClassLinks(tutor, tuple(pupils), lock_fd)
+    return ClassLinks(tutor, tuple(students), lock_fd)
 
 
 def _locked(folder: Path) -> int:
@@ -104,11 +105,9 @@ def _locked(folder: Path) -> int:
 def _read(file: Path) -> Mapping[str, Any]:
     """Return what the file of links says; empty if there is none."""
     try:
-        descriptor = os.open(file, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK)
+        data = read_regular(file, _MOST_BYTES)
     except FileNotFoundError:
         return {}
-    with open(descriptor, "rb") as handle:
-        data = handle.read(_MOST_BYTES)
     try:
         match json.loads(data):
             case {"tutor": str(tutor), "students": dict(students)} if _are_tokens([tutor, *students.values()]):

@@ -10,9 +10,8 @@ from typing import Any
 from aiohttp import web
 
 from tuisim.web.answering import Owner, Routes, application_of
-from tuisim.web.class_links import ClassLinks, Pupil
+from tuisim.web.class_links import ClassLinks, StudentLink
 from tuisim.web.gate import Gate
-from tuisim.web.link import close
 from tuisim.web.server import (
     CLOSE_WITHIN_S,
     FILES_OF_PAGE,
@@ -25,6 +24,7 @@ from tuisim.web.server import (
     to_page,
 )
 from tuisim.web.session import Place
+from tuisim.web.sockets import close
 from tuisim.web.usage import Usage, files_exceeded, usages
 from tuisim.web.visit import Visit, VisitLimits
 
@@ -32,7 +32,7 @@ LOOK_EVERY_S = 2.0
 """Interval in which the limits of processes are looked at."""
 _LOOKS_A_ROUND = 5
 """Files are looked at once in so many times."""
-AppOf = Callable[[Pupil], tuple[Sequence[str], Place]]
+AppOf = Callable[[StudentLink], tuple[Sequence[str], Place]]
 
 
 class Tutor:
@@ -114,12 +114,12 @@ class Classroom:
         among = Places(limits.visitors)
         self._folders: dict[str, Sequence[Any]] = {}
         self._servers: dict[str, Server] = {}
-        for pupil in links.pupils:
-            command, place = app_of(pupil)
-            gate = Gate(host, pupil.token)
+        for student in links.students:
+            command, place = app_of(student)
+            gate = Gate(host, student.token)
             one = ServerLimits(1, limits.visit)
-            self._servers[pupil.name] = Server(command, gate, one, _naming(report, pupil.name), place, among)
-            self._folders[pupil.name] = (pupil.folder, pupil.home)
+            self._servers[student.name] = Server(command, gate, one, _naming(report, student.name), place, among)
+            self._folders[student.name] = (student.folder, student.home)
         self._used: dict[int, Usage] = {}
         self._tutor = Tutor(Gate(host, links.tutor), self._servers, self._used)
 
@@ -173,4 +173,4 @@ def _naming(report: Callable[[str], None], name: str) -> Callable[[str], None]:
 
 def limits_of(links: ClassLinks, most: int | None, visit: VisitLimits) -> ServerLimits:
     """Return what a class may use: an app for everybody, if nothing else is said."""
-    return ServerLimits(most or len(links.pupils), visit)
+    return ServerLimits(most or len(links.students), visit)

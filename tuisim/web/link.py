@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
-from typing import TypeVar
 
-from aiohttp import WSCloseCode, web
+from aiohttp import web
 
+from tuisim.web.sockets import close, sent
 from tuisim.web.watchers import Watchers
 
-_Data = TypeVar("_Data")
-_MOST_REASON_BYTES = 123
-"""The most that fits into the last message of a socket."""
 TAKEN_OVER = 4001
 """The code with which a socket is closed because another browser shows the app."""
 _MOST_WAITING = 20
@@ -39,7 +36,7 @@ class Link:
         """Send what the app draws."""
         self.watchers.show(data)
         if self.socket is not None:
-            await _sent(self.socket, self.socket.send_bytes, data)
+            await sent(self.socket, self.socket.send_bytes, data)
         elif self.watchers:
             # What a browser that only looks on sends is not passed on, but the app draws no faster than it is answered.
             for _ in range(data.count(_QUERY)):
@@ -47,7 +44,7 @@ class Link:
 
     async def send_str(self, text: str) -> None:
         """Send a message, at once or to the next browser."""
-        if self.socket is None or not await _sent(self.socket, self.socket.send_str, text):
+        if self.socket is None or not await sent(self.socket, self.socket.send_str, text):
             self._waiting = [*self._waiting, text][-_MOST_WAITING:]
 
     async def take(self, socket: web.WebSocketResponse, first: str, reason: str) -> None:
@@ -58,7 +55,7 @@ class Link:
             first: The first message that it gets.
             reason: What the browser that has shown the app until now is told.
         """
-        await _sent(socket, socket.send_str, first)
+        await sent(socket, socket.send_str, first)
         before, self.socket = self.socket, socket
         waiting, self._waiting = self._waiting, []
         for text in waiting:
@@ -71,20 +68,3 @@ class Link:
         if self.socket is socket:
             self.socket = None
         return self.socket is None
-
-
-async def close(socket: web.WebSocketResponse, reason: str, code: int = WSCloseCode.OK) -> None:
-    """Close a socket and say why; the page has words of its own for no reason."""
-    text = reason.encode()[:_MOST_REASON_BYTES].decode("utf-8", "ignore")
-    await socket.close(code=code, message=text.encode())
-
-
-async def _sent(socket: web.WebSocketResponse, send: Callable[[_Data], Awaitable[None]], data: _Data) -> bool:
-    """Send to a browser that may have gone. Return whether it was there."""
-    if socket.closed:
-        return False
-    try:
-        await send(data)
-    except ConnectionError:
-        return False
-    return True

@@ -21,8 +21,8 @@ from tuisim.data_class import dataclass
 from tuisim.errors import SIGNALLED, ConfigError, TuisimError, counted
 from tuisim.web.answering import Routes, application_of
 from tuisim.web.gate import Gate
-from tuisim.web.link import close
 from tuisim.web.session import END_WITHIN_S, HERE, Place
+from tuisim.web.sockets import close
 from tuisim.web.upload import keep_file
 from tuisim.web.visit import Visit, VisitLimits
 

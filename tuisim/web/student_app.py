@@ -15,7 +15,7 @@ from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.runs.child.isolation import LIMITS, confined
 from tuisim.web.app_command import app_command
-from tuisim.web.class_links import Pupil
+from tuisim.web.class_links import StudentLink
 from tuisim.web.session import Place
 from tuisim.web.usage import MOST_THREADS
 
@@ -73,11 +73,11 @@ def handed_out(words: Sequence[str], more: Sequence[Path] = ()) -> Handed:
     return Handed((*told, *words[len(before) :]), tuple(copied), tuple(read))
 
 
-def app_of(pupil: Pupil, handed: Handed, *, isolated: bool) -> tuple[list[str], Place]:
+def app_of(student: StudentLink, handed: Handed, *, isolated: bool) -> tuple[list[str], Place]:
     """Return the command of a student's app, and where it runs. The student gets the copies that are not there yet.
 
     Args:
-        pupil: The student.
+        student: The student.
         handed: What the app opens.
         isolated: Whether it is started through bubblewrap, together with all programs that it runs.
 
@@ -85,14 +85,14 @@ def app_of(pupil: Pupil, handed: Handed, *, isolated: bool) -> tuple[list[str], 
         ConfigError: a file cannot be copied.
     """
     for file in handed.copied:
-        _give(file, pupil.folder / file.name)
+        _give(file, student.folder / file.name)
     command = app_command(handed.words, LIMITS + (_MOST_TASKS if isolated and _counts_alone() else "") + _NICE)
     if isolated:
         readable = [backgrounds_folder(), programs_folder(), *handed.read]
-        command = [*confined(pupil.folder, [pupil.home, pupil.folder], readable), "--", *command]
+        command = [*confined(student.folder, [student.home, student.folder], readable), "--", *command]
     passed_on = {name: os.environ[name] for name in _PASSED_ON if name in os.environ}
-    own = {"HOME": str(pupil.folder), "TUISIM_HOME": str(pupil.home)}
-    return command, Place(pupil.folder, passed_on | own)
+    own = {"HOME": str(student.folder), "TUISIM_HOME": str(student.home)}
+    return command, Place(student.folder, passed_on | own)
 
 
 def _counts_alone() -> bool:

@@ -16,8 +16,9 @@ from textual_serve.download_manager import DownloadManager
 
 from tuisim.data_class import dataclass
 from tuisim.web.doing import Doing
-from tuisim.web.link import Link, close
+from tuisim.web.link import Link
 from tuisim.web.session import Place, WebSession
+from tuisim.web.sockets import close
 
 _LONGEST_S = 86400.0
 """The longest that a timer waits at once."""

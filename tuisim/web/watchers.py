@@ -5,9 +5,11 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 
 from aiohttp import web
+
+from tuisim.web.sockets import close, sent
 
 _MOST_BEHIND_BYTES = 4 << 20
 """A browser that is further behind is sent away."""
@@ -40,12 +42,15 @@ class _Watcher:
             self._queue.put_nowait(None)
 
     async def _pass_on(self) -> None:
-        with suppress(ConnectionError):
-            while (data := await self._queue.get()) is not None:
-                send = self._socket.send_bytes(data) if isinstance(data, bytes) else self._socket.send_str(data)
-                await send
-                self._behind_bytes -= len(data)
-        await self._socket.close(message=self._reason.encode()[:120])
+        while (data := await self._queue.get()) is not None:
+            if isinstance(data, bytes):
+                is_there = await sent(self._socket, self._socket.send_bytes, data)
+            else:
+                is_there = await sent(self._socket, self._socket.send_str, data)
+            if not is_there:
+                break
+            self._behind_bytes -= len(data)
+        await close(self._socket, self._reason)
 
 
 class Watchers:

@@ -152,6 +152,7 @@ def to_parting(context: ActionContext) -> None:
     """
     later, drawn = context.runs.timeline.recording, context.runs.earlier
     if later is None:
+        context.app.say(_NO_EARLIER)
         return
 
     def compared() -> tuple[Recording | None, float | None]:
@@ -163,9 +164,7 @@ def to_parting(context: ActionContext) -> None:
         if context.runs.timeline.recording is not later:
             return
         if earlier is None:
-            context.app.say(
-                "There is no earlier run on this mat: run the program twice, or choose a run with {compare}"
-            )
+            context.app.say(_NO_EARLIER)
             return
         if drawn is None:
             context.runs.show_earlier(earlier)

@@ -107,5 +107,4 @@ class Welcome(Dialog[Begin | Recent]):
 
 
 def _option(number: int, name: str, title: str) -> Option:
-    numbered = f"{number} {name}"
-    return Option(name_and_title(numbered, title, _NAME_CELLS), id=str(number))
+    return Option(name_and_title(f"{number} {name}", title, _NAME_CELLS), id=str(number))

@@ -299,14 +299,13 @@ class CodeArea(TextArea):
         """
         ground = Style(bgcolor=style.bgcolor)
         used = cell_len(text.text.rstrip()) + VALUE_GAP
-        named = [(one.name + " = ", one) for one in values]
-        bare = [("" if at else "→ ", one) for at, one in enumerate(values)]
-        for pieces in (named, bare):
+        shown_values = [short_value(" ".join(one.value.split())) for one in values]
+        looks = [self._component("changed" if one.changed else "value") + ground for one in values]
+        for befores in ([f"{one.name} = " for one in values], ["→ "] + [""] * (len(values) - 1)):
             line: Line = [
-                (f"{', ' if at else ''}{before}{short_value(' '.join(one.value.split()))}",
-                 self._component("changed" if one.changed else "value") + ground)
-                for at, (before, one) in enumerate(pieces)
-            ]  # fmt: skip
+                (f"{', ' if at else ''}{before}{value}", look)
+                for at, (before, value, look) in enumerate(zip(befores, shown_values, looks, strict=True))
+            ]
             width = sum(cell_len(piece) for piece, _ in line)
             if used + width <= room:
                 break
