@@ -225,10 +225,13 @@ async def test_the_variables_of_any_former_instant(home: object) -> None:
         await ready(pilot)
         await pilot.press("R")
         await until(pilot, lambda: app.run_controller.state == "ended")
+        # Beside the code also without the debug panel.
+        app.run_controller.timeline.go(21)
+        await until(pilot, lambda: app.debugger.view is not None and not app.debugger.busy)
+        assert values(app) == {"total": "10", "i": "4"}
         await pilot.press("G")
         app.run_controller.timeline.go(42)
-        await until(pilot, lambda: app.debugger.view is not None and not app.debugger.busy)
-        assert values(app) == {"total": "36", "i": "8"}
+        await until(pilot, lambda: values(app) == {"total": "36", "i": "8"} and not app.debugger.busy)
         await until(pilot, lambda: "sleeps until 0.45 s" in drawn(app))
         app.run_controller.timeline.go(7)
         await until(pilot, lambda: values(app) == {"total": "1", "i": "1"})

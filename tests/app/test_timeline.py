@@ -62,10 +62,12 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
         app.screen.query_one(Input).value = "2 s"
         await pilot.press("enter")
         await until(pilot, lambda: app.run_controller.timeline.at == 200)
-        record = recording.telemetry.record(200)
+        await until(pilot, lambda: app.debugger.view is not None and not app.debugger.busy)
+        assert app.debugger.view is not None
+        record, line = recording.telemetry.record(200), app.debugger.view.paused.line
         then = instant_of(record, recording.spec, recording.spec.world.noise)
         expected = Snapshot(
-            RunPhase.ENDED, End.FINISHED, recording.spec, mat.field, then, record.line, speed=0.0, pen_down=False
+            RunPhase.ENDED, End.FINISHED, recording.spec, mat.field, then, line, speed=0.0, pen_down=False
         )
         shown = app.run_controller.snapshot()
         plain = replace(shown, next_spec=None, past=False, now_tick=0, now_pose=None, program=None)

@@ -333,8 +333,18 @@ class DebugController:
             if self.view and self.view.past and not self.busy:
                 self._back_to_now()
             return
-        if timeline.at is not None and self.position is None and self._panel_area.shown("debug"):
+        if timeline.at is not None and self.position is None and self._shows_past_variables():
             self._follow(Position(timeline.at))
+
+    def _shows_past_variables(self) -> bool:
+        """Return whether the program is run again up to an instant in view, for the values of its variables.
+
+        The debug panel asks for that. Beside the code it is done for runs of this session, not for stored ones, whose
+        programs may be somebody else's.
+        """
+        run, recording = self._run_controller.run, self._run_controller.timeline.recording
+        is_own = run is not None and recording is not None and run.run_id == recording.run_id
+        return self._panel_area.shown("debug") or (is_own and self._panel_area.shown("code"))
 
     def to_now(self) -> None:
         """Return to the newest instant, also from earlier lines of its own tick."""
@@ -370,7 +380,9 @@ class DebugController:
             # The user has gone to another instant since.
             self._wanted = None
             return
-        self._set_paused(PauseView(paused, inspected, True))
+        # The line that printed a chosen sample stays until one steps.
+        follows = self._wanted is not None and self._wanted.ordinal == protocol.BEFORE_NEXT_TICK
+        self._set_paused(PauseView(paused, inspected, True), keeps_printed=follows)
         self._app.situation_changed()
         if self._more_back:
             self.lines_back(0)
@@ -391,10 +403,12 @@ class DebugController:
         self._app.say(why)
         self.show()
 
-    def _set_paused(self, view: PauseView) -> None:
+    def _set_paused(self, view: PauseView, *, keeps_printed: bool = False) -> None:
         self.view = view
         line = view.paused.line if not view.paused.file else 0
-        self._run_controller.paused_line, self._run_controller.printed_line = (view.paused.tick, line), None
+        self._run_controller.paused_line = view.paused.tick, line
+        if not keeps_printed:
+            self._run_controller.printed_line = None
         self.show()
         self._app.draw(force=True)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.core.conditions import Operator, ValueCondition, ValueSource, comparison_form, run_condition_in, spelled
 from tuisim.core.field import Field
-from tuisim.core.sensors import named_column
+from tuisim.core.sensors import column_names, named_column
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.runs.brick_state import BrickState, face_after
@@ -36,6 +36,8 @@ class Timeline:
         """Tick in view, None for now."""
         self.breaks: list[int] = []
         """Ticks at which the run was paused by a breakpoint."""
+        self.searched = ""
+        """The words of the last search that found an instant."""
         self._played_s: float | None = None
         """Simulated time that playback has reached, None while it is stopped."""
         self._wall_s = 0.0
@@ -158,6 +160,23 @@ def forms(timeline: Timeline) -> list[tuple[str, str]]:
     # Nothing can be found after the newest instant: the search goes from the start.
     which = "the first" if timeline.tick >= timeline.newest else "the next"
     return [(form, meaning.replace("{which}", which)) for form, meaning in _FORMS]
+
+
+def proposal(timeline: Timeline, mat: Field | None) -> str:
+    """Return the words to search for: those of the last search, else where a light sensor's reading last changed.
+
+    That is where a robot lost its line. Empty if no reading has changed, or there is no run yet.
+    """
+    recording = timeline.recording
+    if timeline.searched or mat is None or recording is None or recording.newest < 0:
+        return timeline.searched
+    import numpy as np
+
+    names = tuple(name for name in column_names(recording.spec.robot) if name.endswith("_red_pc"))
+    values = column_values(names, recording.telemetry.array(), recording.spec, recording.actions(), mat)
+    changes = ((np.flatnonzero(np.diff(values[name][: timeline.tick + 1])), name) for name in names)
+    latest = max(((int(ticks[-1]), name) for ticks, name in changes if ticks.size), default=None)
+    return f"{latest[1]} {Operator.CHANGES} back" if latest else ""
 
 
 _HINT = f"3.5, tick 120, line 12, sample NAME, sample {comparison_form()}, COLUMN < 50, print REGEX, start or end"

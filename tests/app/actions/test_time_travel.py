@@ -243,3 +243,18 @@ async def test_a_line_of_a_module_beside_the_program_is_shown(tmp_path: Path, mo
         await pilot.press("s")
         await until(pilot, lambda: "line 2 of helper.py" in screen_text(app))
         await until(pilot, lambda: "  return by + 1" in screen_text(app))
+
+
+@pytest.mark.slow
+async def test_go_to_proposes_where_a_light_reading_last_changed(home: object) -> None:
+    program = "# %%sim_magic_preloaded -b Grey_bands -x 250\ntank_drive.on_for_seconds(50, 50, 1)\n"
+    app = LabApp(settings(program, autorun=True, speed=0.0, background="Grey_bands"))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        timeline = app.run_controller.timeline
+        await pilot.press("g", "enter")
+        assert 0 < (timeline.at or 0) < timeline.newest
+        assert timeline.searched in ("left_red_pc changes back", "right_red_pc changes back")
+        await pilot.press("g", *"x_mm", "space", ">", "space", *"300", "enter", "g")
+        assert app.screen.query_one(Input).value == timeline.searched == "x_mm > 300"

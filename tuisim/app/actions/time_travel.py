@@ -11,7 +11,7 @@ from tuisim.app.branch import Branch, action_words
 from tuisim.app.earlier_run import left_at_s, stored_before
 from tuisim.app.setup.mat import mat_key
 from tuisim.app.snapshot import RunPhase
-from tuisim.app.timeline import find, forms
+from tuisim.app.timeline import find, forms, proposal
 from tuisim.core.sensors import column_names
 from tuisim.errors import TuisimError
 
@@ -127,14 +127,16 @@ def ask_where(context: ActionContext) -> None:
 
     timeline = context.runs.timeline
 
-    def go(text: str) -> None:
-        mat = context.runs.mat
-        to_tick(context, find(text, timeline, mat.field if mat is not None else None, first_at_end=True))
+    mat = context.runs.mat
+    field = mat.field if mat is not None else None
 
-    words = column_names(context.runs.spec.robot)
-    now = f"now at {timeline.time_s:.2f} s"
-    prompt = LinePrompt("Go to", go, forms=forms(timeline), words=words, placeholder=now, sees_below=True)
-    context.app.push_screen(prompt)
+    def go(text: str) -> None:
+        to_tick(context, find(text, timeline, field, first_at_end=True))
+        timeline.searched = text
+
+    title, words = f"Go to · now at {timeline.time_s:.2f} s", column_names(context.runs.spec.robot)
+    text = proposal(timeline, field)
+    context.app.push_screen(LinePrompt(title, go, text, forms=forms(timeline), words=words, sees_below=True))
 
 
 def to_sample(context: ActionContext, words: str) -> None:
