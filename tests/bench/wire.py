@@ -41,8 +41,8 @@ _TOASTS_S = 5.0
 """No notice stays longer."""
 _PATIENCE_S = 90.0
 _DIALOGS = {
-    "help": (b"?", "Escape closes"),
-    "palette": (b"\x10", "Search for commands"),
+    "help": (b"?", "All keys"),
+    "palette": (b"\x10", "Commands"),
     "mats": (b"b", "Rainbow_bands"),
 }
 """Their keys, and words in them."""
