@@ -50,7 +50,7 @@ class TerminalFacts:
     attributes: frozenset[str] = frozenset()
     """The numbers of its features; empty if it has not answered at all."""
     has_kitty_graphics: bool | None = None
-    """Whether it draws pictures at placeholders; None if it has not been asked, False if it has not answered so far, and
+    """Whether it draws pictures at placeholders; None if it has not been asked, False while it does not answer, and
     for good once it has reported an error."""
     kitty_error: str = ""
     """What it has last reported, such as `ENOSPC:No space left`."""
