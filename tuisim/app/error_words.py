@@ -9,7 +9,9 @@ from tuisim.terminal.text_runs import cut
 
 _KIND = re.compile(r"^[\w.]+: ")
 """The class of an error, which says less than its message."""
-_MEANT = re.compile(r"'(?P<wrong>\w+)'(?: is not defined)?\. Did you mean: '(?P<meant>[\w.]+)'\?")
+_MEANT = re.compile(
+    r"'(?P<wrong>\w+)'(?: is not defined\. Did|\. Did|, did) you mean:? (?P<quote>'?)(?P<meant>[\w.]+)(?P=quote)\?"
+)
 _PARTS = re.compile(r"This robot has: (?P<parts>.*?)\.(?:\s|$)")
 _PART = re.compile(r"(\w+) lego-(?:ev3-|nxt-)?([\w-]+)")
 _ASKED = re.compile(r"(?P<what>\w+)\((?:ev3-ports:)?(?P<port>\w+)\) is not connected")
