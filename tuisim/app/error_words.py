@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from tuisim.errors import TuisimError
 from tuisim.terminal.text_runs import cut
 
 _KIND = re.compile(r"^[\w.]+: ")
@@ -61,3 +62,8 @@ def remedy(words: str) -> str:
         return f"{_missing(words)}: {parts}. {{robot}} chooses another robot"
     meant = _MEANT.search(words)
     return _asked_for(meant) if meant else ""
+
+
+def without_shell(error: TuisimError) -> str:
+    """Return an error as the app says it: without a hint that is a command of the shell."""
+    return error.message if "`tuisim " in error.hint else str(error)

@@ -8,13 +8,13 @@ from typing import Any, ClassVar, NamedTuple
 from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim import palette
 from tuisim.app.action import Action, with_keys_of
-from tuisim.app.dialogs.dialog import Dialog
+from tuisim.app.dialogs.dialog import MOVE_KEYS, Dialog
 from tuisim.terminal.text_runs import cut
 
 _WIDTH, _BESIDE = 74, 10
@@ -71,12 +71,7 @@ class SearchList(Dialog[str]):
     HINT: str = "type to search · ↑ ↓ and Enter · Escape closes"
     NOTHING: str = "Nothing found"
     """What to say where the list is empty, with ids of actions in braces."""
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(key, f"move('{action}')", show=False)
-        for key, action in (
-            ("down", "cursor_down"), ("up", "cursor_up"), ("pagedown", "page_down"), ("pageup", "page_up"),
-        )
-    ]  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = [*MOVE_KEYS]
 
     def __init__(self, entries: Sequence[Entry], current: str = "") -> None:
         super().__init__()
@@ -109,9 +104,6 @@ class SearchList(Dialog[str]):
         listed.highlighted = None if not found else names.index(self._current) if self._current in names else 0
         listed.display = bool(found)
         self.query_one("#message").display = not found
-
-    def action_move(self, action: str) -> None:
-        getattr(self.query_one(OptionList), f"action_{action}")()
 
     @on(Input.Submitted)
     def _entered(self) -> None:
