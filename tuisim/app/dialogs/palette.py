@@ -20,8 +20,8 @@ from tuisim.terminal.text_runs import cut
 _WIDTH, _BESIDE = 74, 10
 """Cells of the frame, and those of it that no line has: borders, padding, scroll bar."""
 _SHOW = "show or hide "
-_MOST_ROWS, _OTHER_ROWS = 16, 5
-"""Rows of the list at most, and those of the frame beside it."""
+_LEAST_ROWS, _OTHER_ROWS = 16, 5
+"""Rows of a long list at least, and those of the frame beside it."""
 
 
 class Entry(NamedTuple):
@@ -83,12 +83,13 @@ class SearchList(Dialog[str]):
         yield Static(with_keys_of(self.app, self.NOTHING), id="message", markup=False)
 
     def on_mount(self) -> None:
-        # It keeps its place while the list becomes shorter.
-        self.query_one(".dialog").styles.height = min(len(self._entries), _MOST_ROWS) + _OTHER_ROWS
         self.app.clear_notifications()
         self.query_one(Input).focus()
 
     def on_resize(self) -> None:
+        # It keeps its place while the list becomes shorter.
+        rows = min(len(self._entries), max(_LEAST_ROWS, self.size.height // 2))
+        self.query_one(".dialog").styles.height = rows + _OTHER_ROWS
         self._list(self.query_one(Input).value)
 
     @on(Input.Changed)
