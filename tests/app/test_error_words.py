@@ -45,7 +45,7 @@ def test_what_matters_comes_first(words: str, width: int, told: str) -> None:
     ("words", "told"),
     [
         (PORT, "no ColorSensor on in1: in1 us, in2 color, in4 gyro. {robot} chooses another robot"),
-        (TYPO, "did you mean reflected_light_intensity?"),
+        (TYPO, ""),
         ("ValueError: no", ""),
     ],
 )
