@@ -65,8 +65,8 @@ async def test_a_key_goes_to_where_they_parted() -> None:
         app = await ready(pilot)
         await run(pilot, app, STRAIGHT)
         await pilot.press("exclamation_mark")
-        none = "There is no earlier run on this mat: run the program twice, or choose a run with ="
-        await until(pilot, lambda: none in notices(app))
+        none = "No other run on this mat to compare with. g and Enter go to where"
+        await until(pilot, lambda: any(notice.startswith(none) for notice in notices(app)))
         await run(pilot, app, STRAIGHT)
         await pilot.press("exclamation_mark")
         await until(pilot, lambda: any(notice.startswith("The robot has driven as in run") for notice in notices(app)))
@@ -75,6 +75,8 @@ async def test_a_key_goes_to_where_they_parted() -> None:
         timeline = app.run_controller.timeline
         await until(pilot, lambda: timeline.at is not None)
         assert 0 < timeline.tick < 30
+        where = f"Here, at {timeline.time_s:.2f} s, it left run"
+        await until(pilot, lambda: any(notice.startswith(where) for notice in notices(app)))
 
 
 def test_without_a_run_before_it_is_the_last_stored_one_of_the_program() -> None:

@@ -49,13 +49,18 @@ def with_file(path: Path, **changes: Any) -> AppSettings:
     return AppSettings(spec=build_run_spec(chosen), settings=chosen, program=given)
 
 
-async def open_path(pilot: Pilot[Any], path: str) -> LabApp:
+async def enter_path(pilot: Pilot[Any], path: str) -> LabApp:
     app = await ready(pilot)
     await pilot.press("o")
     entry = app.screen.query_one(Input)
     entry.focus()
     entry.value = path
     await pilot.press("enter")
+    return app
+
+
+async def open_path(pilot: Pilot[Any], path: str) -> LabApp:
+    app = await enter_path(pilot, path)
     await until(pilot, lambda: len(app.screen_stack) == 1 and app.loader.mat_is_ready)
     return app
 
@@ -96,10 +101,12 @@ async def test_a_wrong_world_changes_nothing(folder: Path) -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         before = app.run_controller.next_run, app.run_controller.program
-        await open_path(pilot, "lab.toml")
+        await enter_path(pilot, "lab.toml")
         await until(pilot, lambda: any("pen.width_mm: must be a number" in notice for notice in notices(app)))
         assert (app.run_controller.next_run, app.run_controller.program) == before
         assert app.loader.world_file is None
+        # It can be corrected.
+        assert [field.value for field in app.screen.query(Input)] == ["lab.toml"]
 
 
 def with_magic(words: str) -> str:

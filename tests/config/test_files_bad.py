@@ -259,6 +259,12 @@ def test_a_missing_file_names_its_neighbour(tmp_path: Path) -> None:
         build("-r", tmp_path / "robt.toml")
 
 
+def test_a_suffix_alone_is_no_likeness(tmp_path: Path) -> None:
+    (tmp_path / "w.toml").touch()
+    with pytest.raises(RobotError, match=r"none\.toml: there is no such file$"):
+        build("-r", tmp_path / "none.toml")
+
+
 @pytest.mark.parametrize("key", ["robot", "obstacles", "profile"])
 def test_a_mistake_in_a_file_that_a_world_names_is_told_with_that_file(key: str, tmp_path: Path) -> None:
     (tmp_path / "lab.toml").write_text(f"{key} = 'sub/part.toml'")

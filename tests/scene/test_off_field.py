@@ -22,6 +22,18 @@ def test_words(pose: Pose, words: str) -> None:
     assert off_field_words(pose) == words
 
 
+@pytest.mark.parametrize(
+    ("pose", "width", "words"),
+    [
+        (Pose(8825.0, 500.0, 0.0), 33, "robot off the mat: 6463 mm right"),
+        (Pose(8825.0, 500.0, 0.0), 30, "off the mat: 6463 mm right"),
+        (Pose(8825.0, -30.0, 0.0), 33, "6463 mm right, 30 mm below"),
+    ],
+)
+def test_the_side_is_told_in_a_narrow_panel_too(pose: Pose, width: int, words: str) -> None:
+    assert off_field_words(pose, width) == words
+
+
 @pytest.mark.parametrize("pose", [Pose(-2000.0, 500.0, 0.0), Pose(500.0, 9000.0, 0.0), Pose(9000.0, -9000.0, 0.0)])
 def test_the_arrow_is_at_the_edge_towards_the_robot(pose: Pose) -> None:
     view = whole_field(80, 40)

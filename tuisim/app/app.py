@@ -27,16 +27,18 @@ from tuisim.app.debugger import DebugController
 from tuisim.app.editor.document import Document
 from tuisim.app.error_words import remedy
 from tuisim.app.feed import PanelFeed
+from tuisim.app.file_watch import PERIOD_S
 from tuisim.app.form import NumberInput
 from tuisim.app.goals import GoalsController
 from tuisim.app.keymap import check_theme, with_keys
 from tuisim.app.lesson import LessonController
-from tuisim.app.loader import PERIOD_S, Loader
+from tuisim.app.loader import Loader
 from tuisim.app.notebook_cells import do_asked
 from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages, looks_at_buttons
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
 from tuisim.app.setup import next_run as plans
+from tuisim.app.setup.mat import PATIENCE_S
 from tuisim.app.snapshot import AT_REST, GOOD_ENDS, AppState, RunPhase, Situation, busy_loop_words, end_words
 from tuisim.app.speech import Voice
 from tuisim.app.terminal_app import picture_mode_at_start
@@ -293,7 +295,7 @@ class LabApp(PanelMessages):
         if not self.loader.mat_is_ready:
             self._run_when_ready = not paused
             self.loader.prepare_mat_again()
-            self.say("Preparing the mat; the program starts right after that")
+            self.set_timer(PATIENCE_S, self.loader.tell_waiting)
             return False
         if not self.document.apply():
             return False
@@ -345,7 +347,6 @@ class LabApp(PanelMessages):
             self.run_controller.close()
             self.complain(error)
             self.situation_changed()
-
         if self._frame_timer is not None and not self._is_awake:
             self._frame_timer.pause()
 
@@ -451,8 +452,7 @@ class LabApp(PanelMessages):
         self._drawn = now
         self.feed.show()
         if output := self.panel_area.output:
-            program = self.run_controller.program
-            output.set_program(program.name if program else "")
+            output.set_program(self._program_name)
         self.panel_area.show(run)
         if force or self._footed != _footed(state):
             self._show_footer(state)

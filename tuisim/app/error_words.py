@@ -5,11 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from tuisim.errors import TuisimError
 from tuisim.terminal.text_runs import cut
 
 _KIND = re.compile(r"^[\w.]+: ")
 """The class of an error, which says less than its message."""
-_MEANT = re.compile(r"'(?P<wrong>\w+)'(?: is not defined)?\. Did you mean: '(?P<meant>[\w.]+)'\?")
+_MEANT = re.compile(
+    r"'(?P<wrong>\w+)'(?: is not defined\. Did|\. Did|, did) you mean:? (?P<quote>'?)(?P<meant>[\w.]+)(?P=quote)\?"
+)
 _PARTS = re.compile(r"This robot has: (?P<parts>.*?)\.(?:\s|$)")
 _PART = re.compile(r"(\w+) lego-(?:ev3-|nxt-)?([\w-]+)")
 _ASKED = re.compile(r"(?P<what>\w+)\((?:ev3-ports:)?(?P<port>\w+)\) is not connected")
@@ -27,7 +30,7 @@ def _tellings(words: str) -> Iterator[str]:
     elif meant := _MEANT.search(words):
         yield _KIND.sub("", words)
         yield f"no {meant['wrong']}: did you mean {meant['meant']}?"
-        yield _asked_for(meant)
+        yield f"did you mean {meant['meant']}?"
         yield f"{meant['meant']}?"
     yield _KIND.sub("", words)
 
@@ -35,10 +38,6 @@ def _tellings(words: str) -> Iterator[str]:
 def _missing(words: str) -> str:
     asked = _ASKED.search(words)
     return f"no {asked['what']} on {asked['port']}" if asked else "not on this port"
-
-
-def _asked_for(meant: re.Match[str]) -> str:
-    return f"did you mean {meant['meant']}?"
 
 
 def _parts(words: str) -> str | None:
@@ -54,8 +53,14 @@ def fitting(words: str, width: int) -> str:
 
 
 def remedy(words: str) -> str:
-    """Return what to do about an error in few words, with ids of actions in braces; empty if it does not say that."""
-    if (parts := _parts(words)) is not None:
-        return f"{_missing(words)}: {parts}. {{robot}} chooses another robot"
-    meant = _MEANT.search(words)
-    return _asked_for(meant) if meant else ""
+    """Return what to do in the app about an error, with ids of actions in braces; empty for nothing.
+
+    Which name was meant is told by the error itself.
+    """
+    parts = _parts(words)
+    return "" if parts is None else f"{_missing(words)}: {parts}. {{robot}} chooses another robot"
+
+
+def without_shell(error: TuisimError) -> str:
+    """Return an error as the app says it: without a hint that is a command of the shell."""
+    return error.message if "`tuisim " in error.hint else str(error)

@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.app import background
+from tuisim.app.file_watch import FileWatch
 from tuisim.app.setup import next_run as plans
-from tuisim.app.setup.mat import Mat, blank_mat, mat_key, prepare_mat, prepare_mat_of
+from tuisim.app.setup.mat import SOON, Mat, blank_mat, mat_key, prepare_mat, prepare_mat_of
 from tuisim.app.setup.next_run import NextRun, plan_of_run, with_arguments
 from tuisim.app.snapshot import end_label
 from tuisim.config.files import means_file
@@ -106,6 +107,11 @@ class Loader:
         """Prepare the mat once more if that has failed."""
         if not self.is_preparing:
             self.prepare_mat()
+
+    def tell_waiting(self) -> None:
+        """Say that a run waits for the mat, if it still does."""
+        if not self.mat_is_ready:
+            self._app.say(SOON)
 
     def _mat_failed(self, spec: RunSpec, error: TuisimError) -> None:
         """Report the error in a mat, and restore the previous mat."""
@@ -523,48 +529,6 @@ def _differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str,
     bare = Settings()
     removed = {path: bare[path] for path in before.keys() - now.keys() if path in plans.WORLD_PATHS}
     return removed | {path: value for path, value in now.items() if path not in before or before[path] != value}
-
-
-PERIOD_S = 1.0
-"""Seconds between two checks for changed files."""
-
-_Stamp = tuple[int, int, int]
-
-
-def _stamp(path: Path) -> _Stamp | None:
-    """Return what tells two versions of a file apart, or None if there is no file."""
-    try:
-        found = os.stat(path)
-    except (OSError, ValueError):
-        return None
-    # Editors write a new file and rename it: that one has another inode, whatever its time and size.
-    return found.st_mtime_ns, found.st_size, found.st_ino
-
-
-class FileWatch:
-    """Detects changed files. A check costs one `stat` per file; nothing is read."""
-
-    def __init__(self) -> None:
-        self._known: dict[Path, _Stamp | None] = {}
-
-    def follow(self, paths: Iterable[Path]) -> None:
-        """Watch these files and no others; files already watched keep their state."""
-        self._known = {path: self._known[path] if path in self._known else _stamp(path) for path in paths}
-
-    def note(self, path: Path) -> None:
-        """Accept the current version of a file: the app itself changed it."""
-        if path in self._known:
-            self._known[path] = _stamp(path)
-
-    def changed(self) -> list[Path]:
-        """Return the files that are new or changed since the last call. A deleted file may come back."""
-        found = []
-        for path, known in self._known.items():
-            now = _stamp(path)
-            if now is not None and now != known:
-                self._known[path] = now
-                found.append(path)
-        return found
 
 
 def program_of(run: StoredRun) -> Program:

@@ -208,6 +208,7 @@ class RunController:
             face=face,
             turns=turns,
             pressed=self._pressed_at(record),
+            placed=recording is not None and self._moved and not past,
             past=past,
             now_tick=now_tick,
             now_pose=newest.pose if newest and past else None,

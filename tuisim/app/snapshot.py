@@ -74,6 +74,8 @@ class Snapshot:
     pressed: frozenset[str] = frozenset()
     """The brick's buttons that are held down."""
 
+    placed: bool = False
+    """Whether the robot was placed since the run, so that this is what the next one begins with."""
     past: bool = False
     """Whether this is a past instant, and not the newest one."""
     now_tick: int = 0

@@ -177,12 +177,13 @@ def _neighbours(path: Path) -> str:
 
 
 def close_beside(path: Path, suffixes: Collection[str]) -> list[str]:
-    """Return the names of files beside a missing one that are like its name."""
+    """Return the names of files beside a missing one that are like its name; the suffixes do not count."""
     try:
-        beside = [other.name for other in path.parent.iterdir() if other.suffix.lower() in suffixes]
+        beside = sorted(other for other in path.parent.iterdir() if other.suffix.lower() in suffixes)
     except (OSError, ValueError):
         return []
-    return closest(path.name, beside)
+    close = closest(path.stem, [other.stem for other in beside])
+    return [other.name for stem in close for other in beside if other.stem == stem]
 
 
 def parse_toml(text: str, file: str, error: type[ConfigError]) -> Any:

@@ -16,14 +16,23 @@ _ARROW_CELLS = 4.0
 """Length of the arrow, in widths of a cell."""
 
 
-def off_field_words(pose: Pose) -> str:
-    """Return how far the middle of a robot is off the field, empty if it is on it."""
+def off_field_words(pose: Pose, width: int = 80) -> str:
+    """Return how far the middle of a robot is off the field, and on which side; empty if it is on it.
+
+    Args:
+        pose: Of the robot.
+        width: Letters that there is room for.
+    """
     sides = (
         (-pose.x_mm, "to the left"), (pose.x_mm - FIELD_WIDTH_MM, "to the right"),
         (pose.y_mm - FIELD_HEIGHT_MM, "above"), (-pose.y_mm, "below"),
     )  # fmt: skip
     words = ", ".join(f"{away_mm:.0f} mm {side}" for away_mm, side in sides if away_mm > 0)
-    return f"robot off the mat: {words}" if words else ""
+    if not words:
+        return ""
+    brief = words.replace("to the ", "")
+    tellings = (f"robot off the mat: {words}", f"robot off the mat: {brief}", f"off the mat: {brief}", brief)
+    return next((telling for telling in tellings if len(telling) <= width), brief)
 
 
 def draw_arrow_to(picture: Pixels, view: Viewport, pose: Pose, reach_px: float, rgb: Rgb) -> None:

@@ -15,6 +15,7 @@ from tuisim.app.action import fitting
 from tuisim.app.actions.keys import ACTIONS, footer_actions, working
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.app import LabApp
+from tuisim.app.dialogs.question import Question
 from tuisim.app.form import NumberInput
 from tuisim.app.snapshot import RunPhase, Situation
 from tuisim.config.build import build_run_spec
@@ -127,6 +128,13 @@ async def test_under_a_dialog_the_footer_names_only_keys_that_work_in_it(key: st
         assert not [word for word in others if f" {word} " in last_line(pilot)]
         await pilot.press("escape")
         await until(pilot, lambda: "R run" in last_line(pilot))
+
+
+async def test_the_footer_names_the_answers_to_a_question() -> None:
+    async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await app.push_screen(Question("Unsaved changes", "", (("s", "Save them"), ("d", "Discard them"))))
+        await until(pilot, lambda: last_line(pilot).startswith(" s save them d discard them esc close "))
 
 
 async def test_letters_are_no_keys_of_a_dialog_while_its_field_has_the_focus() -> None:

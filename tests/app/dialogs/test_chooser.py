@@ -6,23 +6,65 @@ from pathlib import Path
 
 import pytest
 from textual.app import App
-from textual.widgets import Input
+from textual.widgets import Input, OptionList
 from textual.widgets._toast import Toast
 
 from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser, files_here
+from tuisim.errors import ConfigError
+
+GROUPS = [
+    ChoiceGroup("Here", [("/x/mine.py", "mine.py", "")]),
+    ChoiceGroup("Examples", [("/e/data_log.py", "data_log.py", "second"), ("/e/log.py", "log.py", "a log of greys")]),
+]
 
 
-async def test_what_is_typed_goes_into_the_field_and_is_chosen() -> None:
+def no_file(word: str) -> None:
+    if not word.startswith("/"):
+        raise ConfigError("there is no such program", "see `tuisim programs` for examples", file=word)
+
+
+@pytest.mark.parametrize(
+    ("typed", "listed", "result"),
+    [
+        ("log", ["data_log.py", "log.py"], "/e/log.py"),
+        ("log sec", ["data_log.py"], "/e/data_log.py"),
+        ("/f/other.py", [], "/f/other.py"),
+        ("nope", [], None),
+    ],
+    ids=["name", "words", "path", "nothing"],
+)
+async def test_what_is_typed_searches_the_list_or_is_a_path(typed: str, listed: list[str], result: str | None) -> None:
     chosen: list[str | None] = []
     app: App[None] = App()
     async with app.run_test() as pilot:
-        app.push_screen(
-            Chooser("Open", [ChoiceGroup("Here", [("a.py", "a.py", "first")])], path_hint="path"), chosen.append
-        )
+        app.push_screen(Chooser("Open", GROUPS, path_hint="path", read=no_file), chosen.append)
         await pilot.pause()
-        await pilot.press(*"nope.py", "enter")
+        rows = app.screen.query_one(OptionList).size.height
+        await pilot.press(*typed)
         await pilot.pause()
-    assert chosen == ["nope.py"]
+        dialog = app.screen
+        values = [option.id for option in dialog.query_one(OptionList).options if option.id]
+        assert [Path(value).name for value in values] == listed
+        # It keeps its place.
+        assert dialog.query_one(OptionList).size.height == rows
+        await pilot.press("enter")
+        await pilot.pause()
+        assert chosen == ([result] if result else [])
+        if not result:
+            assert app.screen is dialog
+            assert dialog.query_one(Input).value == typed
+            assert [str(one.message) for one in app._notifications] == [f"{typed}: there is no such program"]
+
+
+async def test_the_arrows_move_in_the_list_while_one_types() -> None:
+    chosen: list[str | None] = []
+    app: App[None] = App()
+    async with app.run_test() as pilot:
+        app.push_screen(Chooser("Open", GROUPS, path_hint="path", read=no_file), chosen.append)
+        await pilot.pause()
+        await pilot.press(*"log", "up", "enter")
+        await pilot.pause()
+    assert chosen == ["/e/data_log.py"]
 
 
 async def test_enter_without_typing_takes_the_list() -> None:

@@ -110,11 +110,13 @@ async def test_a_program_with_a_syntax_error_opens_at_its_line(size: tuple[int, 
     async with LabApp(settings(WRONG)).run_test(size=size) as pilot:
         app = await ready(pilot)
         await until_shown(pilot, "print((1)")
-        assert app.panel_area.code is not None
-        assert app.panel_area.code.error_line == 61
+        code = app.panel_area.code
+        assert code is not None
+        assert code.error_line == 61
         # No notice: the reason stays at the mark.
         assert notices(app) == []
-        assert "line 61" in str(app.panel_area.code.border_subtitle)
+        # It is written once the panel knows its width.
+        await until(pilot, lambda: "line 61" in str(code.border_subtitle))
 
 
 async def test_a_right_program_opens_as_before() -> None:

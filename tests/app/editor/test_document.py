@@ -105,6 +105,23 @@ async def test_text_with_a_mistake_does_not_run_and_leaves_the_world_alone(tmp_p
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
 
 
+async def test_a_program_opened_without_its_mat_runs_only_on_one_that_is_chosen(tmp_path: Path) -> None:
+    wrong = "# %%sim_magic_preloaded -b Grey_bnds\n" + TEXT
+    async with LabApp(own(tmp_path / "prog.py", wrong)).run_test(size=(120, 40)) as pilot:
+        app, code = await begun(pilot)
+        await until(pilot, lambda: code.error_line == 1)
+        told = "prog.py cannot run: line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
+        # The frame of the code is too narrow for all of it.
+        assert "prog.py cannot run" in screen_text(app)
+        assert str(code.border_subtitle) == "no Grey_bnds: did you mean Grey_bands?"
+        assert not app.document.apply()
+        await pilot.pause()
+        assert told in notices(app)
+        assert code.error_line == 1
+        app.loader.change_mat("Square")
+        assert app.document.apply()
+
+
 async def test_a_small_panel_keeps_the_whole_place_where_the_text_cannot_run(tmp_path: Path) -> None:
     async with LabApp(own(tmp_path / "prog.py")).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)

@@ -50,6 +50,12 @@ def test_a_heading_is_shown_within_half_a_turn(heading_deg: float, shown: str) -
     assert now.instant.pose.heading_deg == heading_deg
 
 
+def test_a_robot_that_was_moved_after_its_run_is_not_called_finished() -> None:
+    now = moment(state=RunPhase.ENDED, end=End.FINISHED, time_s=0.0)
+    assert "finished" in text(now, 44, 14)[-1]
+    assert text(replace(now, placed=True), 44, 14)[-1].split()[:2] == ["State", "moved"]
+
+
 @pytest.mark.parametrize(
     ("width", "names", "pose"),
     [

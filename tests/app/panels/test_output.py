@@ -102,6 +102,18 @@ async def test_carets_are_left_out_where_they_would_point_elsewhere() -> None:
         ]
 
 
+async def test_carets_whose_line_is_out_of_view_are_left_out() -> None:
+    async with Frame(Log()).run_test(size=(30, 4)) as pilot:
+        log = pilot.app.query_one(Log)
+        log.add([row(text, Stream.STDERR) for text in ("    x = y", "        ^", "SyntaxError: no", "")])
+        await pilot.pause()
+        height = log.size.height
+        assert lines(pilot.app)[0] == "    x = y"
+        log.add([row("— error", Stream.NOTE)] * (5 - height))
+        await pilot.pause()
+        assert [line.strip() for line in lines(pilot.app)][:2] == ["", "SyntaxError: no"]
+
+
 async def test_only_the_newest_lines_are_kept_and_the_others_counted() -> None:
     async with Frame(Log()).run_test(size=(50, 4)) as pilot:
         log = pilot.app.query_one(Log)

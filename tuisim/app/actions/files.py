@@ -210,6 +210,11 @@ def _type(context: ActionContext) -> None:
         code.start_typing(at_error=True)
 
 
+def save_program(context: ActionContext) -> None:
+    """Save the program to its file, or ask for one."""
+    context.document.save()
+
+
 def edit_in_own_editor(context: ActionContext) -> None:
     """Open the program's file in the editor that the environment names; unsaved changes are saved before."""
     context.document.when_in_file(partial(_open_in_own_editor, context))

@@ -158,6 +158,9 @@ def _debugs() -> list[LabAction]:
     ]
 
 
+_PARTING = "Where this run left the earlier one"
+
+
 def _travels() -> list[LabAction]:
     back, on = _can_look_back, _can_look_on
     keys = "< >"
@@ -173,7 +176,9 @@ def _travels() -> list[LabAction]:
         Action("next-sample", "right_parenthesis", "Next sample", TIME, next_sample, on),
         Action("go-to", "g", "Go to a time, tick, line, sample or print", TIME, go.ask_where, back, "go to"),
         Action("branch", "y", "Branch from this instant", TIME, go.propose_branch, _can_branch, "branch"),
-        Action("parting", "exclamation_mark", "Where this run left the earlier one", TIME, go.to_parting, back),
+        Action(
+            "parting", "exclamation_mark", "Where this run left the earlier one", TIME, go.to_parting, back, "parting"
+        ),
         Action("start-of-run", "home", "Start of the run", TIME, partial(go.to_tick, tick=0), back),
     ]
 
@@ -200,7 +205,8 @@ _WORDS: Mapping[str, str] = {
     "faster": "speed pace speed up simulation time",
     "save-world": "write mat pose scene",
     "mats": "map background field floor world grey bands line",
-    "edit": "write change save the program text code editor",
+    "edit": "write change the program text code editor",
+    "save-program": "write file keep text code",
     "own-editor": "vim nano emacs external editor",
     "open": "load file",
     "run": "start play go execute",
@@ -262,6 +268,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("open", "o", "Open a program, a world or goals", FILES, files.open_program, _can_change_world, "open"),
         Action("begin", "f4", "Begin: a new program, or go on with one", FILES, files.welcome, _can_change_world),
         Action("edit", "d", "Edit the program", FILES, files.edit, footer="edit"),
+        Action("save-program", "f3", "Save the program (in the code also ctrl+s)", FILES, files.save_program),
         Action("own-editor", "ctrl+e", "Edit the program in $EDITOR", FILES, files.edit_in_own_editor),
         Action("new", "ctrl+t", "New program: mat, sensor, text", FILES, files.new_program, _can_change_world, "new"),
         Action("mats", "b", "Choose a mat", ROBOT, robot.choose_mat, _can_change_world, "mats"),
@@ -330,7 +337,9 @@ def _next_steps(now: Situation) -> tuple[str, ...]:
         return ("stop", "pause")
     if now.reads_code:
         return ("run", *(("analyse", "panel-chart") if now.has_run else ()), "edit", *code)
-    return ("run", "analyse", "export", "panel-chart", "edit") if now.has_run else ("run", "open", "edit", "mats")
+    if now.has_run:
+        return ("run", "analyse", "export", "panel-chart", "edit", "back", "parting")
+    return ("run", "open", "edit", "mats")
 
 
 PAGES = frozenset({"lesson-up", "lesson-down"})

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext
     from tuisim.runs.recorded_run import Recording
 
-_NO_EARLIER = "There is no earlier run on this mat: run the program twice, or choose a run with {compare}"
+_SEEK = "{go-to} and Enter go to where a light reading last changed"
+_NO_EARLIER = f"No other run on this mat to compare with. {_SEEK}, {{compare}} chooses a run"
 MANY_TICKS = 10
 """Ticks that `:` runs."""
 
@@ -134,7 +135,9 @@ def ask_where(context: ActionContext) -> None:
         to_tick(context, find(text, timeline, field, first_at_end=True))
         timeline.searched = text
 
-    title, words = f"Go to · now at {timeline.time_s:.2f} s", column_names(context.runs.spec.robot)
+    goes_on = context.runs.state in (RunPhase.STARTING, RunPhase.RUNNING) and not context.runs.in_past
+    title = "Go to · pauses the program" if goes_on else f"Go to · now at {timeline.time_s:.2f} s"
+    words = column_names(context.runs.spec.robot)
     text = proposal(timeline, field)
     context.app.push_screen(LinePrompt(title, go, text, forms=forms(timeline), words=words, sees_below=True))
 
@@ -171,11 +174,11 @@ def to_parting(context: ActionContext) -> None:
         if drawn is None:
             context.runs.show_earlier(earlier)
         if time_s is None:
-            context.app.say(f"The robot has driven as in {earlier.name}")
+            context.app.say(f"The robot has driven as in {earlier.name}. {_SEEK}")
         else:
             to_time(context, time_s)
-            if drawn is None:
-                context.app.say(f"Here it left {earlier.name}, the last one of this program before it")
+            which = "" if drawn else ", the last one of this program before it"
+            context.app.say(f"Here, at {time_s:.2f} s, it left {earlier.name}{which}")
 
     background.run(context.panels, compared, go, context.app.complain, group="diff", exclusive=True)
 

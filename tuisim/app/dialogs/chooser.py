@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from rich.text import Text
 from textual import events, on
 from textual.app import ComposeResult
+from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim.app import background
-from tuisim.app.dialogs.dialog import Dialog, name_and_title
+from tuisim.app.dialogs.dialog import MOVE_KEYS, Dialog, name_and_title
 from tuisim.app.dialogs.save import typed_path
+from tuisim.app.error_words import without_shell
+from tuisim.config.folders import user_path
 from tuisim.config.mat_image import decode, read_file
 from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import OBSTACLES, load_obstacles
@@ -78,6 +82,8 @@ def _passes(fits: Callable[[Path], object], path: Path) -> bool:
 class ListDialog(Dialog[str]):
     """A list, usually with a field for a path. Its result is what was chosen or typed."""
 
+    BINDINGS: ClassVar[list[BindingType]] = [*MOVE_KEYS]
+
     def on_mount(self) -> None:
         # What was said before would cover the lowest rows of a small window.
         self.app.clear_notifications()
@@ -100,60 +106,131 @@ class ListDialog(Dialog[str]):
         if typed := event.value.strip():
             try:
                 typed_path(typed)
+                self.read(typed)
             except TuisimError as error:
-                self.app.notify(str(error), severity="error", markup=False)
+                self.unread(error)
             else:
                 self.dismiss(typed)
 
+    def read(self, typed: str) -> object:
+        """Read what a typed name or path stands for.
+
+        Raises:
+            TuisimError: it stands for nothing that can be chosen.
+        """
+        return typed
+
+    def unread(self, error: TuisimError) -> None:
+        """Say why nothing can be chosen by what was typed, which stays to be corrected."""
+        self.app.notify(without_shell(error), severity="error", markup=False)
+
 
 class Chooser(ListDialog):
-    """Returns the name or the path that was chosen.
+    """Returns the name or the path that was chosen. What is typed searches the list, and may be a path.
 
     Args:
         title: Title of the dialog.
         groups: The list; empty groups are omitted.
         current: The current value, selected at first.
-        path_hint: Placeholder of the path field; without it there is no field.
+        path_hint: What the field takes beside words to search for; without it there is no field.
+        read: Reads what a name or a path stands for; raises a TuisimError.
     """
 
     HINT: str = "Enter selects · Escape closes"
 
-    def __init__(self, title: str, groups: Sequence[ChoiceGroup], current: str = "", path_hint: str = "") -> None:
+    def __init__(
+        self,
+        title: str,
+        groups: Sequence[ChoiceGroup],
+        current: str = "",
+        path_hint: str = "",
+        read: Callable[[str], object] = str,
+    ) -> None:
         super().__init__()
         self.TITLE_TEXT = title
         if path_hint:
-            self.HINT = "Enter selects · tab to the field · Escape closes"
+            self.HINT = "Enter selects · type to search · Escape closes"
         self._groups = [group for group in groups if group.entries]
         self._current = current
         self._path_hint = path_hint
+        self._read = read
+        titled = [name for group in self._groups for _, name, title in group.entries if title]
+        self._name_cells = max(map(len, titled), default=0)
 
     def content(self) -> ComposeResult:
         if self._path_hint:
-            yield Input(placeholder=self._path_hint, compact=True, select_on_focus=False)
+            yield self.field()
         yield self.listed()
+
+    def field(self) -> Input:
+        """Return the field."""
+        return Input(placeholder=f"Search, or the {self._path_hint}", compact=True, select_on_focus=False)
 
     def listed(self) -> OptionList:
         """Return the list."""
+        listed = OptionList(*self._options(self._groups))
+        names = [option.id for option in listed.options]
+        if self._current in names:
+            listed.highlighted = names.index(self._current)
+        return listed
+
+    def _options(self, groups: Iterable[ChoiceGroup]) -> list[Option | None]:
         options: list[Option | None] = []
-        titled = [name for group in self._groups for _, name, title in group.entries if title]
-        wide = max(map(len, titled), default=0)
-        for group in self._groups:
+        for group in groups:
             if options:
                 options.append(None)
             if group.title:
                 options.append(Option(Text(group.title, "italic"), disabled=True))
             options += [
-                Option(name_and_title(name, title, wide) if title else Text(name, "bold"), id=chosen)
+                Option(name_and_title(name, title, self._name_cells) if title else Text(name, "bold"), id=chosen)
                 for chosen, name, title in group.entries[:MAX_FILES]
             ]
             if len(group.entries) > MAX_FILES:
                 more = f"… and {len(group.entries) - MAX_FILES} more: type the name"
                 options.append(Option(Text(more), disabled=True))
-        listed = OptionList(*options)
-        names = [option.id for option in listed.options]
-        if self._current in names:
-            listed.highlighted = names.index(self._current)
-        return listed
+        return options
+
+    @on(Input.Changed)
+    def _search(self, event: Input.Changed) -> None:
+        listed, typed = self.query_one(OptionList), event.value.strip()
+        # The dialog keeps its place while the list becomes shorter.
+        listed.styles.height = listed.outer_size.height if typed else None
+        found = searched(self._groups, typed)
+        listed.clear_options()
+        listed.add_options(self._options(found))
+        if found:
+            best = best_match(found, typed) if typed else self._current
+            listed.highlighted = next((at for at, one in enumerate(listed.options) if one.id == best), None)
+
+    def read(self, typed: str) -> object:
+        """Read what a typed name or path stands for."""
+        return self._read(typed)
+
+    def unread(self, error: TuisimError) -> None:
+        """Choose what the search has found; without that, say what is wrong."""
+        listed = self.query_one(OptionList)
+        if listed.highlighted is None:
+            super().unread(error)
+        else:
+            listed.action_select()
+
+
+def searched(groups: Iterable[ChoiceGroup], typed: str) -> list[ChoiceGroup]:
+    """Return the entries whose names or titles have every word of a text, in their groups."""
+    words = typed.lower().split()
+
+    def fits(entry: tuple[str, str, str]) -> bool:
+        return all(word in f"{entry[1]} {entry[2]}".lower() for word in words)
+
+    found = (replace(group, entries=[*filter(fits, group.entries)]) for group in groups)
+    return [group for group in found if group.entries]
+
+
+def best_match(groups: Iterable[ChoiceGroup], typed: str) -> str:
+    """Return the value of the entry that a text means: whose name begins with it, else has it, else the first one."""
+    entries = [entry for group in groups for entry in group.entries]
+    wanted = typed.lower()
+    return min(entries, key=lambda entry: (not entry[1].lower().startswith(wanted), wanted not in entry[1].lower()))[0]
 
 
 def program_chooser() -> Chooser:
@@ -174,8 +251,22 @@ def program_chooser() -> Chooser:
         ChoiceGroup("Examples", [(str(path), name, title) for name, path, title in examples]),
         ChoiceGroup("Examples of goals", [(str(path), path.name, title_of(path)) for path in goals]),
     ]
-    hint = "Path of a program, world or goals file, or choose below"
-    return Chooser("Programs, worlds and goals", groups, path_hint=hint)
+    hint = "path of a program, world or goals file"
+    return Chooser("Programs, worlds and goals", groups, path_hint=hint, read=_read_openable)
+
+
+def _read_openable(word: str) -> object:
+    """Read a program, a world or goals.
+
+    Raises:
+        ConfigError: there is no such file, or it is wrong.
+    """
+    from tuisim.config.program_file import find_program, read_program
+    from tuisim.config.worlds import means_world
+    from tuisim.goals.files import load_task
+
+    path = find_program(str(user_path(word)))
+    return load_task(path) if means_world(word) else read_program(path)
 
 
 def obstacle_chooser(plan: NextRun) -> Chooser:
@@ -185,7 +276,9 @@ def obstacle_chooser(plan: NextRun) -> Chooser:
         for name, boxes in OBSTACLES.items()
     ]
     groups = [ChoiceGroup("", presets), files_here([".toml", ".json"], lambda path: load_obstacles(str(path)))]
-    return Chooser("Obstacles", groups, plan.words.get("obstacles", ""), "Path of a .toml or .json file")
+    return Chooser(
+        "Obstacles", groups, plan.words.get("obstacles", ""), "path of a .toml or .json file", load_obstacles
+    )
 
 
 def profile_chooser(plan: NextRun) -> Chooser:
@@ -195,7 +288,7 @@ def profile_chooser(plan: NextRun) -> Chooser:
         for name, p in PROFILES.items()
     ]
     groups = [ChoiceGroup("", presets), files_here([".toml"], lambda path: load_profile(str(path)))]
-    return Chooser("Profiles", groups, plan.words.get("profile", ""), "Path of a profile's .toml file")
+    return Chooser("Profiles", groups, plan.words.get("profile", ""), "path of a profile's .toml file", load_profile)
 
 
 WIDEST_NAME = 32
@@ -231,6 +324,10 @@ class MatPicker(ListDialog):
                 yield _MatPicture()
                 yield Static(id="title", markup=False)
         yield Input(placeholder="Or the path of an image of your own", compact=True, select_on_focus=False)
+
+    def read(self, typed: str) -> object:
+        """Find the mat of a typed name or path."""
+        return find_mat(typed, self._folder)
 
     def on_mount(self) -> None:
         self.call_after_refresh(self._begin)

@@ -20,7 +20,7 @@ from textual.keys import key_to_character
 from textual.message import Message
 from textual.renderables.background_screen import BackgroundScreen
 from textual.strip import Strip
-from textual.widgets import Input, Static
+from textual.widgets import Input, OptionList, Static
 
 from tuisim.app import background
 from tuisim.app.action import KeyWord, label_of_key
@@ -47,6 +47,14 @@ def name_and_title(name: str, title: str, name_cells: int) -> Table:
     table.add_row(Text(name), Text(title))
     return table
 
+
+MOVE_KEYS = [
+    Binding(key, f"move('{action}')", show=False)
+    for key, action in (
+        ("down", "cursor_down"), ("up", "cursor_up"), ("pagedown", "page_down"), ("pageup", "page_up"),
+    )
+]  # fmt: skip
+"""The keys that move the selection of a list also while a field has the focus."""
 
 _TRANSPARENT = Color(0, 0, 0, 0)
 
@@ -207,3 +215,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
 
     def action_leave(self) -> None:
         self.dismiss(None)
+
+    def action_move(self, action: str) -> None:
+        """Do an action of the list, see `MOVE_KEYS`."""
+        getattr(self.query_one(OptionList), f"action_{action}")()

@@ -8,20 +8,20 @@ from typing import Any, ClassVar, NamedTuple
 from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
+from textual.binding import BindingType
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim import palette
 from tuisim.app.action import Action, with_keys_of
-from tuisim.app.dialogs.dialog import Dialog
+from tuisim.app.dialogs.dialog import MOVE_KEYS, Dialog
 from tuisim.terminal.text_runs import cut
 
 _WIDTH, _BESIDE = 74, 10
 """Cells of the frame, and those of it that no line has: borders, padding, scroll bar."""
 _SHOW = "show or hide "
-_MOST_ROWS, _OTHER_ROWS = 16, 5
-"""Rows of the list at most, and those of the frame beside it."""
+_LEAST_ROWS, _OTHER_ROWS = 16, 5
+"""Rows of a long list at least, and those of the frame beside it."""
 
 
 class Entry(NamedTuple):
@@ -71,12 +71,7 @@ class SearchList(Dialog[str]):
     HINT: str = "type to search · ↑ ↓ and Enter · Escape closes"
     NOTHING: str = "Nothing found"
     """What to say where the list is empty, with ids of actions in braces."""
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(key, f"move('{action}')", show=False)
-        for key, action in (
-            ("down", "cursor_down"), ("up", "cursor_up"), ("pagedown", "page_down"), ("pageup", "page_up"),
-        )
-    ]  # fmt: skip
+    BINDINGS: ClassVar[list[BindingType]] = [*MOVE_KEYS]
 
     def __init__(self, entries: Sequence[Entry], current: str = "") -> None:
         super().__init__()
@@ -88,12 +83,13 @@ class SearchList(Dialog[str]):
         yield Static(with_keys_of(self.app, self.NOTHING), id="message", markup=False)
 
     def on_mount(self) -> None:
-        # It keeps its place while the list becomes shorter.
-        self.query_one(".dialog").styles.height = min(len(self._entries), _MOST_ROWS) + _OTHER_ROWS
         self.app.clear_notifications()
         self.query_one(Input).focus()
 
     def on_resize(self) -> None:
+        # It keeps its place while the list becomes shorter.
+        rows = min(len(self._entries), max(_LEAST_ROWS, self.size.height // 2))
+        self.query_one(".dialog").styles.height = rows + _OTHER_ROWS
         self._list(self.query_one(Input).value)
 
     @on(Input.Changed)
@@ -109,9 +105,6 @@ class SearchList(Dialog[str]):
         listed.highlighted = None if not found else names.index(self._current) if self._current in names else 0
         listed.display = bool(found)
         self.query_one("#message").display = not found
-
-    def action_move(self, action: str) -> None:
-        getattr(self.query_one(OptionList), f"action_{action}")()
 
     @on(Input.Submitted)
     def _entered(self) -> None:

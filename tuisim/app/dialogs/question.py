@@ -13,6 +13,7 @@ from textual.binding import Binding, BindingType
 from textual.suggester import SuggestionReady
 from textual.widgets import Input, Static
 
+from tuisim.app.action import KeyWord
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.errors import TuisimError
 from tuisim.terminal.text_runs import as_markup
@@ -46,6 +47,11 @@ class Question(Dialog[str]):
         yield Static()
         words = (f"[@click=screen.answer('{key}')]  {key}  {does}  [/]" for key, does in self._answers)
         yield Static("   ".join(words), classes="link")
+
+    @property
+    def keys(self) -> tuple[KeyWord, ...]:
+        """The answers, then Escape."""
+        return (*((key, does[:1].lower() + does[1:]) for key, does in self._answers), *super().keys)
 
     def on_key(self, event: events.Key) -> None:
         key = self._answers[0][0] if event.key == "enter" else event.key
@@ -232,6 +238,10 @@ class LinePrompt(Dialog[bool]):
             yield Static(" · ".join(form for form, _ in self._forms), markup=False)
         else:
             yield form_list(self._forms)
+
+    def on_mount(self) -> None:
+        # It would cover a dialog at the bottom.
+        self.app.clear_notifications()
 
     @on(Input.Submitted)
     def _entered(self, event: Input.Submitted) -> None:

@@ -13,11 +13,11 @@ from rich.style import Style
 from textual import on
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
-from textual.widgets import Input, OptionList
+from textual.widgets import OptionList
 
 from tuisim import palette
 from tuisim.app.dialogs.chooser import WIDEST_NAME, ChoiceGroup, Chooser, files_here
-from tuisim.config.robots import ROBOTS, load_robot
+from tuisim.config.robots import ROBOTS, choose_robot, load_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import ColorSensorSpec, RobotSpec, SensorSpec, TouchSpec
@@ -69,7 +69,7 @@ class RobotPicker(Chooser):
     """
 
     def __init__(self, groups: Sequence[ChoiceGroup], current: str, robots: Mapping[str, RobotSpec]) -> None:
-        super().__init__("Robots", groups, current, "Path of a robot's .toml or .json file")
+        super().__init__("Robots", groups, current, "path of a robot's .toml or .json file", choose_robot)
         self._robots = dict(robots)
 
     def content(self) -> ComposeResult:
@@ -81,7 +81,7 @@ class RobotPicker(Chooser):
             with Vertical():
                 yield RobotPicture()
                 yield RobotParts()
-        yield Input(placeholder=self._path_hint, compact=True, select_on_focus=False)
+        yield self.field()
 
     @on(OptionList.OptionHighlighted)
     def _highlighted(self, event: OptionList.OptionHighlighted) -> None:

@@ -18,6 +18,8 @@ from tuisim.app.editor.text_file import (
     write_text,
 )
 from tuisim.app.editor.text_lines import LineMap, differing_lines
+from tuisim.config.magic_mat import wrong_mat
+from tuisim.config.options import Settings
 from tuisim.errors import ConfigError, TuisimError, counted
 from tuisim.source import source_lines
 
@@ -93,6 +95,9 @@ class Document:
         self._seeks_error = True
         self._panel_area.open("code")
         self.show()
+        # The frame of a narrow panel has no room for all of it.
+        if output := self._panel_area.output:
+            output.note(f"— {self._cannot_run(mistake)}")
 
     def introduce(self) -> None:
         """Show the open program, which may have changed."""
@@ -277,13 +282,24 @@ class Document:
         if self._name == NEW_NAME and not self._path:
             # What has run is worth saving.
             self._saved = ""
-        if self._is_applied:
+        is_applied = self._is_applied
+        if is_applied and not self._lacks_mat:
             return True
         # A typing error in the magic line must not change the mat.
         if mistake := self._mistake():
-            self._app.complain(TuisimError(f"{self._name} cannot run: {mistake.message}"))
+            self._app.complain(TuisimError(self._cannot_run(mistake)))
             return False
-        return self._apply_text()
+        return is_applied or self._apply_text()
+
+    def _cannot_run(self, mistake: Mistake) -> str:
+        return f"{self._name} cannot run: {mistake.message}"
+
+    @property
+    def _lacks_mat(self) -> bool:
+        """Whether the program was opened without the mat of its magic line, and nobody has chosen another one."""
+        settings = self._run_controller.next_run.settings
+        is_usual = settings["background"] == Settings()["background"]
+        return is_usual and wrong_mat(self._text, self._name, settings["mats"]) is not None
 
     @property
     def _is_applied(self) -> bool:

@@ -325,6 +325,8 @@ def _clock(now: Snapshot, width: int) -> Line:
 def _state_word(now: Snapshot) -> Run:
     if now.past:
         return "past", _VALUE
+    if now.placed:
+        return "moved", _VALUE
     word = end_label(now.end) if now.state == RunPhase.ENDED and now.end else now.state
     return word, _WARNING if now.failed else _VALUE
 

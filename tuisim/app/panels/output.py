@@ -282,6 +282,9 @@ class Log(Widget, can_focus=True):
             at = round((height - size) * top / last_top)
             thumb = range(at, at + size)
         shown = [(self._line(top + y), y in thumb) for y in range(height)]
+        if (line := shown[0][0])[1] is Stream.STDERR and _CARETS.fullmatch(line[0]):
+            # It points at nothing.
+            shown[0] = ("", Stream.STDERR), shown[0][1]
         if not self._all and self._empty_words:
             words = shown_lines(OutputRow(self._empty_words, 0, 0, 0, Stream.NOTE), max(1, self.size.width - 1))
             shown[: len(words)] = [((text, Stream.NOTE), False) for text in words[:height]]

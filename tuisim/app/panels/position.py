@@ -76,6 +76,9 @@ class Positioning(FormPanel):
                 if self._shown[field] != text and not self._typing(entry):
                     self._shown[field] = entry.value = text
                     entry.remove_class("wrong")
+                    if entry.has_focus:
+                        # What is typed replaces the number, as in a field that gets the focus with it.
+                        entry.action_select_all()
 
     def _typing(self, entry: Input) -> bool:
         # A field with text that `show` did not put there stays unchanged until it is applied.

@@ -140,7 +140,8 @@ class World(Widget, can_focus=True):
         """Say below the picture what the mouse does, where a robot is that is not seen, or what the others are."""
         words = "drag to draw or move an obstacle" if self._edits_boxes else ""
         if (now := self._snapshot) is not None and not words:
-            words = off_field_words(now.instant.pose) or legend(now, self.size.width - _FRAME)
+            room = self.size.width - _FRAME
+            words = off_field_words(now.instant.pose, room) or legend(now, room)
         if self.border_subtitle != words:
             self.border_subtitle = words
 

@@ -12,6 +12,10 @@ from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
 from tuisim.data_class import dataclass
 from tuisim.runs.run_folder import StoredRun, mat_files
 
+PATIENCE_S = 1.0
+"""A run that waits longer than this for its mat says so: mostly it is prepared sooner."""
+SOON = "Preparing the mat; the program starts right after that"
+
 MatKey = tuple[str, str, frozenset[int]]
 """Name, how a custom image is fitted, and the diameters of the prepared discs."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from tuisim.app.loader import FileWatch
+from tuisim.app.file_watch import FileWatch
 
 
 def test_what_changes_is_told_once(tmp_path: Path) -> None:
