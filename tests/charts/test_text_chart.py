@@ -63,6 +63,9 @@ def test_a_chart_without_a_tick_says_so() -> None:
             trace.on = False
     said = ["\n".join(text(ChartPainter().paint(made, ChartState(), 80, 16))) for made in (logged, measured)]
     assert ["No trace is ticked" in words for words in said] == [True, False]
+    assert not any("space" in words for words in said)
+    focused = ChartPainter().paint(logged, ChartState("Colour"), 80, 16)
+    assert "↑ ↓ and space show a trace" in "\n".join(text(focused))
     assert ["Nothing logged yet" in words for words in said] == [False, True]
 
 

@@ -161,6 +161,11 @@ class PanelArea(Container):
         if self.preset == self._kept_preset:
             self.keep_panels()
 
+    def awaits_focus(self, panel: str) -> bool:
+        """Return whether a panel that takes keys as a whole is shown beside others, one of which has the focus."""
+        beside = self.shown(panel) and not self.alone and not self.is_single
+        return beside and self.panels[panel].focusable and panel != self.focused_panel()
+
     def open(self, panel: str) -> None:
         """Show a panel for now, without keeping this for the next start."""
         if self.is_single:

@@ -116,7 +116,7 @@ class ChartPainter:
         by_mark = state.grey and (len(drawn) > 1 or state.is_ascii)
         lines, boxes = _tick_boxes(traces, state.selected, by_mark, width, height)
         if not drawn:
-            return ChartPicture((lines + _empty(traces, width, height - len(lines)))[:height], boxes)
+            return ChartPicture((lines + _empty(traces, width, height - len(lines), state.selected))[:height], boxes)
         with_line = height >= _LINE_ROWS
         rows = max(height - len(lines) - 1 - with_line, 1)
         x_limits = state.x_limits or _time_limits(traces.end_s(), state.grows)
@@ -276,9 +276,13 @@ def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) ->
     return line
 
 
-def _empty(traces: Traces, width: int, height: int) -> list[list[Run]]:
-    """Return what stands in place of curves: how to log a value, or that the traces there are have no tick."""
-    how = ("↑ ↓ and space show a trace",) if len(traces) and width >= 26 else ()
+def _empty(traces: Traces, width: int, height: int, selected: str | None) -> list[list[Run]]:
+    """Return what stands in place of curves: how to log a value, or that the traces there are have no tick.
+
+    Args:
+        selected: The trace that the keys show; None while the keys do something else.
+    """
+    how = ("↑ ↓ and space show a trace",) if selected is not None and width >= 26 else ()
     if any(trace.logged for trace in traces):
         words: tuple[str, ...] = ("No trace is ticked.", *how)
     else:
