@@ -255,10 +255,14 @@ def _wanted_rows(name: str, model: Model, width: int) -> int:
 def _below(pane: Pane, model: Model, width: int, height: int) -> tuple[list[str], int]:
     """Return the lines below the rows of a pane, and the number of rows for which there is room.
 
-    All rows come first, if they fit; among many, a sixth of the lines is for what is below them.
+    All rows come first, if they fit; among many, a sixth of the lines is for what is below them, unless that is a line
+    in which it would be cut.
     """
     spare = height - 1 - len(pane.rows(model))
-    below = _wrapped(pane.below(model), width, spare if spare >= 0 else height // 6)
+    texts = pane.below(model)
+    below = _wrapped(texts, width, spare if spare >= 0 else height // 6)
+    if spare < 0 and len(below) == 1 and below != [*texts]:
+        below = []
     return below, max(height - 1 - len(below), 1)
 
 
