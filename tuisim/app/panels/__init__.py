@@ -116,7 +116,7 @@ PANELS: Mapping[str, PanelInfo] = {
         PanelInfo("brick", "Brick", "K", "brick:Brick", _BOTTOM, (), 9, 12, 20, weight=28, grows=True),
         PanelInfo("obstacles", "Obstacles", "B", "obstacles:Obstacles", _SIDE, (), 11, 12, 16, grows=True),
         PanelInfo("goals", "Goals", "J", "goals:Goals", _SIDE, (), 9, 20, 20, grows=True),
-        PanelInfo("settings", "Settings", "Z", "settings:Settings", _SIDE, (), 14, 24, 40, grows=True),
+        PanelInfo("settings", "Settings", "Z", "settings:Settings", _SIDE, (), 14, 15, 40, grows=True),
     )
 }
 """Every panel by id."""
