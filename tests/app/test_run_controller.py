@@ -46,7 +46,9 @@ async def test_the_end_says_that_the_robot_stood_at_a_wall() -> None:
         app = await ready(pilot)
         stood = "stood at the wall from 0.77 s on, its wheels pushed for 1.2 s"
         # The output panel breaks the line.
-        await until(pilot, lambda: "— finished at 2.00 s, stood" in screen_text(app))
+        await until(
+            pilot, lambda: "— finished at 2.00 s" in screen_text(app) and "stood at the wall" in screen_text(app)
+        )
         assert f"finished, {stood}" not in notices(app)
 
 

@@ -30,6 +30,14 @@ def test_two_scales() -> None:
     assert any(row.startswith("100┤") and row.rstrip().endswith("├2000") for row in rows)
 
 
+@pytest.mark.parametrize(("width", "has_ends"), [(34, False), (44, True), (60, True)])
+def test_a_narrow_chart_has_both_scales_before_the_last_values(width: int, has_ends: bool) -> None:
+    made = traces({"Colour": [0.0, 100.0], "front_mm": [2000.0, 886.0]})
+    rows = text(ChartPainter().paint(made, ChartState(), width, 16))
+    assert any(row.startswith("100┤") for row in rows) and any(row.rstrip().endswith("├2000mm") for row in rows)
+    assert any("886mm" in row for row in rows) is has_ends
+
+
 def test_percent_millimetres_and_degrees_have_a_scale_each() -> None:
     made = traces({"Colour": [0.0, 100.0], "front_mm": [2000.0, 100.0], "turn_deg": [0.0, 35.0], "error": [0.0, 0.5]})
 

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from tuisim.charts import axes
-from tuisim.charts.canvas import Curve, TextRun, canvas
+from tuisim.charts.bands import band_span
+from tuisim.charts.canvas import Curve, TextRun, canvas, styled
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.charts.traces import Traces
 
@@ -63,6 +64,9 @@ def test_a_chart_without_a_tick_says_so() -> None:
             trace.on = False
     said = ["\n".join(text(ChartPainter().paint(made, ChartState(), 80, 16))) for made in (logged, measured)]
     assert ["No trace is ticked" in words for words in said] == [True, False]
+    assert not any("space" in words for words in said)
+    focused = ChartPainter().paint(logged, ChartState("Colour"), 80, 16)
+    assert "↑ ↓ and space show a trace" in "\n".join(text(focused))
     assert ["Nothing logged yet" in words for words in said] == [False, True]
 
 
@@ -171,6 +175,15 @@ def test_what_is_drawn_is_named(ticked: tuple[str, ...]) -> None:
 
     assert all(f"[x] {name}" in "\n".join(rows) for name in ticked)
     assert len(rows) == 10
+
+
+@pytest.mark.parametrize("other", ["way_mm", ""])
+def test_names_of_bands_have_the_colour_of_their_curve_beside_others(other: str) -> None:
+    made = traces(*filter(None, ("Colour", other)))
+    spans = (band_span("Colour", 1.5, 3.0, 50.0, ""),)
+    lines = ChartPainter().paint(made, ChartState(spans=spans), 80, 16).lines
+    (color,) = {style.color for line in lines for part, style in line if part == "50" and style.bgcolor}
+    assert (color == styled(next(iter(made)).rgb).color) is bool(other)
 
 
 def test_values_at_the_cursor() -> None:

@@ -49,4 +49,12 @@ QUESTIONS = {
     "move the robot to another start": "options",
     "black outside the mat": "how-sensors-see",
     "is it safe to run a program from somebody else": "security",
+    "stop a program": "keys",
+    "why does the sensor say White on grey": "how-sensors-see",
+    "what does in→out mean": "how-sensors-see",
+    "move the robot to another place": "keys",
+    "undo a step": "stepping",
+    "copy text from output": "keys",
+    "change the threshold": "how-sensors-see",
+    "threshold": "analysing-logs",
 }

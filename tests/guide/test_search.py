@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import pytest
 from tests.guide.questions import QUESTIONS
 from tuisim.guide.catalogue import pages
 from tuisim.guide.search import search
-from tuisim.guide.text import page_lines, rows_of
+from tuisim.guide.text import end_of_passage, page_lines, passage_text, result_lines, rows_of
 
 STUDENTS = tomllib.loads((Path(__file__).parent / "questions.toml").read_text(encoding="utf-8"))
 """What students ask, with the pages that answer it."""
@@ -65,6 +66,29 @@ def test_the_answer_comes_first(question: str, page: str, section: str) -> None:
     assert (first.name, first.heading) == (page, section)
 
 
+@pytest.mark.parametrize(
+    ("question", "page", "begins"),
+    [
+        ("stop a program", "keys", "| `S` | Stop the program"),
+        ("why does the sensor say White on grey", "how-sensors-see", "**White on grey**"),
+        ("what does in→out mean", "how-sensors-see", "Below each disc"),
+        ("copy text from output", "keys", "- To copy text from the output"),
+        ("undo a step", "stepping", "`n` steps to the next line"),
+        ("threshold", "analysing-logs", "| `c` `j` `J` | events"),
+        ("change the threshold", "how-sensors-see", "If the program compares the reading"),
+    ],
+)
+def test_the_passage_has_the_rare_words_of_the_question(question: str, page: str, begins: str) -> None:
+    found = {one.name: one.passage for one in search(question)}
+    assert found[page].startswith(begins)
+
+
+def test_a_page_that_answers_as_a_whole_has_no_passage() -> None:
+    (first, *_) = found = search("heavier crooked")
+    assert (first.name, first.passage) == ("motion-and-drift", "")
+    assert pages()[first.name].about in " ".join(text for line in result_lines(found, 200) for text, _ in line)
+
+
 @pytest.mark.parametrize("question", ["wrong order", "reading with noise", "wall", "key", "sensor value"])
 def test_a_passage_is_neither_a_fence_nor_a_rule(question: str) -> None:
     assert not [one for one in search(question) if one.passage.startswith(("```", "| ---"))]
@@ -92,3 +116,14 @@ def test_a_row_of_a_table_is_found_in_each_width(width: int, begins: str) -> Non
     lines = page_lines(pages()[first.name], width)
     _, row = rows_of(lines, first.heading, first.passage)
     assert "".join(part for part, _ in lines[row]).startswith(begins)
+
+
+@pytest.mark.parametrize("width", [36, 76, 118])
+@pytest.mark.parametrize("question", ["why does the sensor say White on grey", "threshold"])
+def test_a_passage_ends_where_the_next_one_begins(question: str, width: int) -> None:
+    first = search(question)[0]
+    lines = page_lines(pages()[first.name], width)
+    _, row = rows_of(lines, first.heading, first.passage)
+    end = end_of_passage(lines, row, first.passage)
+    shown = "".join("".join(part for part, _ in line) for line in lines[row:end])
+    assert sorted(re.findall(r"\w", shown)) == sorted(re.findall(r"\w", passage_text(first.passage)))

@@ -104,7 +104,7 @@ class PanelArea(Container):
         self.alone = ""
         """Id of the maximized panel, empty for none."""
         self.front = "world"
-        """The panel shown where there is room for one only."""
+        """The panel shown last or with the focus, which is shown where there is room for one only."""
         self._is_loaded = False
         """Whether what was kept has been taken up."""
         self.is_stacked = False
@@ -156,10 +156,20 @@ class PanelArea(Container):
             self.lay_out()
             return
         self.request({panel: show})
+        if show:
+            self.front = panel
         self._chosen.pop(panel, None)
         self._chosen[panel] = show
         if self.preset == self._kept_preset:
             self.keep_panels()
+
+    def awaits_focus(self, panel: str) -> bool:
+        """Return whether a panel that takes keys as a whole is shown beside others, one of which has the focus.
+
+        One that has just been shown will have it in a moment.
+        """
+        beside = self.shown(panel) and not self.alone and not self.is_single
+        return beside and self.panels[panel].focusable and panel != self.front
 
     def open(self, panel: str) -> None:
         """Show a panel for now, without keeping this for the next start."""

@@ -18,7 +18,7 @@ MOST_SAMPLES = 4000
 """Bands of more samples take too long to find for a chart that is on the screen: the analyser finds them."""
 SHADES = Style(bgcolor=palette.HERE), Style(bgcolor=palette.FIELD)
 """In turns, so that bands without an edge between them stay apart."""
-_NAME = Style(color=palette.SOFT)
+NAME = Style(color=palette.SOFT)
 _LEAST_COLUMNS = 3
 """Narrower bands have no name."""
 _OVERHANG = 2
@@ -90,7 +90,12 @@ def placed_names(
 
 
 def shaded(
-    rows: Sequence[list[Run]], spans: Sequence[Span], x_limits: Limits, columns: int, cursors: Sequence[int] = ()
+    rows: Sequence[list[Run]],
+    spans: Sequence[Span],
+    x_limits: Limits,
+    columns: int,
+    cursors: Sequence[int] = (),
+    style: Style = NAME,
 ) -> list[list[Run]]:
     """Return the rows of a canvas with shaded spans, each with its name in the lowest place where nothing is drawn.
 
@@ -100,6 +105,7 @@ def shaded(
         x_limits: Of the canvas.
         columns: Its width.
         cursors: Columns of cursors, beside which names stand.
+        style: Of the names.
     """
     texts = ["".join(text for text, _ in row) for row in rows]
     places = [columns_of(span, x_limits, columns) for span in spans]
@@ -107,7 +113,7 @@ def shaded(
     for at, first, name in placed_names(
         spans, places, len(rows), columns, lambda at, first, stop: not texts[at][first:stop].strip(FREE), cursors
     ):
-        made[at] = [*_cut(made[at], 0, first), (name, _NAME), *_cut(made[at], first + len(name), columns)]
+        made[at] = [*_cut(made[at], 0, first), (name, style), *_cut(made[at], first + len(name), columns)]
     return [_shaded(row, places, columns) for row in made]
 
 

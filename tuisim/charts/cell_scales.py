@@ -18,8 +18,8 @@ from tuisim.terminal.text_runs import Run
 
 _LEAST_WIDTH = 36
 """Narrower charts have no room on the right of the canvas."""
-_LEAST_COLUMNS = 30
-"""Further scales do not make the canvas narrower than this."""
+_LEAST_COLUMNS = 22
+"""What stands on the right does not make the canvas narrower: further scales come first, then the last values."""
 _LONG = 9
 """Values with more characters than that are written with a power of ten."""
 _PARTS = 2000
@@ -54,15 +54,17 @@ class CellScales:
         """Return the scales of traces for a chart of a width, whose canvas has so many rows."""
         scales = Scales.of([(trace.name, trace.values, trace.scale) for trace in drawn], zoomed)
         scales = Scales(_on_rows(scales.left, rows), tuple(_on_rows(scale, rows) for scale in scales.right))
-        ends, ends_width = _ends(drawn, scales, rows, x_limits) if width >= _LEAST_WIDTH else ({}, 0)
         labels = [_labels(scales.left, rows)]
-        left = width - _width_of(labels[0]) - ends_width
+        left = width - _width_of(labels[0])
         for scale in scales.right:
             more = _labels(scale, rows)
-            left -= _width_of(more)
-            if left < _LEAST_COLUMNS:
+            if left - _width_of(more) < _LEAST_COLUMNS:
                 break
+            left -= _width_of(more)
             labels.append(more)
+        ends, ends_width = _ends(drawn, scales, rows, x_limits)
+        if width < _LEAST_WIDTH or left - ends_width < _LEAST_COLUMNS:
+            ends, ends_width = {}, 0
         colors = {trace.name: styled(trace.rgb) for trace in drawn}
         is_one_of_several = [bool(scales.right) and len(scale.names) == 1 for scale in (scales.left, *scales.right)]
         shown = zip((scales.left, *scales.right), is_one_of_several, labels, strict=False)

@@ -11,7 +11,7 @@ from rich.text import Text
 from tuisim import palette
 from tuisim.charts import axes
 from tuisim.charts.axes import Limits
-from tuisim.charts.bands import FREE, shaded
+from tuisim.charts.bands import FREE, NAME, shaded
 from tuisim.charts.canvas import AXIS, BRAILLE, PLAIN, Curve, TextRun, canvas, styled, xy_lines
 from tuisim.charts.cell_scales import CellScales
 from tuisim.charts.layout import COLORS, ChartData, Line, Span, color_of, unit_of
@@ -116,7 +116,7 @@ class ChartPainter:
         by_mark = state.grey and (len(drawn) > 1 or state.is_ascii)
         lines, boxes = _tick_boxes(traces, state.selected, by_mark, width, height)
         if not drawn:
-            return ChartPicture((lines + _empty(traces, width, height - len(lines)))[:height], boxes)
+            return ChartPicture((lines + _empty(traces, width, height - len(lines), state.selected))[:height], boxes)
         with_line = height >= _LINE_ROWS
         rows = max(height - len(lines) - 1 - with_line, 1)
         x_limits = state.x_limits or _time_limits(traces.end_s(), state.grows)
@@ -141,7 +141,7 @@ class ChartPainter:
             on_grid = scales.labels[0] if state.grid and not state.is_ascii else {}
             inside = [_styled(self._canvas[row], is_on_grid=row in on_grid) for row in range(rows)]
             if state.spans:
-                inside = shaded(inside, state.spans, x_limits, columns, at)
+                inside = shaded(inside, state.spans, x_limits, columns, at, _style_of_names(drawn, state.spans))
             lines += [scales.framed(row, _with_cursors(inside[row], at)) for row in range(rows)]
             if with_line:
                 lines.append([(" " * (left - 1) + "└" + line, AXIS)])
@@ -176,6 +176,13 @@ def _styled(runs: list[TextRun], is_on_grid: bool) -> list[Run]:
     if not is_on_grid:
         return [(text, styled(rgb)) for text, rgb in runs]
     return [(text.replace(" ", _GRID), _FAINT) if rgb is None else (text, styled(rgb)) for text, rgb in runs]
+
+
+def _style_of_names(drawn: Sequence[Trace], spans: Sequence[Span]) -> Style:
+    """Return the style of the names of bands: the colour of their curve, where there are others."""
+    names = {span.name for span in spans}
+    of_bands = [trace for trace in drawn if {trace.name} == names]
+    return styled(of_bands[0].rgb) if of_bands and len(drawn) > 1 else NAME
 
 
 def _with_cursors(runs: list[Run], columns: Sequence[int]) -> list[Run]:
@@ -276,9 +283,13 @@ def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) ->
     return line
 
 
-def _empty(traces: Traces, width: int, height: int) -> list[list[Run]]:
-    """Return what stands in place of curves: how to log a value, or that the traces there are have no tick."""
-    how = ("↑ ↓ and space show a trace",) if len(traces) and width >= 26 else ()
+def _empty(traces: Traces, width: int, height: int, selected: str | None) -> list[list[Run]]:
+    """Return what stands in place of curves: how to log a value, or that the traces there are have no tick.
+
+    Args:
+        selected: The trace that the keys show; None while the keys do something else.
+    """
+    how = ("↑ ↓ and space show a trace",) if selected is not None and width >= 26 else ()
     if any(trace.logged for trace in traces):
         words: tuple[str, ...] = ("No trace is ticked.", *how)
     else:

@@ -1,6 +1,8 @@
 """Search: which pages answer words that somebody types, the best one first.
 
-SQLite ranks pages, and their passages, by BM25 of the stems of their words. A page counts with its best passage.
+SQLite ranks pages, and their passages, by BM25 of the stems of their words: a rare word counts more. A page counts with
+its best passage, and its further words are words of each. Which passage of a page answers is ranked without these: they
+would make the rarest words of a page look common, and all its passages alike.
 """
 
 from __future__ import annotations
@@ -14,13 +16,16 @@ from tuisim.data_class import dataclass
 from tuisim.guide.catalogue import pages
 from tuisim.guide.tables import markdown_of
 
-_WORD = re.compile(r"\w+")
+_WORD = re.compile(r"\w+(?:→\w+)*")
+"""A word; words joined by an arrow, as `in→out`, are looked for together."""
 _HEADING = re.compile(r"^##+ (.+)$", re.MULTILINE)
 _FENCE = re.compile(r"^```.*\n?", re.MULTILINE)
 _PASSAGE_END = re.compile(r"\n\s*\n(?!    )|\n(?=- |\| )")
 """A passage is a paragraph, with a text set in below it, an item of a list or a row of a table."""
+_HEAD = re.compile(r"^\|.*\n(?=\| ---)", re.MULTILINE)
+"""The head of a table, which answers nothing."""
 _RULE = re.compile(r"[-| ]*")
-"""The line below the head of a table."""
+"""The line below it."""
 _CONTRACTED = re.compile(r"(n't|['’](s|m|d|re|ve|ll|t))\b")
 """The ends of `doesn't`, `it's`, `I'm`."""
 _SAYS_NOTHING = """
@@ -49,12 +54,13 @@ class SearchResult:
     heading: str
     """The section that answers best; empty for the beginning of the page."""
     passage: str
-    """The part of it that answers best, in Markdown: a paragraph, an item of a list or a row of a table."""
+    """The part of it that answers best, in Markdown: a paragraph, an item of a list or a row of a table; empty if only
+    the page as a whole answers."""
 
 
 def _passages() -> Iterator[tuple[str, ...]]:
     for name, page in pages().items():
-        parts = ["", *_HEADING.split(_FENCE.sub("", markdown_of(page)))]
+        parts = ["", *_HEADING.split(_HEAD.sub("", _FENCE.sub("", markdown_of(page))))]
         for heading, text in zip(parts[::2], parts[1::2], strict=True):
             found = map(str.strip, _PASSAGE_END.split(text))
             for passage in (one for one in found if not _RULE.fullmatch(one)):
@@ -65,12 +71,16 @@ def _passages() -> Iterator[tuple[str, ...]]:
 def _index() -> sqlite3.Connection:
     # The app searches in threads, one at a time.
     index = sqlite3.connect(":memory:", check_same_thread=False)
-    for table in ("passages", "whole"):
+    for table in ("passages", "whole", "answers"):
         index.execute(f"CREATE VIRTUAL TABLE {table} USING fts5({_FIELDS}, tokenize = 'porter unicode61')")
     index.executemany("INSERT INTO passages VALUES (?, ?, ?, ?, ?)", _passages())
     index.execute(
         "INSERT INTO whole SELECT name, '', group_concat(passage, ' '), group_concat(titles, ' '), words "
         "FROM passages GROUP BY name"
+    )
+    # The title of a page answers nothing.
+    index.execute(
+        "INSERT INTO answers SELECT name, heading, passage, heading, '' FROM passages WHERE passage NOT LIKE '# %'"
     )
     return index
 
@@ -96,6 +106,6 @@ def search(question: str) -> list[SearchResult]:
     if not whole:
         return []
     query = " OR ".join(whole)
-    best, of_pages = _found("passages", query), _found("whole", query)
+    best, of_pages, answers = (_found(table, query) for table in ("passages", "whole", "answers"))
     order = sorted(best, key=lambda name: -best[name][0] - of_pages[name][0])
-    return [best[name][1] for name in order[:_MOST]]
+    return [answers[name][1] if name in answers else SearchResult(name, "", "") for name in order[:_MOST]]

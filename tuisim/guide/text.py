@@ -58,7 +58,12 @@ def result_lines(found: list[SearchResult], width: int) -> list[Line]:
     lines = []
     for one in found:
         title = f"- `{one.name}` **{pages()[one.name].title}**{f': {one.heading}' if one.heading else ''}"
-        passage = wrap(passage_text(one.passage), max(20, width - 3), max_lines=_PASSAGE_LINES, placeholder=" …")
+        passage = wrap(
+            passage_text(one.passage or pages()[one.name].about),
+            max(20, width - 3),
+            max_lines=_PASSAGE_LINES,
+            placeholder=" …",
+        )
         lines += [*markdown_lines(title, width), *([("   " + line, PLAIN)] for line in passage)]
     return lines
 
@@ -96,6 +101,15 @@ def rows_of(lines: list[Line], heading: str, passage: str) -> tuple[int, int]:
     while passage.startswith("|") and row > top and texts[row].startswith("  "):
         row -= 1  # the row's first cell
     return top, row
+
+
+def end_of_passage(lines: list[Line], row: int, passage: str) -> int:
+    """Return the row below a passage of a drawn page that begins at a row."""
+    left = len(_LETTERS.sub("", passage_text(passage)))
+    while left > 0 and row < len(lines):
+        left -= len(_LETTERS.sub("", "".join(part for part, _ in lines[row])))
+        row += 1
+    return row
 
 
 def written(lines: list[Line], *, styled: bool) -> str:

@@ -19,10 +19,17 @@ SIZES = [(80, 24), (120, 40), (200, 60)]
 async def test_every_panels_key_shows_and_hides_it() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(200, 60)) as pilot:
         app = await ready(pilot)
+
+        def has_focus(name: str) -> bool:
+            return app.panel_area.focused_panel() == name
+
         for panel in PANELS.values():
             at_first = TerminalSize.LARGE in panel.sizes
             assert app.panel_area.shown(panel.id) is at_first, panel.id
             for shown in (not at_first, at_first):
+                if app.panel_area.awaits_focus(panel.id):
+                    await pilot.press(panel.key)
+                    await until(pilot, partial(has_focus, panel.id), panel.id)
                 await pilot.press(panel.key)
                 assert app.panel_area.shown(panel.id) is shown, panel.id
                 await pilot.pause()
@@ -47,6 +54,17 @@ async def test_a_panel_that_its_key_opens_takes_the_focus_and_gives_it_back() ->
             await pilot.press(PANELS[panel].key)
             await until(pilot, partial(has_focus, "world"), panel)
             assert not app.panel_area.shown(panel), panel
+
+
+async def test_the_key_of_a_panel_that_is_shown_focuses_it_first() -> None:
+    async with LabApp(settings()).run_test(size=(200, 60)) as pilot:
+        app = await ready(pilot)
+        assert app.panel_area.shown("chart") and app.panel_area.focused_panel() == "world"
+        await pilot.press("c")
+        await until(pilot, lambda: app.panel_area.focused_panel() == "chart")
+        await pilot.press("c")
+        await until(pilot, lambda: app.panel_area.focused_panel() == "world")
+        assert not app.panel_area.shown("chart")
 
 
 @pytest.mark.slow

@@ -46,6 +46,31 @@ def test_few_bands_are_all_in_sight_with_their_statistics_in_a_small_terminal() 
     assert shown[1].split() == ["2", "86.27", "pale", "grey", "0.10", "0.19", "10", "10", "0.00"]
 
 
+@pytest.mark.parametrize(
+    ("size", "heads"),
+    [
+        ((48, 9), ["variable count min mean max std 5 %", "variable 25 % 50 % 75 % 95 %"]),
+        ((48, 3), ["variable count min mean max std 5 % …"]),
+        ((100, 9), ["variable count min mean max std 5 % 25 % 50 % 75 % 95 %"]),
+    ],
+)
+def test_figures_that_do_not_fit_beside_the_others_are_below_them(size: tuple[int, int], heads: list[str]) -> None:
+    table = stepped(80, 10)
+    model = model_of(Log("test", table, guess_columns(table)))
+    lines = text_of(model, "statistics", *size).splitlines()
+    assert [" ".join(line.split()) for line in lines if "mean" in line or "95 %" in line] == heads
+    assert len(lines) == 2 * len(heads)
+
+
+@pytest.mark.parametrize(("bands", "rows"), [(8, 8), (9, 8), (20, 8)])
+def test_a_summary_that_does_not_fit_leaves_its_line_to_the_rows(bands: int, rows: int) -> None:
+    table = stepped(10 * bands, 10)
+    model = model_of(Log("test", table, guess_columns(table)))
+    model.find_bands(model.unsearched())
+    _, *shown = text_of(model, "bands", 48, 9).splitlines()
+    assert [line.split()[0] for line in shown] == [str(number) for number in range(1, rows + 1)]
+
+
 def text_of(model: Model, pane: str = "table", width: int = 100, height: int = 30) -> str:
     lines = pane_lines(pane, model, 0, width, height)
     return "\n".join("".join(text for text, _ in line) for line in lines)

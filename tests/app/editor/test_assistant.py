@@ -16,6 +16,7 @@ from tests.app.panel_help import screen_text
 from tests.running import PATIENCE_S
 from tuisim.app.app import LabApp
 from tuisim.app.editor import area as area_module
+from tuisim.app.editor import completion
 from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.completion import Candidate
 from tuisim.app.panels.code import Code
@@ -40,6 +41,17 @@ async def listed(pilot: Pilot[Any], text: str) -> tuple[Code, CodeArea]:
     await until(pilot, lambda: area.candidates.is_open)
     await pilot.pause()
     return code, area
+
+
+async def test_the_library_is_read_when_typing_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    is_warm = Event()
+    monkeypatch.setattr(completion, "warm_up", is_warm.set)
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        await alone(pilot, "x = 1")
+        await pilot.pause()
+        assert not is_warm.is_set()
+        await pilot.press("enter")
+        await until(pilot, is_warm.is_set)
 
 
 async def test_the_only_name_is_put_in(home: Path) -> None:

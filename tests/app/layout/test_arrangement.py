@@ -103,6 +103,11 @@ def test_a_chart_finds_room_in_a_very_low_terminal(height: int) -> None:
     assert ("chart" in arrange(["world", "chart"], 80, height).boxes) is (height >= 16)
 
 
+def test_the_settings_leave_room_for_all_readings_in_a_small_terminal() -> None:
+    boxes = arrange(["settings", "world", "instrumentation", "output"], 80, 23).boxes
+    assert boxes["instrumentation"].height >= 8 and boxes["settings"].height >= PANELS["settings"].fair_rows
+
+
 def test_no_panels_no_boxes() -> None:
     assert arrange([], 80, 23).boxes == {}
 

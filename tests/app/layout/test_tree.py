@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from tuisim.app.layout.tree import (
-    MIN_COLS,
     Axis,
     PanelBox,
     PanelLayout,
@@ -37,7 +36,7 @@ def test_parts_side_by_side_get_shares_by_their_weights() -> None:
 
 def test_what_a_node_needs_is_added_along_its_axis() -> None:
     assert panels_of(ABOVE) == ("world", "chart", "output")
-    assert least_columns(ABOVE) == least_columns(BESIDE) == 2 * MIN_COLS
+    assert least_columns(ABOVE) == least_columns(BESIDE) == PANELS["chart"].min_cols + PANELS["output"].min_cols
     deepest = max(PANELS["chart"].min_rows, PANELS["output"].min_rows)
     assert least_rows(ABOVE) == PANELS["world"].min_rows + deepest
 

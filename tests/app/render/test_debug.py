@@ -6,7 +6,7 @@ import pytest
 
 from tuisim.app.render.debug import DebugView, debug_lines
 from tuisim.app.snapshot import RunPhase
-from tuisim.protocol import FrameState, Inspected, Paused, PauseReason
+from tuisim.protocol import FrameState, Inspected, Paused, PauseReason, Variable
 
 
 def text(view: DebugView, width: int) -> list[str]:
@@ -46,6 +46,16 @@ def test_why_a_condition_holds_is_told_whole() -> None:
     rows = text(DebugView(RunPhase.PAUSED, paused, looked), 30)
     assert f"break 3 if name > 3: {why}" in " ".join(rows)
     assert max(map(len, rows)) <= 30
+
+
+@pytest.mark.parametrize("changed", ["left", "right"])
+def test_variables_keep_their_places_and_names_of_constants_are_the_last(changed: str) -> None:
+    names = ("SPEED", "GAIN", "left", "right", "steering")
+    variables = tuple(Variable(name, "int", "1", name == changed) for name in names)
+    looked = Inspected(5, 50_000_000, "main", 0, "", (), (FrameState("<module>", 3, ""),), variables, (), ())
+    rows = text(DebugView(RunPhase.PAUSED, Paused(5, 50_000_000, 3, PauseReason.STEP), looked), 30)
+    shown = [row[2:].split()[0] for row in rows[rows.index("Variables") + 1 :]]
+    assert shown == ["left", "right", "steering", "SPEED", "GAIN"]
 
 
 @pytest.mark.parametrize(

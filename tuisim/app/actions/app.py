@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 
 
 def toggle(context: ActionContext, panel: str) -> None:
-    """Show a panel and focus it, or hide it."""
-    context.panels.toggle(panel)
+    """Show a panel and focus it; focus one that is shown beside the focus; else hide it."""
+    if not context.panels.awaits_focus(panel):
+        context.panels.toggle(panel)
     context.app.situation_changed()
     context.app.call_after_refresh(context.panels.attend, panel)
 

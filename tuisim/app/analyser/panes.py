@@ -226,7 +226,9 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     widths = [max(map(len, column)) for column in zip(pane.heads, *measured, strict=True)]
     used, gap = _columns_of(measured, widths, width)
     head = _row([pane.heads[at] for at in used], [widths[at] for at in used], gap, HEAD)
-    if any(row[at] for row in measured for at in range(used[-1] + 1, len(widths))):
+    over = [at for at in range(used[-1] + 1, len(widths)) if any(row[at] for row in measured)]
+    more = _continued(pane.heads, rows, over, widths, width, height - 1 - len(rows) - len(below)) if over else []
+    if over and not more:
         head = [(f"{cut(head[0][0], width - 2):{width - 1}}…", HEAD)]
     lines: list[Line] = [head]
     shown: list[Line] = []
@@ -241,7 +243,18 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
         shown += made
     # With rows of several lines, the selected one stays visible.
     start = max(min(chosen_at.start, chosen_at.stop - room), 0)
-    return lines + shown[start : start + room] + [[(text, DIM)] for text in below]
+    return lines + shown[start : start + room] + more + [[(text, DIM)] for text in below]
+
+
+def _continued(
+    heads: Cells, rows: Sequence[Cells], columns: Sequence[int], widths: Sequence[int], width: int, height: int
+) -> list[Line]:
+    """Return the columns that do not fit as a table below the others, with the first one; none without room for all."""
+    shown = [0, *columns]
+    wide = [widths[at] for at in shown]
+    if height < 1 + len(rows) or sum(wide) + _GAP * (len(wide) - 1) > width:
+        return []
+    return [_row([row[at] for at in shown], wide, _GAP, HEAD if row is heads else PLAIN) for row in (heads, *rows)]
 
 
 def _wanted_rows(name: str, model: Model, width: int) -> int:
@@ -255,10 +268,14 @@ def _wanted_rows(name: str, model: Model, width: int) -> int:
 def _below(pane: Pane, model: Model, width: int, height: int) -> tuple[list[str], int]:
     """Return the lines below the rows of a pane, and the number of rows for which there is room.
 
-    All rows come first, if they fit; among many, a sixth of the lines is for what is below them.
+    All rows come first, if they fit; among many, a sixth of the lines is for what is below them, unless that is a line
+    in which it would be cut.
     """
     spare = height - 1 - len(pane.rows(model))
-    below = _wrapped(pane.below(model), width, spare if spare >= 0 else height // 6)
+    texts = pane.below(model)
+    below = _wrapped(texts, width, spare if spare >= 0 else height // 6)
+    if spare < 0 and len(below) == 1 and below != [*texts]:
+        below = []
     return below, max(height - 1 - len(below), 1)
 
 

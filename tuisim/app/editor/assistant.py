@@ -8,6 +8,7 @@ from collections.abc import Callable
 from rich.text import Text
 from textual.timer import Timer
 
+from tuisim.app import background
 from tuisim.app.editor import completion
 from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.attributes import AttributeCheck
@@ -80,6 +81,10 @@ class Assistant:
         if timer is not None:
             timer.stop()
         return self._area.set_timer(after_s, call)
+
+    def start(self) -> None:
+        """Begin to help while typing: the first name that is looked up need not wait for the library."""
+        background.run(self._area, completion.warm_up, lambda _: None, group="warm-up")
 
     def stop(self) -> None:
         """End what only helps while typing."""

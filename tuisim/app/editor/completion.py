@@ -1,6 +1,7 @@
 """Completion and signatures: what may follow at a place of a program, which is read with Jedi and never run.
 
-Jedi is imported when it is first asked. It is slow at first and knows no threads: ask it in one thread at a time.
+Jedi is imported when it is first asked, or by `warm_up`. It is slow at first and knows no threads: it is asked in one
+thread at a time.
 """
 
 from __future__ import annotations
@@ -50,6 +51,8 @@ _USUAL = (
 """Patterns of what most programs use of the libraries, in the order of a list."""
 _UNUSUAL = frozenset({"mro"})
 _EXTENSIONS = [path for path in sys.path if path.endswith("lib-dynload")]
+_FIRST = "colorLeft.r", "", 0, len("colorLeft.r")
+"""What it is asked first: an object of the prelude, and what it has."""
 _asking = Lock()
 
 
@@ -168,6 +171,12 @@ def _is_of_library(kind: Any) -> bool:
 def is_ready() -> bool:
     """Return whether it has been asked before, so that it answers at once."""
     return "jedi" in sys.modules
+
+
+def warm_up() -> None:
+    """Read what every program uses, unless it has been asked before, so that nobody waits for it later."""
+    if not is_ready():
+        candidates(*_FIRST)
 
 
 def _answer(ask: Callable[[], Result], otherwise: Result) -> Result:

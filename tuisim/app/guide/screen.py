@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import ClassVar, TypeAlias
 
+from rich.style import Style
 from rich.text import Text
 from textual import events, on
 from textual.app import ComposeResult
@@ -21,7 +22,7 @@ from tuisim.app.dialogs.dialog import Dialog
 from tuisim.data_class import dataclass
 from tuisim.guide.catalogue import CONTENTS, pages
 from tuisim.guide.search import SearchResult, search
-from tuisim.guide.text import NO_WORDS, headings_in, linked_names, page_lines, rows_of
+from tuisim.guide.text import NO_WORDS, end_of_passage, headings_in, linked_names, page_lines, rows_of
 from tuisim.terminal.text_runs import Line
 
 
@@ -73,6 +74,8 @@ _SEARCH_AGAIN_S = 0.15
 _CONTENTS_CELLS = 40
 """Width of the contents before they are laid out."""
 
+_FOUND = Style(bgcolor=palette.CHOSEN)
+"""What a search has found."""
 _ROWS_OF_PASSAGE = 6
 """Of a passage, so many rows at least are in sight."""
 
@@ -81,11 +84,12 @@ Place: TypeAlias = tuple[str, str]
 KEYS: Place = ("", "")
 
 
-def _text_of(lines: list[Line]) -> Text:
+def _text_of(lines: list[Line], found: range = range(0)) -> Text:
+    """Return lines as a text; those that a search has found stand out."""
     text = Text(no_wrap=True)
-    for line in lines:
+    for row, line in enumerate(lines):
         for part, style in line:
-            text.append(part, style)
+            text.append(part, style + _FOUND if row in found else style)
         text.append("\n")
     return text
 
@@ -193,10 +197,10 @@ class _Page(VerticalScroll):
             self.scroll_home(animate=False)
             return
         lines = page_lines(pages()[name], width)
-        drawn = _text_of(lines)
+        top, row = rows_of(lines, heading, self._passage)
+        drawn = _text_of(lines, range(row, end_of_passage(lines, row, self._passage)))
         groups = {group: self._keys.groups[group] for group in self._topic.groups if self._with_keys}
         self._text.update(key_table(groups, width).append("\n").append_text(drawn) if groups else drawn)
-        top, row = rows_of(lines, heading, self._passage)
         # The heading stays in sight where the passage does, too.
         first = top if row - top < self.scrollable_content_region.height - _ROWS_OF_PASSAGE else row - 1
         self.call_after_refresh(self.scroll_to, y=first, animate=False)

@@ -11,7 +11,6 @@ from typing import Any
 
 from tuisim.app.layout.tree import (
     EDGES,
-    MIN_COLS,
     TIME_BAR_ROWS,
     Axis,
     Node,
@@ -193,7 +192,7 @@ def _low(panels: Sequence[str], width: int, height: int) -> Node:
     if not main or not beside:
         top: list[Node] = [*main] or ([joined(Axis.ROWS, beside)] if beside else [])
     else:
-        share = min(max(ideal_columns(above), MIN_COLS), width - MIN_STRIP_COLS) / width
+        share = min(max(ideal_columns(above), PANELS["world"].min_cols), width - MIN_STRIP_COLS) / width
         top = [joined(Axis.COLUMNS, [*main, _with_pose(beside, above)], shares=(share, 1 - share))]
     below = joined(Axis.ROWS, roomy)
     if not top:

@@ -14,8 +14,6 @@ from tuisim.data_class import dataclass
 EDGES = 2
 """Rows or columns that the two edges of a panel take."""
 TIME_BAR_ROWS = 1
-MIN_COLS = 24
-"""A panel beside another one is not made narrower."""
 _CELL_ASPECT = 2
 """Height of a cell, in widths of a cell."""
 
@@ -109,7 +107,7 @@ def _grows(node: Node) -> bool:
 def least_columns(node: Node) -> int:
     """Return the columns that a node needs at least."""
     if isinstance(node, str):
-        return MIN_COLS
+        return PANELS[node].min_cols
     needed = [least_columns(part) for part in node.parts]
     return sum(needed) if node.axis == Axis.COLUMNS else max(needed)
 

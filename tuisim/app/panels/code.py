@@ -313,7 +313,10 @@ class Code(Vertical):
     def _type(self, typing: bool) -> None:
         if typing != self.typing:
             self._area.read_only = not typing
-            self._assistant.stop()
+            if typing:
+                self._assistant.start()
+            else:
+                self._assistant.stop()
             self._say()
             self.post_message(self.TypingChanged(typing))
 

@@ -179,8 +179,8 @@ def _variables(title: str, variables: Sequence[Variable], width: int) -> list[Li
     lines: list[Line] = [[(cut(title, width), _HEAD)]]
     if not variables:
         lines.append([("  none", _PALE)])
-    # Changed variables are highlighted, each in its place.
-    for variable in variables:
+    # Changed variables are highlighted, each in its place; names of constants, which do not change, are the last.
+    for variable in sorted(variables, key=lambda one: one.name.isupper()):
         style = _CHANGED if variable.changed else _VALUE
         lines.append(_pair(variable.name, variable.value, _NAME, style, width, "•" if variable.changed else " "))
     return lines
