@@ -184,6 +184,7 @@ VISITS = {
     "the page": ("", "text/html"),
     "its script": ("page/page.js", "javascript"),
     "what draws pictures": ("page/pictures.js", "javascript"),
+    "what unpacks them": ("page/inflate.js", "javascript"),
     "what fingers do": ("page/fingers.js", "javascript"),
     "its style": ("page/page.css", "text/css"),
     "the terminal": ("static/js/textual.js", "javascript"),
