@@ -7,7 +7,7 @@ const [ENOUGH, LEAST] = [
   [64, 24],
   [40, 12],
 ];
-const KEYS = { esc: "\x1b", tab: "\t", left: "\x1b[D", up: "\x1b[A", down: "\x1b[B", right: "\x1b[C" };
+const KEYS = { enter: "\r", esc: "\x1b", tab: "\t", left: "\x1b[D", up: "\x1b[A", down: "\x1b[B", right: "\x1b[C" };
 const HOLD_PX = 8;
 
 class Fingers {
