@@ -9,7 +9,7 @@ import pytest
 from IPython.core.interactiveshell import InteractiveShell
 
 from tests.notebook.conftest import Cell, Shown
-from tuisim.notebook.cell_output import FIRST_LINES, LAST_LINES, MOST_FOLDED_LINES, folded
+from tuisim.notebook.cell_output import FEWEST_FOLDED, FIRST_LINES, LAST_LINES, MOST_FOLDED_LINES, folded
 
 
 @pytest.fixture
@@ -45,9 +45,13 @@ def test_a_short_output_is_as_it_is(count: int, kernel_cell: Cell) -> None:
 
 
 def test_a_few_more_lines_are_not_folded(kernel_cell: Cell) -> None:
-    (bundle,) = kernel_cell(printing(FIRST_LINES + LAST_LINES)).bundles
+    count = FIRST_LINES + FEWEST_FOLDED + LAST_LINES - 1
+    (bundle,) = kernel_cell(printing(count)).bundles
     assert "<details>" not in str(bundle["text/html"])
-    assert bundle["text/plain"] == lines(FIRST_LINES, FIRST_LINES + LAST_LINES).rstrip("\n")
+    assert bundle["text/plain"] == lines(FIRST_LINES, count).rstrip("\n")
+    assert (
+        "… 15 more lines" in folded(["a line"] * (FEWEST_FOLDED + LAST_LINES), FEWEST_FOLDED + LAST_LINES)["text/plain"]
+    )
 
 
 def test_a_terminal_prints_everything(cell: Cell) -> None:

@@ -214,3 +214,8 @@ def test_switches_may_be_put_together(together: str, apart: str, cell: Cell) -> 
     other = cell(f"%sim_magic {apart}")
     assert one.out == other.out == "ran\nsays: spoken\n"
     assert one.bundles == other.bundles
+
+
+def test_a_program_that_has_not_run_is_ready_whatever_became_of_the_one_before(cell: Cell) -> None:
+    assert "NameError" in str(cell("%%sim_magic_preloaded -R\nprnt('x')").bundles[-1])
+    assert cell("%%sim_magic_preloaded\nprint('x')").bundles[-1]["text/plain"] == "ready: -R runs the program"

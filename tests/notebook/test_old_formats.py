@@ -89,8 +89,10 @@ def test_a_pair_is_shown_as_a_picture(cell: Cell) -> None:
     cell("%%sim_magic_preloaded -b Grey_bands -x 1520 -RWH\nprint('image_data both')")
     pair = cell("%sim_image_pair").result
     shown = Image.open(io.BytesIO(pair._repr_png_()))
-    assert (isinstance(pair, tuple), shown.size) == (True, (290, 140))
-    assert shown.getpixel((70, 70)) == pair.left.getpixel((7, 7)) == 0
+    assert (isinstance(pair, tuple), shown.size) == (True, (310, 174))
+    assert shown.getpixel((80, 94)) == pair.left.getpixel((7, 7)) == 0
+    # A white picture on a white page has a frame.
+    assert {shown.getpixel(corner) for corner in ((0, 0), (309, 0), (0, 173), (309, 173))} == {128}
 
 
 # The state

@@ -71,6 +71,9 @@ CHOICES = {
     "kitty that could show the next picture": (KITTY + KITTY_YES + KITTY_ERROR + KITTY_YES, None),
     "kitty after it was resized": (KITTY + KITTY_YES + KITTY, Graphics(Protocol.KITTY, (10, 20))),
     "a page": (PAGE + KITTY_YES, Graphics(Protocol.KITTY, (19, 42), most_points=32)),
+    "a page that was resized before it answered": (
+        PAGE + PLAIN + KITTY_YES + PLAIN, Graphics(Protocol.KITTY, (19, 42), most_points=32)
+    ),
     "no graphics": (GHOSTTY_NO, None),
     "iTerm2": (ITERM, Graphics(Protocol.ITERM, (8, 17))),
     "WezTerm": (WEZTERM, Graphics(Protocol.ITERM, (8, 16))),
@@ -80,7 +83,7 @@ CHOICES = {
     "no answer": ("", None),
     "size of a cell as small as a pixel": ("\x1b[6;1;1t\x1b[?63;4c", Graphics(Protocol.SIXEL, (9, 18))),
     "size that cannot be": ("\x1b[6;0;7t\x1b[?63;4c", Graphics(Protocol.SIXEL, (9, 18))),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(("answers", "expected"), CHOICES.values(), ids=CHOICES)

@@ -16,6 +16,8 @@ from tuisim.runs.records import OutputRow, Stream, line_of
 
 FIRST_LINES, LAST_LINES = 20, 5
 """What of a long output is always shown."""
+FEWEST_FOLDED = 15
+"""Fewer lines are not worth a click."""
 MOST_FOLDED_LINES = 20_000
 """A page with more lines is slow."""
 _REDRAW_S = 0.5
@@ -90,8 +92,8 @@ def folded(lines: Sequence[str], count: int) -> dict[str, str]:
         count: How many there are, with those that are not among them any more.
     """
     hidden, last = lines[:-LAST_LINES], lines[-LAST_LINES:]
-    if not hidden:
-        return {"text/plain": "\n".join(last), "text/html": _pre(last)}
+    if len(hidden) < FEWEST_FOLDED:
+        return {"text/plain": "\n".join(lines), "text/html": _pre(lines)}
     title = f"… {counted(count - len(last), 'more line')}"
     lost = count - len(lines)
     note = f"<p>The first {counted(lost, 'line')} of these are in the log only.</p>" if lost else ""

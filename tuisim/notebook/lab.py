@@ -376,13 +376,15 @@ class Lab:
         from tuisim.runs.samples import samples_of
 
         program, start = plan.program, start_record(plan.spec)
+        ready = "ready: -R runs the program" if program and program.text else "ready"
         if self._last is None:
-            return Scene(plan.spec, plan.files, program, start, self._traces, printed=()), (
-                "ready: -R runs the program" if program and program.text else "ready")  # fmt: skip
+            return Scene(plan.spec, plan.files, program, start, self._traces, printed=()), ready
+        is_other = program is not None and program.text != self._last.program.text
         rows = self._last.output.all_rows()
         printed = [shown_text(row) for row in rows if row.stream in TEXT_STREAMS]
         last, samples = self._last.telemetry.last() or start, list(samples_of(rows))
-        return Scene(plan.spec, plan.files, program, last, self._traces, samples, printed), end_text(self._last)
+        status = ready if is_other else end_text(self._last)
+        return Scene(plan.spec, plan.files, program, last, self._traces, samples, printed), status
 
 
 roboSim = Lab()  # noqa: N816 - the course's cells call it so

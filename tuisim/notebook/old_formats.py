@@ -100,8 +100,10 @@ def image_frame(records: Iterable[str], mode: str = "rgb") -> pd.DataFrame:
 # Pictures
 
 
-_GAP_GREY = 128
-"""Between the two pictures of a pair: it differs from white and from black."""
+_FRAME_GREY = 128
+"""Around the two pictures of a pair: it differs from white and from black."""
+_FRAME_PX, _TITLE_PX = 10, 24
+"""The frame, and the row above with the names of the sides."""
 
 
 class ImagePair(NamedTuple):
@@ -111,15 +113,17 @@ class ImagePair(NamedTuple):
     right: Image
 
     def _repr_png_(self) -> bytes:
-        from PIL import Image
+        from PIL import Image, ImageDraw
 
         from tuisim.charts.files import png_of
 
-        scale, gap = 10, 10
+        scale = 10
         width, height = self.left.width * scale, self.left.height * scale
-        both = Image.new("L", (width + gap + self.right.width * scale, height), _GAP_GREY)
-        for at, picture in ((0, self.left), (width + gap, self.right)):
-            both.paste(picture.resize((picture.width * scale, picture.height * scale), 0), (at, 0))
+        both = Image.new("L", (2 * width + 3 * _FRAME_PX, height + _TITLE_PX + _FRAME_PX), _FRAME_GREY)
+        for number, (side, picture) in enumerate(zip(SIDES, self, strict=True)):
+            x = _FRAME_PX + number * (width + _FRAME_PX)
+            both.paste(picture.resize((width, height), 0), (x, _TITLE_PX))
+            ImageDraw.Draw(both).text((x, _TITLE_PX // 2), side, fill="white", anchor="lm", font_size=_TITLE_PX - 8)
         return png_of(both)
 
 

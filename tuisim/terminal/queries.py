@@ -50,7 +50,8 @@ class TerminalFacts:
     attributes: frozenset[str] = frozenset()
     """The numbers of its features; empty if it has not answered at all."""
     has_kitty_graphics: bool | None = None
-    """Whether it draws pictures at placeholders; None if it has not been asked, False once it has reported an error."""
+    """Whether it draws pictures at placeholders; None if it has not been asked, False while it does not answer, and
+    for good once it has reported an error."""
     kitty_error: str = ""
     """What it has last reported, such as `ENOSPC:No space left`."""
     cell_px: tuple[int, int] | None = None
@@ -79,10 +80,12 @@ class TerminalFacts:
             return replace(self, name=found["name"])
         if found["kitty"] is not None:
             error = "" if found["kitty"] == "OK" else found["kitty"]
-            has_it = not error and self.has_kitty_graphics is not False
-            return replace(self, has_kitty_graphics=has_it, kitty_error=error or self.kitty_error)
+            return replace(
+                self, has_kitty_graphics=not error and not self.kitty_error, kitty_error=error or self.kitty_error
+            )
         if found["attributes"] is not None:
-            # The second time they come after the question for kitty's protocol.
+            # The second time they come after the question for kitty's protocol, or that of a new size overtook it: then
+            # its answer is still to come.
             answered = False if self.attributes and self.asks_for_kitty else self.has_kitty_graphics
             attributes = frozenset(found["attributes"].split(";"))
             return replace(self, attributes=attributes, has_kitty_graphics=answered)

@@ -235,15 +235,16 @@ async def test_pressing_elsewhere_moves_nothing() -> None:
 @pytest.mark.parametrize(
     ("kind", "turn"), [(events.MouseScrollUp, TURN_STEP_DEG), (events.MouseScrollDown, -TURN_STEP_DEG)]
 )
-async def test_the_wheel_turns_the_robot(kind: type[events.MouseEvent], turn: float) -> None:
+async def test_the_wheel_turns_the_robot_that_it_is_over(kind: type[events.MouseEvent], turn: float) -> None:
     app = PanelApp(World())
     async with app.run_test(size=(120, 30)) as pilot:
         app.panel.set_mat(white_mat())
         app.panel.show(moment(POSE))
         await pilot.pause()
         target = view(app.panel)
-        for _ in range(2):
-            target.post_message(kind(target, 5, 5, 0, 0, 0, False, False, False))
+        robot = cell_of(app.panel, POSE.x_mm, POSE.y_mm)
+        for col, row in (robot, robot, (2, 2)):
+            target.post_message(kind(target, col, row, 0, 0, 0, False, False, False))
         await pilot.pause()
 
     messages = app.heard(World.PoseDragged)

@@ -61,6 +61,7 @@ class Output(Vertical):
         self._past_log.display = False
         self.asking = False
         """Whether the field for `input()` is shown."""
+        self._program_name = ""
 
     def compose(self) -> ComposeResult:
         yield self._log
@@ -68,9 +69,8 @@ class Output(Vertical):
 
     def set_program(self, name: str) -> None:
         """Show the name of the program."""
-        title = _INFO.titled(name)
-        if title != self.border_title:
-            self.border_title = title
+        if name != self._program_name:
+            self._program_name, self.border_title = name, _INFO.titled(name)
 
     def clear(self) -> None:
         """Remove every line."""

@@ -362,16 +362,20 @@ class WorldView(PixelView):
             self.capture_mouse()
             event.stop()
 
-    def _grip_robot(self, event: events.MouseDown) -> bool:
+    def _is_over_robot(self, event: events.MouseEvent, pose: Pose) -> bool:
         assert self._port is not None and self._snapshot is not None
-        pose = self._held or self._snapshot.instant.pose
         x_mm, y_mm = self._at(event)
         robot = self._snapshot.spec.robot
         half_mm = robot.wheel_spacing_mm / 2
         reach_mm = half_mm * drawn_scale(outline_of(robot), self._port) + 1.5 * self._cell_mm
-        if math.hypot(x_mm - pose.x_mm, y_mm - pose.y_mm) > max(reach_mm, half_mm - robot.back_mm / 2):
+        return math.hypot(x_mm - pose.x_mm, y_mm - pose.y_mm) <= max(reach_mm, half_mm - robot.back_mm / 2)
+
+    def _grip_robot(self, event: events.MouseDown) -> bool:
+        assert self._snapshot is not None
+        pose = self._held or self._snapshot.instant.pose
+        if not self._is_over_robot(event, pose):
             return False
-        self._grip = _Grip(pose, x_mm, y_mm, turns=event.shift or event.ctrl)
+        self._grip = _Grip(pose, *self._at(event), turns=event.shift or event.ctrl)
         self.capture_mouse()
         event.stop()
         return True
@@ -428,10 +432,13 @@ class WorldView(PixelView):
         self._turn(event, -TURN_STEP_DEG)
 
     def _turn(self, event: events.MouseEvent, angle_deg: float) -> None:
+        """Turn the robot, if the mouse is over it or drags it: a page that is scrolled leaves it as it is."""
         if self._snapshot is None or self._port is None:
             return
-        event.stop()
         pose = self._held or self._snapshot.instant.pose
+        if self._grip is None and not self._is_over_robot(event, pose):
+            return
+        event.stop()
         self._held = replace(pose, heading_deg=pose.heading_deg + angle_deg)
         self._held_shows = _SHOWS_UNTIL_TAKEN
         if self._grip is not None:

@@ -138,6 +138,12 @@ if (session.framed) {
   document.addEventListener("DOMContentLoaded", () => (document.getElementById("terminal").dataset.fontSize = "13"));
 }
 
+if (session.framed) {
+  // Until somebody has clicked into the app, the mouse wheel scrolls what is around the frame.
+  const scroll = (event) => document.hasFocus() || event.stopImmediatePropagation();
+  window.addEventListener("wheel", scroll, { capture: true });
+}
+
 // The cell of a notebook waits for this, in case the address does not lead here.
 if (session.framed) window.parent.postMessage("tuisim", "*");
 
