@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tests.app.app_help import ENDLESS, notices, ready, settings, until
 from tuisim.app.app import LabApp
+from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.snapshot import IN_RUN
 from tuisim.terminal.app import ActionAsked
 
@@ -35,3 +36,11 @@ async def test_an_action_that_no_page_has_is_ignored() -> None:
         app.post_message(ActionAsked("__init__"))
         app.post_message(ActionAsked("panel-chart"))
         await until(pilot, lambda: app.panel_area.shown("chart"))
+
+
+async def test_a_click_on_the_empty_panel_of_lessons_offers_them() -> None:
+    async with LabApp(settings(ENDLESS, panels_on=frozenset({"lesson"}))).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        await until(pilot, lambda: app.panel_area.shown("lesson"))
+        await pilot.click(app.panel_area.lesson, offset=(5, 5))
+        await until(pilot, lambda: isinstance(app.screen, Chooser))

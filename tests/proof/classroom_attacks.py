@@ -109,6 +109,8 @@ async def _stolen_elsewhere(target: Target) -> None:
         await target.no_socket(target.of("tutor", "view/Ada/ws"), origin)
         for what in ("end", "file?name=x.py"):
             await target.refused("POST", target.of("Ada", f"sessions/{target.session}/{what}"), Origin=origin)
+        for what in ("end", "link"):
+            await target.refused("POST", target.of("tutor", f"students/Ada/{what}"), Origin=origin)
     for path in PATHS:
         await target.refused("GET", target.of("tutor", path), Origin="http://evil.example")
         await target.refused("GET", target.of("tutor", path), Host="evil.example")
@@ -122,6 +124,9 @@ async def _tutors_page(target: Target) -> None:
             raise FaultError(f"{path}: a student is told more than a stranger")
     for path in ("view/Ada/ws", "view/Bob/ws"):
         await target.no_socket(target.of("Bob", path))
+    for who in ("Ada", "Bob"):
+        for what in ("end", "link"):
+            await target.refused("POST", target.of(who, f"students/Bob/{what}"), Origin=target.origin)
 
 
 async def _another_session(target: Target) -> None:

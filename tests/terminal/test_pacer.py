@@ -151,6 +151,25 @@ def test_questions_to_a_page_that_is_gone_are_no_slow_link() -> None:
     assert not line.pacer.is_slow
 
 
+def test_a_page_that_begins_late_is_not_taken_for_a_slow_link() -> None:
+    clock = Clock()
+    pacer = Pacer(20, clock=clock, most_queued_s=PAGE_QUEUED_S)
+
+    def draws(answer_after_s: float) -> None:
+        pacer.drawn()
+        pacer.painted(FRAME_BYTES)
+        clock.now_s += answer_after_s
+        pacer.answered()
+
+    draws(0.01)
+    pacer.shown_elsewhere()
+    draws(2.0)
+    was_slow = pacer.is_slow
+    draws(2.0)
+
+    assert (was_slow, pacer.is_slow) == (False, True)
+
+
 def test_what_is_no_frame_is_asked_about_only_if_it_is_large() -> None:
     pacer = Pacer(20, clock=Clock())
 

@@ -126,10 +126,24 @@ async def test_the_tutor_sees_who_is_there_and_what_runs(opened: Opened) -> None
     await socket.send_json(["stdin", "tell ended line.py"])
     await heard(socket)
     assert (await found.seen())["Bob"]["runs"] is False
+    assert await found["tutor"].post("students/Ada/end") == 404
     await socket.close()
     async with asyncio.timeout(PATIENCE_S):
         while (await found.seen())["Bob"]["shown"]:
             await asyncio.sleep(0.005)
+
+
+async def test_the_tutor_ends_an_app_and_hands_a_link_out_again(opened: Opened) -> None:
+    found = await opened()
+    socket, pid = await found["Bob"].started()
+    assert await found["tutor"].post("students/Bob/end") == 204
+    assert await heard(socket) == "Your tutor has ended this app; what it has saved is still there."
+    await gone(pid)
+    tutor = found["tutor"]
+    async with found.client.post(f"{tutor.top}students/Bob/link", headers={"Origin": tutor.origin}) as answer:
+        assert await answer.json() == {"token": found.tokens["Bob"]}
+    assert await tutor.post("students/Eve/link") == 404
+    await found["Bob"].started()
 
 
 async def test_the_tutor_looks_on_and_nothing_that_is_sent_reaches_the_app(opened: Opened) -> None:

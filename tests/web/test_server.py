@@ -24,6 +24,7 @@ from textual_serve.app_service import AppService
 from tests.running import PATIENCE_S
 from tests.web.stand_in import stand_in
 from tuisim.web import session
+from tuisim.web.answering import _REFUSAL
 from tuisim.web.gate import Gate
 from tuisim.web.server import Server, ServerLimits, listening
 from tuisim.web.visit import VisitLimits
@@ -141,7 +142,7 @@ async def test_a_stranger_gets_nothing(path: str, headers: Mapping[str, str], pl
     await heard(socket)
     url = visitor.origin + path.format(place=place)
     async with visitor.client.get(url, headers=headers) as answer:
-        assert (answer.status, await answer.text()) == (403, "Use the whole address that `tuisim serve` has printed.\n")
+        assert (answer.status, await answer.text()) == (403, _REFUSAL)
 
 
 @pytest.mark.parametrize(
@@ -184,6 +185,7 @@ VISITS = {
     "the page": ("", "text/html"),
     "its script": ("page/page.js", "javascript"),
     "what draws pictures": ("page/pictures.js", "javascript"),
+    "what unpacks them": ("page/inflate.js", "javascript"),
     "what fingers do": ("page/fingers.js", "javascript"),
     "its style": ("page/page.css", "text/css"),
     "the terminal": ("static/js/textual.js", "javascript"),

@@ -106,9 +106,9 @@ Socket.prototype.send = function (said) {
 async def test_two_fingers_change_the_size_of_the_text(serve: Serve, tmp_path: Path) -> None:
     async with opened(serve, tmp_path, (390, 844), 2, fingers=True) as page:
         await page.js(NOTES_COLUMNS)
-        await page.finger("touchStart", (200, 300), (200, 400))
+        await page.finger("touchStart", (200, 340), (200, 360))
         for step in range(1, 6):
-            await page.finger("touchMove", (200, 300 - 10 * step), (200, 400 + 10 * step))
+            await page.finger("touchMove", (200, 340 - 10 * step), (200, 360 + 10 * step))
         await page.finger("touchEnd")
         # Never fewer than the app shows.
         await page.until("columns.at(-1) >= 40 && columns.at(-1) < 45")

@@ -273,6 +273,15 @@ class KeyFooter(ActionWords):
             self._of_dialog = keys
             self.refresh()
 
+    def key_of_dialog_at(self, x: int) -> str:
+        """Return the display name of the dialog's key at a column of the row; empty if there is none."""
+        at = 0
+        for key, word in self._of_dialog:
+            at += len(key) + len(word) + 2
+            if x < at:
+                return key
+        return ""
+
     def show(
         self,
         actions: Sequence[Action[Any, Any]],

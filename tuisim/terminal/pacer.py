@@ -112,6 +112,8 @@ class Pacer:
         """When a frame was last found to have queued on the link."""
         self._slow_s = SLOW_S
         """For how long the link counts as slow after that."""
+        self._begun_s = 0.0
+        """When what shows the app now has first answered; what was sent before waited for it to begin."""
         self.answers = False
         """Whether the terminal has ever answered."""
 
@@ -170,6 +172,7 @@ class Pacer:
         """Note that what was sent is not answered any more: another program, or page, had the terminal."""
         self._asked.clear()
         self._queued_s = None
+        self._begun_s = inf
 
     def answered(self) -> None:
         """Note an answer of the terminal."""
@@ -177,11 +180,13 @@ class Pacer:
         first, self.answers = not self.answers, True
         if not self._asked:
             return
-        took_s = self._heard_s - self._asked.popleft()[0]
+        asked_s, _ = self._asked.popleft()
+        self._begun_s = min(self._begun_s, self._heard_s)
+        took_s = self._heard_s - asked_s
         # Falls at once, rises slowly: a backlog must not be taken for latency.
         self._round_trip_s = took_s if first else min(took_s, self._round_trip_s + 0.001)
         queued_s = took_s - self._round_trip_s
-        if queued_s > self._most_queued_s:
+        if queued_s > self._most_queued_s and asked_s >= self._begun_s:
             self._has_queued(self._heard_s)
         if queued_s > 2 * self._gap_s:
             self._allowed = 1

@@ -14,7 +14,16 @@ from tuisim.web.upload import MOST_FILE_BYTES
 Answer = Callable[[Any, web.Request], Awaitable[web.StreamResponse]]
 Routes = Sequence[tuple[str, str, Answer]]
 """GET or POST, the path after the secret part, and the function that answers, which gets the owner of that part."""
-_REFUSAL = "Use the whole address that `tuisim serve` has printed.\n"
+_REFUSAL = "This address leads nowhere. Students ask their tutor for their link; `tuisim serve` prints all links.\n"
+_REFUSAL_PAGE = f"""\
+<!DOCTYPE html>
+<html lang="en">
+<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>tuisim</title>
+<style>:root {{ color-scheme: dark }} body {{ font: 18px/1.5 system-ui, sans-serif; margin: 20vh auto 0;
+max-width: 30em; padding: 0 1em }}</style>
+<p>{_REFUSAL.replace("`tuisim serve`", "<code>tuisim serve</code>").strip()}
+</html>
+"""
 
 
 class Owner(Protocol):
@@ -41,10 +50,15 @@ def application_of(find: Callable[[], Sequence[Owner]]) -> web.Application:
         found = [one for one in find() if one.gate.admits(request.path, request.host, origin, from_a_page=acts)]
         return found[0] if found else None
 
+    def refusal(request: web.Request) -> web.HTTPForbidden:
+        if "text/html" in request.headers.get("Accept", ""):
+            return web.HTTPForbidden(text=_REFUSAL_PAGE, content_type="text/html")
+        return web.HTTPForbidden(text=_REFUSAL)
+
     @web.middleware
     async def guard(request: web.Request, handler: Handler) -> web.StreamResponse:
         if owner_of(request) is None:
-            raise web.HTTPForbidden(text=_REFUSAL)
+            raise refusal(request)
         return await handler(request)
 
     async def protect(request: web.Request, response: web.StreamResponse) -> None:
@@ -54,7 +68,7 @@ def application_of(find: Callable[[], Sequence[Owner]]) -> web.Application:
         async def handle(request: web.Request) -> web.StreamResponse:
             owner = owner_of(request)
             if owner is None or type(owner) not in answers:
-                raise web.HTTPForbidden(text=_REFUSAL)
+                raise refusal(request)
             return await answers[type(owner)](owner, request)
 
         return handle

@@ -63,11 +63,28 @@ class Tutor:
         if visit is None:
             return {"name": name, "app": None}
         memory_bytes = self._used.get(visit.pid, Usage()).memory_bytes
-        return {"name": name, "app": {**visit.to_plain(), **visit.doing.to_plain(), "memory_mb": memory_bytes >> 20}}
+        return {
+            "name": name,
+            "app": {**visit.to_plain(), **visit.doing.to_plain(), "memory_mb": memory_bytes >> 20},
+        }
 
     def _visit(self, name: str) -> Visit | None:
         server = self._servers.get(name)
         return next(iter(server.visits), None) if server else None
+
+    async def _end(self, request: web.Request) -> web.StreamResponse:
+        visit = self._visit(request.match_info["student"])
+        if visit is None:
+            raise web.HTTPNotFound(text="This student has no app open.\n")
+        visit.end("Your tutor has ended this app; what it has saved is still there.")
+        raise web.HTTPNoContent
+
+    async def _link(self, request: web.Request) -> web.StreamResponse:
+        # Only when it is asked for: the list is on the screen, and asked for all the time.
+        server = self._servers.get(request.match_info["student"])
+        if server is None:
+            raise web.HTTPNotFound(text="There is no such student.\n")
+        return web.json_response({"token": server.gate.token})
 
     async def _view(self, request: web.Request) -> web.StreamResponse:
         if request.match_info["student"] not in self._servers:
@@ -89,7 +106,9 @@ _ROUTES: Routes = [
     ("GET", "", to_page),
     ("GET", "/", Tutor._page),
     ("GET", "/students", Tutor._students),
+    ("POST", "/students/{student}/end", Tutor._end),
     ("GET", FILES_OF_PAGE, file_of_page),
+    ("POST", "/students/{student}/link", Tutor._link),
     ("GET", "/view/{student}", to_page),
     ("GET", "/view/{student}/", Tutor._view),
     ("GET", "/view/{student}/ws", Tutor._look_on),

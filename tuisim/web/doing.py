@@ -21,7 +21,7 @@ class Doing:
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._since_s = clock()
-        self._program, self._runs = "", False
+        self._program, self._runs, self._end = "", False, ""
 
     def note(self, told: Mapping[str, Any]) -> None:
         """Note what an app has told; it is not trusted."""
@@ -30,7 +30,9 @@ class Doing:
             self._program = printable(str(told.get("program", "")))[:_LONGEST_NAME]
         if what in ("run", "ended"):
             self._runs, self._since_s = what == "run", self._clock()
+            self._end = printable(str(told.get("end", "")))[:_LONGEST_NAME]
 
     def to_plain(self) -> dict[str, Any]:
-        """Return the program, whether it runs, and for how many seconds it has or has not."""
-        return {"program": self._program, "runs": self._runs, "since_s": round(self._clock() - self._since_s)}
+        """Return the program, whether it runs, how its last run has ended, and for how many seconds that is so."""
+        since_s = round(self._clock() - self._since_s)
+        return {"program": self._program, "runs": self._runs, "end": self._end, "since_s": since_s}

@@ -118,8 +118,8 @@ class Server:
         return web.FileResponse(PAGE / "index.html")
 
     async def _list(self, request: web.Request) -> web.StreamResponse:
-        sessions = [visit.to_plain() for visit in self._visits.values()]
-        return web.json_response({"sessions": sessions, "free": self._free})
+        sessions = [{**visit.to_plain(), **visit.doing.to_plain()} for visit in self._visits.values()]
+        return web.json_response({"sessions": sessions, "free": self._free, "most": self._limits.visitors})
 
     @property
     def _free(self) -> int:

@@ -119,3 +119,11 @@ def test_each_line_of_the_table_is_a_panel(panel: PanelInfo) -> None:
 
 def test_panel_keys_differ() -> None:
     assert len({panel.key for panel in PANELS.values()}) == len(PANELS)
+
+
+@pytest.mark.parametrize("width", [40, 50, 59])
+def test_a_narrow_and_high_area_shows_the_world_above_what_was_asked_for(width: int) -> None:
+    boxes = arrange(["world", "goals", "instrumentation"], width, 44).boxes
+    assert {"world", "goals"} <= boxes.keys()
+    assert boxes["world"].width == width
+    assert boxes["world"].y == 0

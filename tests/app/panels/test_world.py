@@ -232,6 +232,23 @@ async def test_pressing_elsewhere_moves_nothing() -> None:
     assert not app.messages
 
 
+async def test_ctrl_and_the_wheel_zoom_the_world_as_two_fingers_do() -> None:
+    app = PanelApp(World())
+    async with app.run_test(size=(120, 30)) as pilot:
+        app.panel.set_mat(white_mat())
+        app.panel.show(moment(POSE))
+        await pilot.pause()
+        target = view(app.panel)
+        seen = []
+        for kind in [events.MouseScrollUp] * 3 + [events.MouseScrollDown] * 3:
+            target.post_message(kind(target, 2, 2, 0, 0, 0, False, False, True))
+            await pilot.pause()
+            seen.append(app.panel.zoom)
+
+    assert seen == [2, 4, 4, 2, 1, 1]
+    assert app.heard(World.PoseDragged) == []
+
+
 @pytest.mark.parametrize(
     ("kind", "turn"), [(events.MouseScrollUp, TURN_STEP_DEG), (events.MouseScrollDown, -TURN_STEP_DEG)]
 )

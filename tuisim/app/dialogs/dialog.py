@@ -14,7 +14,7 @@ from textual.await_complete import AwaitComplete
 from textual.binding import Binding, BindingType
 from textual.color import Color
 from textual.containers import Vertical
-from textual.events import Event, Key
+from textual.events import Click, Event, Key
 from textual.geometry import Region
 from textual.keys import key_to_character
 from textual.message import Message
@@ -23,7 +23,7 @@ from textual.strip import Strip
 from textual.widgets import Input, OptionList, Static
 
 from tuisim.app import background
-from tuisim.app.action import KeyWord, label_of_key
+from tuisim.app.action import KeyFooter, KeyWord, label_of_key
 from tuisim.app.background import Made
 from tuisim.errors import TuisimError
 from tuisim.terminal.cell_view import JoinedStrip, LazyStrip
@@ -188,13 +188,31 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
     @property
     def keys(self) -> tuple[KeyWord, ...]:
         """Enter, then its own keys that work where the focus is, then Escape; none if the keys of the app work."""
-        kinds = [kind for kind in type(self).__mro__ if issubclass(kind, Dialog)]
-        bound = [one for kind in kinds for one in kind.__dict__.get("BINDINGS", ()) if isinstance(one, Binding)]
-        words = ((one.key.split(","), one.description.lower()) for one in bound if one.description)
+        words = ((one.key.split(","), one.description.lower()) for one in self._bound() if one.description)
         working = ((next((key for key in keys if self._gets(key)), ""), word) for keys, word in words)
         own = tuple((_short_label(key), word) for key, word in working if key)
         enter = _enter_does(self.HINT)
         return own if not enter or "enter" in dict(own) else (("enter", enter), *own)
+
+    def _bound(self) -> list[Binding]:
+        kinds = [kind for kind in type(self).__mro__ if issubclass(kind, Dialog)]
+        return [one for kind in kinds for one in kind.__dict__.get("BINDINGS", ()) if isinstance(one, Binding)]
+
+    async def on_click(self, event: Click) -> None:
+        """Do what the word in the row below that was clicked stands for: a phone may lack its key."""
+        keys = {_short_label(key): key for one in self._bound() for key in one.key.split(",")} | {"enter": "enter"}
+        footers = (footer for screen in self.app.screen_stack[:-1] for footer in screen.query(KeyFooter))
+        for footer in footers:
+            if footer.region.contains(event.screen_x, event.screen_y):
+                label = footer.key_of_dialog_at(event.screen_x - footer.region.x)
+                await self._press(keys.get(label, ""))
+
+    async def _press(self, key: str) -> None:
+        """Run the action of a key, as the widget with the focus, or one around it, understands it."""
+        for node in (self.focused or self).ancestors_with_self:
+            if bound := bindings_of(node).key_to_bindings.get(key):
+                await self.app.run_action(bound[0].action, node)
+                return
 
     def _gets(self, key: str) -> bool:
         """Return whether a field with the focus leaves a key to the dialog."""

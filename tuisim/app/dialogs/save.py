@@ -184,7 +184,7 @@ class ExportDialog(FileDialog):
     """
 
     TITLE_TEXT: str = "Export the log"
-    HINT: str = "Enter writes · ctrl+t samples or telemetry · Escape closes"
+    HINT: str = "Enter writes · ctrl+t switches · Escape closes"
     SUFFIXES: str = LISTED
     BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+t", "switch", "Samples or telemetry", show=False)]
 

@@ -35,6 +35,8 @@ MIN_STRIP_COLS = 36
 """A panel of the bottom strip is not made narrower than this to fit another one next to it."""
 _SINGLE_COLS, _SINGLE_ROWS = 60, 15
 """Below this size one panel is shown at a time."""
+_TALL_ROWS = 30
+"""From this height on, narrow panels stand below each other, as on a phone with large text."""
 _LOW_COLS, _LOW_ROWS = 112, 33
 """Below both, the panels share the screen as in a terminal of 80×24."""
 _READINGS_COLS, _TEXT_COLS = 48, 32
@@ -75,7 +77,7 @@ def size_class(width: int, height: int) -> TerminalSize:
 
 def is_single(width: int, height: int) -> bool:
     """Return whether the area of the panels is so small that it shows one panel at a time."""
-    return width < _SINGLE_COLS or height < _SINGLE_ROWS - 1
+    return height < _SINGLE_ROWS - 1 or (width < _SINGLE_COLS and height < _TALL_ROWS)
 
 
 def is_tall(width: int, height: int) -> bool:

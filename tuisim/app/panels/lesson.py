@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from textual.binding import Binding, BindingType
 
-from tuisim.app.action import with_keys_of
+from tuisim.app.action import Act, with_keys_of
 from tuisim.app.panels import PANELS
 from tuisim.app.render.lesson import Away, LessonPicture, LessonView, draw_lesson
 from tuisim.terminal.cell_view import LinesPanel
@@ -123,6 +123,11 @@ class LessonPanel(LinesPanel, can_focus=True):
         page = self._content.page if self._page is None else self._page
         self._page, self._first = max(0, min(page + by, self._content.last_page)), 0
         self._redraw()
+
+    def on_click(self) -> None:
+        """Offer the lessons if none is open."""
+        if not self._content.lesson:
+            self.post_message(Act("lesson-menu"))
 
     def on_mouse_scroll_down(self) -> None:
         self.action_scroll_text(1)

@@ -92,6 +92,13 @@ class World(Widget, can_focus=True):
         index: int
         """The one that was moved or drawn."""
 
+    @dataclass
+    class ZoomAsked(Message):
+        """Posted when the user zooms with the mouse."""
+
+        steps: int
+        """How many zoom factors further; negative to see more of the field."""
+
     def __init__(self) -> None:
         super().__init__()
         self._view = WorldView()
@@ -151,6 +158,10 @@ class World(Widget, can_focus=True):
     def cycle_zoom(self) -> None:
         """Go to the next zoom factor, and from the last to the first."""
         self.zoom = ZOOMS[(ZOOMS.index(self.zoom) + 1) % len(ZOOMS)]
+
+    def on_world_zoom_asked(self, message: World.ZoomAsked) -> None:
+        message.stop()
+        self.zoom = ZOOMS[min(max(ZOOMS.index(self.zoom) + message.steps, 0), len(ZOOMS) - 1)]
 
     def set_mat(self, pixels: Pixels) -> None:
         """Set the mat: shape (1143, 2362, 3), one pixel per mm. Until then the panel is blank."""
@@ -427,10 +438,14 @@ class WorldView(PixelView):
             self.post_message(World.BoxesDragged(grip.boxes, grip.index))
 
     def on_mouse_scroll_up(self, event: events.MouseScrollUp) -> None:
-        self._turn(event, TURN_STEP_DEG)
+        self._zoom_by(event, 1) if event.ctrl else self._turn(event, TURN_STEP_DEG)
 
     def on_mouse_scroll_down(self, event: events.MouseScrollDown) -> None:
-        self._turn(event, -TURN_STEP_DEG)
+        self._zoom_by(event, -1) if event.ctrl else self._turn(event, -TURN_STEP_DEG)
+
+    def _zoom_by(self, event: events.MouseEvent, steps: int) -> None:
+        event.stop()
+        self.post_message(World.ZoomAsked(steps))
 
     def _turn(self, event: events.MouseEvent, angle_deg: float) -> None:
         """Turn the robot, if the mouse is over it or drags it: a page that is scrolled leaves it as it is."""

@@ -4,6 +4,7 @@
 const EVERY_MS = 2000;
 const top_ = location.origin + location.pathname;
 const rows = new Map();
+const ENDS = { raised: "error" };
 
 const span = (seconds) => {
   if (seconds < 90) return `${seconds} s`;
@@ -14,7 +15,8 @@ const counted = (number, noun) => `${number} ${noun}${number === 1 ? "" : "s"}`;
 
 const state = (app) => {
   if (app.runs) return `runs for ${span(app.since_s)}`;
-  return app.program ? `at rest for ${span(app.since_s)}` : "";
+  if (app.end) return `${(ENDS[app.end] || app.end).replaceAll("_", " ")} ${span(app.since_s)} ago`;
+  return app.program ? "not run yet" : "";
 };
 
 // The texts of a row, after the name.
@@ -31,6 +33,35 @@ const texts = (app) =>
     : ["no app", "", "", "", "", ""];
 
 const heads = [...document.querySelectorAll("th")].map((head) => head.textContent.trim());
+
+const button = (words, label, act) => {
+  const made = document.createElement("button");
+  made.type = "button";
+  made.textContent = words;
+  made.setAttribute("aria-label", label);
+  made.addEventListener("click", () => act(made));
+  return made;
+};
+
+// A browser gives the clipboard to pages of this machine, and of addresses with encryption, only.
+const copyLink = async (name, made) => {
+  const answer = await fetch(`${top_}students/${encodeURIComponent(name)}/link`, { method: "POST" });
+  if (!answer.ok) return alert(await answer.text());
+  const link = new URL(`../${(await answer.json()).token}/`, top_).href;
+  try {
+    await navigator.clipboard.writeText(link);
+    made.textContent = "Copied";
+    setTimeout(() => (made.textContent = "Copy link"), EVERY_MS);
+  } catch {
+    prompt(`The link of ${name}:`, link);
+  }
+};
+
+const end = async (name) => {
+  if (!confirm(`End the app of ${name}? A program that runs stops; what is saved stays.`)) return;
+  const answer = await fetch(`${top_}students/${encodeURIComponent(name)}/end`, { method: "POST" });
+  if (!answer.ok) alert(await answer.text());
+};
 
 const rowOf = (name) => {
   if (rows.has(name)) return rows.get(name);
@@ -49,7 +80,11 @@ const rowOf = (name) => {
   link.href = `${top_}view/${encodeURIComponent(name)}/`;
   link.textContent = "Look on";
   link.setAttribute("aria-label", `Look on at ${name}`);
-  look.append(link);
+  look.append(
+    link,
+    button("Copy link", `Copy the link of ${name}`, (made) => copyLink(name, made)),
+    button("End", `End the app of ${name}`, () => end(name)),
+  );
   row.append(look);
   document.getElementById("students").append(row);
   rows.set(name, row);
@@ -63,7 +98,7 @@ const show = ({ students }) => {
     texts(app).forEach((text, at) => {
       row.children[at + 1].textContent = text;
     });
-    row.querySelector("a").hidden = !app;
+    for (const only of [row.querySelector("a"), row.querySelector("button:last-child")]) only.hidden = !app;
   }
   const apps = students.map((one) => one.app).filter(Boolean);
   const shown = apps.filter((app) => app.shown).length;

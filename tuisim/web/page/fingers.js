@@ -1,14 +1,16 @@
 // Fingers: a bar of buttons, touches as the mouse, swipes as its wheel, and the size of the text.
 "use strict";
 
-const [LEAST_TEXT_PX, USUAL_TEXT_PX, MOST_TEXT_PX] = [6, 16, 40];
+const [LEAST_TEXT_PX, READABLE_TEXT_PX, USUAL_TEXT_PX, MOST_TEXT_PX] = [6, 10, 16, 40];
 // Columns and rows that the app's panels need, and the fewest that it shows.
 const [ENOUGH, LEAST] = [
   [64, 24],
   [40, 12],
 ];
-const KEYS = { esc: "\x1b", tab: "\t", left: "\x1b[D", up: "\x1b[A", down: "\x1b[B", right: "\x1b[C" };
+const KEYS = { enter: "\r", esc: "\x1b", tab: "\t", left: "\x1b[D", up: "\x1b[A", down: "\x1b[B", right: "\x1b[C" };
 const HOLD_PX = 8;
+// Two fingers that are this many times as far apart zoom the world by a step.
+const ZOOM_STEP = 1.5;
 
 class Fingers {
   constructor(terminal) {
@@ -75,7 +77,9 @@ class Fingers {
   }
 
   fittingPx() {
-    return Math.min(USUAL_TEXT_PX, this.largestPx(ENOUGH));
+    // Above a keyboard, few lines that can be read are better than many.
+    const readable = Math.min(READABLE_TEXT_PX, this.largestPx(LEAST));
+    return Math.max(readable, Math.min(USUAL_TEXT_PX, this.largestPx(ENOUGH)));
   }
 
   fit() {
@@ -96,7 +100,10 @@ class Fingers {
     const [first, second] = event.touches;
     if (second) {
       if (this.touch?.kind === "drag") this.mouse("mouseup", this.touch);
-      this.touch = { kind: "pinch", apart: apart(first, second), px: this.terminal.options.fontSize };
+      const between = { clientX: (first.clientX + second.clientX) / 2, clientY: (first.clientY + second.clientY) / 2 };
+      const kind = this.isOnPicture(between) ? "zoom" : "pinch";
+      const [x, y] = [between.clientX, between.clientY];
+      this.touch = { kind, x, y, apart: apart(first, second), px: this.terminal.options.fontSize };
       return;
     }
     this.touch = { kind: "tap", x: first.clientX, y: first.clientY };
@@ -115,7 +122,13 @@ class Fingers {
     const { touch } = this;
     const [first, second] = event.touches;
     if (touch?.kind === "pinch") {
-      if (second) this.setText((touch.px * apart(first, second)) / touch.apart);
+      // Less than the fingers: a step of the text is a large one.
+      const px = second ? touch.px * Math.sqrt(apart(first, second) / touch.apart) : touch.px;
+      this.setText(Math.max(px, Math.min(touch.px, READABLE_TEXT_PX)));
+      return;
+    }
+    if (touch?.kind === "zoom") {
+      if (second) this.zoom(touch, apart(first, second));
       return;
     }
     if (!touch) return;
@@ -129,6 +142,15 @@ class Fingers {
     if (touch.kind !== "drag") return;
     [touch.x, touch.y] = [x, y];
     this.mouse("mousemove", touch);
+  }
+
+  // Turns the wheel with ctrl by a notch for each step.
+  zoom(touch, now) {
+    const ratio = now / touch.apart;
+    if (ratio < ZOOM_STEP && ratio > 1 / ZOOM_STEP) return;
+    touch.apart = now;
+    const deltaY = ratio > 1 ? -1 : 1;
+    this.mouse("wheel", touch, { deltaY, deltaMode: WheelEvent.DOM_DELTA_LINE, ctrlKey: true });
   }
 
   // Turns the wheel by a notch for each two rows.
@@ -145,7 +167,8 @@ class Fingers {
     const { touch } = this;
     if (touch?.kind === "tap") this.drag();
     if (touch?.kind === "drag") this.mouse("mouseup", touch);
-    if (!event.touches.length || touch?.kind !== "pinch") this.touch = null;
+    // A finger that stays after two does nothing.
+    if (!event.touches.length || !["pinch", "zoom"].includes(touch?.kind)) this.touch = null;
     this.input.focus();
   }
 

@@ -40,6 +40,11 @@ window.WebSocket = class extends Socket {
     this.addEventListener("message", (event) => session.heard(event.data));
     this.addEventListener("close", session.closed);
   }
+
+  // The terminal speaks on after its app has ended.
+  send(data) {
+    if (this.readyState === Socket.OPEN) super.send(data);
+  }
 };
 
 const start = window.onload;

@@ -68,26 +68,27 @@ class Pictures {
     if (keys.a === "T") this.coming = { keys, data: "" };
     if (this.coming) {
       this.coming.data += data;
-      if (keys.m !== "1") this.keep(this.coming.keys, this.coming.data);
+      if (keys.m !== "1") {
+        this.keep(this.coming.keys, this.coming.data);
+        this.coming = null;
+      }
     }
     return true;
   }
 
-  async keep({ i, s, v, c, r }, data) {
-    const image = { cols: Number(c), rows: Number(r), bitmap: null, awaitedIn: new Set() };
-    this.images.set(Number(i), image);
-    const bytes = Uint8Array.from(atob(data), (character) => character.charCodeAt(0));
-    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-    const rgb = new Uint8Array(await new Response(stream).arrayBuffer());
-    const pixels = new ImageData(Number(s), Number(v));
-    for (let at = 0, to = 0; at < rgb.length; at += 3, to += 4) {
-      pixels.data[to] = rgb[at];
-      pixels.data[to + 1] = rgb[at + 1];
-      pixels.data[to + 2] = rgb[at + 2];
-      pixels.data[to + 3] = 255;
+  // At once, so that it is there when the terminal shows its placeholders.
+  keep({ i, s, v, c, r }, data) {
+    const packed = Uint8Array.from(atob(data), (character) => character.charCodeAt(0));
+    const [width, height] = [Number(s), Number(v)];
+    const rgb = inflate(packed, 3 * width * height);
+    const pixels = new ImageData(width, height);
+    const colors = new Uint32Array(pixels.data.buffer);
+    for (let at = 0, to = 0; at < rgb.length; at += 3, to++) {
+      colors[to] = 0xff000000 | (rgb[at + 2] << 16) | (rgb[at + 1] << 8) | rgb[at];
     }
-    image.bitmap = await createImageBitmap(pixels);
-    for (const row of image.awaitedIn) this.drawRow(row);
+    const bitmap = new OffscreenCanvas(width, height);
+    bitmap.getContext("2d").putImageData(pixels, 0, 0);
+    this.images.set(Number(i), { cols: Number(c), rows: Number(r), bitmap });
   }
 
   draw(start, end) {
@@ -126,9 +127,8 @@ class Pictures {
       }
       const number = cell.getFgColor();
       const image = this.images.get(number);
-      image?.awaitedIn.add(row);
-      if (!image?.bitmap) {
-        // What was there before stays until the image has arrived, but not of another picture.
+      if (!image) {
+        // What was there before stays until the image has come, but not of another picture.
         if (drawn.get(place) !== pictureOf(number)) clear(col);
         continue;
       }
@@ -140,4 +140,4 @@ class Pictures {
   }
 }
 
-if (window.DecompressionStream) terminalUsers.push((terminal) => new Pictures(terminal));
+if (window.OffscreenCanvas) terminalUsers.push((terminal) => new Pictures(terminal));

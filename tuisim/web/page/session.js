@@ -35,8 +35,11 @@ const session = (() => {
         if (!found.sessions.length) return done("");
         const rows = found.sessions.map((one) => {
           const row = document.createElement("p");
-          const where = one.shown ? "is open in another tab" : "is open in no tab";
-          row.append(`The app of ${ago(one.age_s)} ago ${where}; last used ${ago(one.idle_s)} ago. `);
+          const name = document.createElement("strong");
+          name.textContent = one.program || "No program";
+          const where = one.shown ? "open in another tab" : "not open anywhere";
+          const times = `started ${ago(one.age_s)} ago, last used ${ago(one.idle_s)} ago`;
+          row.append(name, `${one.runs ? ", running" : ""}, ${times}, ${where} `);
           row.append(button(one.shown ? "Take over" : "Go on", () => done(one.id)), " ");
           row.append(
             button("End it", async () => {
@@ -51,10 +54,13 @@ const session = (() => {
           );
           return row;
         });
-        const more = found.free > 0 ? button("Start another one", () => done("")) : "No place is free for another one.";
         const last = document.createElement("p");
-        last.append(more);
-        dialog.replaceChildren(...rows, last);
+        if (found.free > 0) last.append(button("Start another one", () => done("")));
+        // A student has one app.
+        else if (found.most > 1) last.append("No place is free for another one.");
+        const head = document.createElement("h1");
+        head.textContent = found.most > 1 ? "Which app?" : "Your app is there already";
+        dialog.replaceChildren(head, ...rows, last);
         dialog.classList.add("-open");
         dialog.querySelector("button").focus();
       };
