@@ -71,6 +71,8 @@ CHOICES = {
     "kitty that could show the next picture": (KITTY + KITTY_YES + KITTY_ERROR + KITTY_YES, None),
     "kitty after it was resized": (KITTY + KITTY_YES + KITTY, Graphics(Protocol.KITTY, (10, 20))),
     "a page": (PAGE + KITTY_YES, Graphics(Protocol.KITTY, (19, 42), most_points=32)),
+    "a page that is asked twice": (PAGE + PAGE + KITTY_YES, Graphics(Protocol.KITTY, (19, 42), most_points=32)),
+    "a page that changes": (PAGE + PLAIN + KITTY_YES, Graphics(Protocol.KITTY, (19, 42), most_points=32)),
     "a page that was resized before it answered": (
         PAGE + PLAIN + KITTY_YES + PLAIN, Graphics(Protocol.KITTY, (19, 42), most_points=32)
     ),
@@ -107,6 +109,12 @@ def test_kitty_is_asked_once() -> None:
     assert _facts(OLD_KITTY).asks_for_kitty
     assert not _facts(OLD_KITTY + OLD_KITTY_AGAIN).asks_for_kitty
     assert not _facts(KITTY + KITTY_YES).asks_for_kitty
+
+
+def test_another_page_is_asked_for_kitty_again() -> None:
+    assert _facts(PAGE + PAGE).asks_for_kitty
+    assert _facts(PAGE + PLAIN + PAGE).asks_for_kitty
+    assert not _facts(PAGE + KITTY_YES + PAGE).asks_for_kitty
 
 
 @pytest.mark.parametrize(

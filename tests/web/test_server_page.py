@@ -49,6 +49,15 @@ def robot_at(seen: Pixels) -> tuple[float, float]:
     return (float(np.median(cols)), float(np.median(rows))) if len(cols) else (0.0, 0.0)
 
 
+WITHOUT_WEBGL = """
+const contextOf = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+  return kind.startsWith("webgl") ? null : contextOf.call(this, kind, ...more);
+};
+"""
+TERMINAL_SHARE = f"document.querySelector('.xterm-screen').clientWidth / {CANVAS}.clientWidth"
+
+
 @asynccontextmanager
 async def opened(
     serve: Serve, folder: Path, size: tuple[int, int], scale: float, *, fingers: bool = False
@@ -56,6 +65,8 @@ async def opened(
     """Show an app in a browser; in the end, nothing was wrong with the page."""
     serving = await serve(DRIVES)
     async with chromium(folder / "browser", *size, scale, fingers=fingers) as page:
+        # As in browsers on machines without a graphics card.
+        await page.do("Page.addScriptToEvaluateOnNewDocument", source=WITHOUT_WEBGL)
         await page.do("Page.navigate", url=serving.address)
         await until_seen(page, is_whole)
         yield page
@@ -73,6 +84,7 @@ async def test_each_pixel_of_a_picture_is_one_of_the_screen(scale: float, serve:
         rows = drawn[is_drawn.any(axis=1)]
         assert (rows[1:] != rows[:-1]).any(axis=(1, 2)).mean() > 0.1
         assert not await page.js("document.getElementById('bar').offsetHeight")
+        assert await page.js(TERMINAL_SHARE) == pytest.approx(1, abs=0.002)
 
 
 async def test_fingers_drag_the_robot_and_press_buttons(serve: Serve, tmp_path: Path) -> None:

@@ -50,8 +50,7 @@ class TerminalFacts:
     attributes: frozenset[str] = frozenset()
     """The numbers of its features; empty if it has not answered at all."""
     has_kitty_graphics: bool | None = None
-    """Whether it draws pictures at placeholders; None if it has not been asked, False while it does not answer, and
-    for good once it has reported an error."""
+    """Whether it draws pictures at placeholders; None if it has not been asked, False once it has reported an error."""
     kitty_error: str = ""
     """What it has last reported, such as `ENOSPC:No space left`."""
     cell_px: tuple[int, int] | None = None
@@ -69,6 +68,11 @@ class TerminalFacts:
         return self.has_kitty_graphics is None and self.program in kitty.TERMINALS
 
     @property
+    def without_refusal(self) -> TerminalFacts:
+        """The facts, as if a question for kitty's protocol without an answer had not been asked."""
+        return self if self.has_kitty_graphics or self.kitty_error else replace(self, has_kitty_graphics=None)
+
+    @property
     def has_sixel(self) -> bool:
         """Whether it draws sixel graphics."""
         return _SIXEL in self.attributes
@@ -77,15 +81,14 @@ class TerminalFacts:
         """Return the facts with an answer of the terminal."""
         found = match.groupdict()
         if found["name"] is not None:
-            return replace(self, name=found["name"])
+            # All questions are asked anew, perhaps by another page, before those for kitty's protocol were answered.
+            return replace(self.without_refusal, name=found["name"], attributes=frozenset())
         if found["kitty"] is not None:
-            error = "" if found["kitty"] == "OK" else found["kitty"]
-            return replace(
-                self, has_kitty_graphics=not error and not self.kitty_error, kitty_error=error or self.kitty_error
-            )
+            # It may come late, as attributes are asked for when the size changes, too; an error counts for good.
+            error = self.kitty_error if found["kitty"] == "OK" else found["kitty"]
+            return replace(self, has_kitty_graphics=not error, kitty_error=error)
         if found["attributes"] is not None:
-            # The second time they come after the question for kitty's protocol, or that of a new size overtook it: then
-            # its answer is still to come.
+            # The second time they come after the question for kitty's protocol.
             answered = False if self.attributes and self.asks_for_kitty else self.has_kitty_graphics
             attributes = frozenset(found["attributes"].split(";"))
             return replace(self, attributes=attributes, has_kitty_graphics=answered)

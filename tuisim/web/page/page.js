@@ -27,6 +27,13 @@ Object.defineProperty(Object.prototype, "terminal", {
   },
 });
 
+// Of its ways to draw, the canvas has cells of whole pixels and is loaded last. Where there is no WebGL, loading that
+// stops what comes after it, and what is left has cells of broken pixels.
+terminalUsers.push((terminal) => {
+  const load = terminal.loadAddon.bind(terminal);
+  terminal.loadAddon = (addon) => "onContextLoss" in addon || load(addon);
+});
+
 let socket = null;
 const say = (...words) => socket?.send(JSON.stringify(words));
 
