@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tuisim.scene.sharp_edges import sharpen_edges
 from tuisim.scene.view import Viewport
 from tuisim.terminal.pixels import Pixels
 
@@ -19,6 +20,8 @@ _STRONGER, _CLEAR = 2.5, 0.6
 """What covers less of a pixel than `_CLEAR` is drawn as if it covered `_STRONGER` times as much, up to that."""
 _PLAIN = 0.15
 """A pixel of which less than this is of another colour is one of an area, and not of a thin line."""
+_AREA_MM = 60
+"""What is narrower is a line."""
 _FINE_COLS = 2
 """Pixels of so many across a cell, or of fewer, are so large that thin lines need it."""
 
@@ -31,6 +34,7 @@ def shrink(
     Each picture pixel is the mean of the mat pixels under it. Where a pixel is as wide as a cell or half of it, it is
     moved toward the colour that is rarer around it, so that a line of 10 mm can still be seen when a pixel covers
     30 mm, and looks the same whether it lies in one row of pixels or between two.
+    Straight edges of areas are sharp there.
 
     Args:
         mat: The mat, one pixel a mm, row 0 at the top of the field.
@@ -96,7 +100,10 @@ def _reduced(
         return plain
     low = np.minimum.reduceat(_reduced_rows(np.minimum, part, rows, np.uint8), cols, axis=1).astype(np.float32)
     high = np.maximum.reduceat(_reduced_rows(np.maximum, part, rows, np.uint8), cols, axis=1).astype(np.float32)
-    return _keep_detail(mean, low, high)
+    picture = _keep_detail(mean, low, high)
+    rows_mm, cols_mm = (max(int(np.median(np.diff(edges))), 1) for edges in (row_edges, col_edges))
+    sharpen_edges(picture, mean, high - low, (max(-(-_AREA_MM // rows_mm), 2), max(-(-_AREA_MM // cols_mm), 2)))
+    return picture
 
 
 def _reduced_rows(
