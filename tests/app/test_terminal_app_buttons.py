@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from tests.app.app_help import ENDLESS, notices, ready, settings, until
+import pytest
+
+from tests.app.app_help import ENDLESS, LOGS, notices, ready, settings, until
+from tuisim.app.analyser.app import Analyser
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.snapshot import IN_RUN
@@ -44,3 +47,15 @@ async def test_a_click_on_the_empty_panel_of_lessons_offers_them() -> None:
         await until(pilot, lambda: app.panel_area.shown("lesson"))
         await pilot.click(app.panel_area.lesson, offset=(5, 5))
         await until(pilot, lambda: isinstance(app.screen, Chooser))
+
+
+@pytest.mark.slow
+async def test_a_button_says_that_it_does_nothing_above_the_lab() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        app.post_message(ActionAsked("run"))
+        await until(pilot, lambda: app.situation().has_run and app.run_controller.state not in IN_RUN)
+        app.post_message(ActionAsked("analyse"))
+        await until(pilot, lambda: isinstance(app.screen, Analyser))
+        app.post_message(ActionAsked("run"))
+        await until(pilot, lambda: "That is in the lab: leave this screen first" in notices(app))

@@ -248,6 +248,8 @@ class TerminalApp(BufferedApp):
             self.notify("A dialog is open: escape closes it", markup=False)
         elif isinstance(host, ActionHost) and event.name in host.ACTIONS:
             host.action_act(event.name)
+        elif host is not self and isinstance(self, ActionHost) and event.name in self.ACTIONS:
+            self.notify("That is in the lab: leave this screen first", markup=False)
 
     def action_command_palette(self) -> None:
         """Offer every action of the screen, else of the app; not above a dialog, which its dialogs would cover."""

@@ -67,6 +67,14 @@ async def test_everything_is_on_the_first_screen(run: StoredRun, size: tuple[int
         assert ("Sensor arrays" in text) is (size[1] > 30)
 
 
+async def test_a_high_and_narrow_screen_has_all_columns_for_each_view(run: StoredRun) -> None:
+    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(64, 60)) as pilot:
+        screen, _ = await opened(pilot)
+        views = (screen.chart, screen.pane, screen.world)
+        await until(pilot, lambda: all(view.region.width == 64 for view in views))
+        assert screen.chart.region.y < screen.pane.region.y < screen.world.region.y
+
+
 async def test_the_bands_are_found_and_noted_by_keys(run: StoredRun) -> None:
     async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
         screen, model = await opened(pilot)

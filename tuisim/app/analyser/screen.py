@@ -12,7 +12,7 @@ import numpy as np
 from rich.style import Style
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
-from textual.events import Event, Key
+from textual.events import Event, Key, Resize
 from textual.widget import Widget
 
 from tuisim import palette
@@ -27,6 +27,7 @@ from tuisim.app.analyser.panes import PANES, PaneView
 from tuisim.app.analyser.world import WorldPane
 from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.app.dialogs.question import Form, LinePrompt
+from tuisim.app.layout.arrangement import is_tall
 from tuisim.errors import LogError, TuisimError
 from tuisim.logs.columns import choose_columns, numeric_columns
 from tuisim.logs.derived import SIGNALS, TIME, computed_columns
@@ -37,6 +38,8 @@ from tuisim.terminal.cell_view import LinesView
 _POLL_S = 1.0
 _WIDE_COLS = 120
 """From this width on there is room for the world and a widget beside it."""
+_NARROW_COLS = 80
+"""Below this width a high screen has no room for the world beside a chart and a table."""
 _PATIENCE = 10.0
 """The pause between two readings of a growing log, as a multiple of the last reading time."""
 
@@ -70,6 +73,9 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         width: 34%; min-width: 32; height: 1fr; background: {palette.GROUND}; border: round {palette.LINE};
         border-title-color: {palette.SOFT}; border-subtitle-color: {palette.SUBTITLE};
     }}
+    LogScreen.-tall > Horizontal {{ layout: vertical; }}
+    LogScreen.-tall WorldPane, LogScreen.-tall .beside {{ width: 1fr; height: 34%; }}
+    LogScreen.-tall #source {{ display: none; }}
     """
 
     def __init__(self, request: LogRequest, beside: Widget | None = None) -> None:
@@ -113,6 +119,10 @@ class LogScreen(ActionHost, ClosesOnce[None]):
     @property
     def _keys_of_log(self) -> set[str]:
         return {key for action in self.ACTIONS.values() if action.why_not(None) for key in action.key.split(",")}
+
+    def on_resize(self, event: Resize) -> None:
+        """Put the world below the log where the screen is high and narrow, as that of a phone."""
+        self.set_class(is_tall(*event.size) and event.size.width < _NARROW_COLS, "-tall")
 
     def on_mount(self) -> None:
         self.world.is_on = self._beside is None or self.size.width >= _WIDE_COLS

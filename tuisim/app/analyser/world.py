@@ -157,7 +157,7 @@ class WorldPane(Vertical):
 
     def compose(self) -> ComposeResult:
         for title, view in (("World", self._world), ("Source", self._source)):
-            frame = Vertical(view, classes="frame")
+            frame = Vertical(view, classes="frame", id=title.lower())
             frame.border_title = title
             yield frame
         yield self._arrays
