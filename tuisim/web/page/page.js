@@ -17,12 +17,20 @@ window.open = (url, ...more) => {
 // Functions that get the terminal as soon as there is one.
 const terminalUsers = [];
 
+// Connects the terminal once more; what has come of a sequence is dropped.
+let connect = null;
+
 // textual.js keeps its terminal to itself: it is the first that is set under this name.
 Object.defineProperty(Object.prototype, "terminal", {
   configurable: true,
   set(terminal) {
     delete Object.prototype.terminal;
     this.terminal = terminal;
+    const again = () => {
+      terminal.reset();
+      this.connect();
+    };
+    connect = () => terminal.write("\x18", again);
     for (const use of terminalUsers) use(terminal);
   },
 });
@@ -42,6 +50,7 @@ window.WebSocket = class extends Socket {
   constructor(url) {
     super(session.address(url));
     socket = this;
+    session.watch(this);
     const focus = () => session.framed || document.querySelector(".xterm-helper-textarea").focus();
     this.addEventListener("message", focus, { once: true });
     this.addEventListener("message", (event) => session.heard(event.data));

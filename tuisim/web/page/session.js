@@ -5,12 +5,58 @@ const session = (() => {
   const top = location.origin + location.pathname;
   const framed = window.parent !== window;
   const kept = sessionStorage;
-  const [LOST, TAKEN_OVER] = [1006, 4001];
+  const [LOST, TAKEN_OVER, REFUSED] = [1006, 4001, 403];
+  // A line that says nothing for so long is asked, and has so long to answer; a request, too.
+  const [SILENT_MS, ANSWER_MS, RETRY_MS] = [10000, 10000, 1000];
+  const [ENDED, HERE] = ["The session has ended.", "Run %sim_app to have it here."];
   let chosen = "";
+  let [current, since, answered] = [null, 0, true];
 
+  const pause = (ms) => new Promise((over) => setTimeout(over, ms));
+
+  const say = (words) => {
+    document.getElementById("reason").textContent = words;
+    document.body.classList.add("-closed");
+  };
+
+  // Says why there is no app; only a cell of the notebook can start another one there.
+  const end = (words, button) => {
+    const again = document.getElementById("again");
+    again.hidden = framed;
+    again.textContent = button;
+    say(framed ? `${words} ${HERE}` : words);
+    // textual.js shows the dialog when it hears of the end, after this.
+    setTimeout(() => again.focus());
+  };
+
+  // Whoever may not have the list tries in vain.
   const list = async () => {
-    const answer = await fetch(`${top}sessions`);
-    return answer.json();
+    const answer = await fetch(`${top}sessions`, { signal: AbortSignal.timeout(ANSWER_MS) });
+    if (answer.ok) return answer.json();
+    if (answer.status !== REFUSED) throw new Error(answer.statusText);
+    document.getElementById("again").hidden = true;
+    say(framed ? `Another cell shows the app now. ${HERE}` : await answer.text());
+    return new Promise(() => {});
+  };
+
+  const sayLost = () => {
+    document.getElementById("again").hidden = true;
+    const more = framed ? ` If the kernel has ended: ${HERE}` : "";
+    say(`The connection to the server is lost. Trying again …${more}`);
+  };
+
+  // Does something as soon as the server answers.
+  const insist = async (act) => {
+    for (;;) {
+      try {
+        const result = await act();
+        document.body.classList.remove("-closed");
+        return result;
+      } catch {
+        sayLost();
+        await pause(RETRY_MS);
+      }
+    }
   };
 
   const ago = (seconds) => (seconds < 90 ? `${seconds} s` : `${Math.round(seconds / 60)} min`);
@@ -25,7 +71,7 @@ const session = (() => {
 
   // Asks which app to show; returns its id, empty for another one.
   const ask = () =>
-    new Promise((answer) => {
+    new Promise((answer, fail) => {
       const dialog = document.querySelector(".dialog.choice");
       const done = (id) => {
         dialog.classList.remove("-open");
@@ -64,7 +110,7 @@ const session = (() => {
         dialog.classList.add("-open");
         dialog.querySelector("button").focus();
       };
-      list().then(show);
+      list().then(show).catch(fail);
     });
 
   // A copy of a tab has its storage, too: only what this tab has just left is its own without a question.
@@ -82,29 +128,50 @@ const session = (() => {
 
   window.addEventListener("pagehide", () => kept.setItem("leaving", "1"));
 
-  const say = (words) => (document.getElementById("reason").textContent = words);
-
+  // Shows the same app again, on another line.
   const again = async () => {
-    document.body.classList.add("-closed");
-    document.getElementById("again").hidden = true;
-    say("The connection to the server is lost. Trying again …");
-    try {
-      const answer = await fetch(`${top}sessions`);
-      answer.ok ? location.reload() : say(await answer.text());
-    } catch {
-      setTimeout(again, 1000);
+    sayLost();
+    await pause(since + RETRY_MS - Date.now());
+    if (!chosen) {
+      // The line was lost before it told the session.
+      await insist(list);
+      return location.reload();
     }
+    // A socket does not tell that it is refused.
+    if (!answered) await list().catch(() => {});
+    connect();
+  };
+
+  const lost = (socket) => {
+    if (socket !== current) return;
+    current = null;
+    socket.close();
+    again();
   };
 
   return {
     // Resolves once it is known which app to show.
     ready: async () => {
-      try {
-        chosen = await find();
-      } catch {
-        again();
-        await new Promise(() => {});
-      }
+      chosen = await insist(find);
+      if (!framed || chosen) return;
+      end(ENDED);
+      await new Promise(() => {});
+    },
+    // Leaves a line that is dead, though nobody has said so.
+    watch: (socket) => {
+      [current, since, answered] = [socket, Date.now(), false];
+      let [heard, asked] = [since, 0];
+      socket.addEventListener("message", (event) => {
+        [heard, asked, answered] = [Date.now(), 0, true];
+        if (String(event.data).startsWith('["pong"')) event.stopImmediatePropagation();
+      });
+      const timer = setInterval(() => {
+        if (socket !== current) return clearInterval(timer);
+        if (asked ? Date.now() - asked < ANSWER_MS : Date.now() - heard < SILENT_MS) return;
+        if (asked || socket.readyState !== WebSocket.OPEN) return lost(socket);
+        asked = Date.now();
+        socket.send(JSON.stringify(["ping", ""]));
+      }, RETRY_MS);
     },
     // Adds the app to the address of a socket.
     address: (url) => (chosen ? `${url}&session=${chosen}` : url),
@@ -114,15 +181,19 @@ const session = (() => {
       if (what === "watched") document.getElementById("watched").hidden = !told;
       if (what !== "session") return;
       chosen = told;
+      document.body.classList.remove("-closed");
+      document.getElementById("watched").hidden = true;
       kept.setItem("session", chosen);
     },
     closed: (event) => {
-      if (event.code === LOST) return again();
-      say(event.reason || "The session has ended.");
-      const button = document.getElementById("again");
-      button.textContent = event.code === TAKEN_OVER ? "Take it back" : "Start again";
-      // textual.js shows the dialog when it hears of the end, after this.
-      setTimeout(() => button.focus());
+      // textual.js would show that it is closed.
+      if (event.target !== current || event.code === LOST) event.stopImmediatePropagation();
+      if (event.target !== current) return;
+      if (event.code === LOST) return lost(event.target);
+      current = null;
+      const isTaken = event.code === TAKEN_OVER;
+      const taken = framed ? "Another cell or tab shows the app now." : event.reason;
+      end(isTaken ? taken : event.reason || ENDED, isTaken ? "Take it back" : "Start again");
     },
     drop: async (file) => {
       const name = encodeURIComponent(file.name);

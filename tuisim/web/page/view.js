@@ -9,6 +9,7 @@ const session = {
     document.title = `${name} · tuisim`;
   },
   address: (url) => url,
+  watch: () => {},
   heard: (data) => {
     if (typeof data !== "string") return;
     const [what, size] = JSON.parse(data);
