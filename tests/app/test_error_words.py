@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.app.error_words import fitting, remedy
+from tuisim.app.error_words import fitting, in_a_list, remedy
+from tuisim.errors import TuisimError
 
 PORT = (
     "ev3dev2.DeviceNotFound: ColorSensor(ev3-ports:in1) is not connected. This robot has: in1 lego-ev3-us, "
@@ -51,3 +52,16 @@ def test_what_matters_comes_first(words: str, width: int, told: str) -> None:
 )
 def test_the_remedy_is_told(words: str, told: str) -> None:
     assert remedy(words) == told
+
+
+@pytest.mark.parametrize(
+    ("hint", "told"),
+    [
+        ("did you mean Loop? one of Loop, Square, or the path of an image", "no mat 'lop' (did you mean Loop?)"),
+        ("one of Loop, Square, or the path of an image", "no mat 'lop'"),
+        ("see `tuisim programs` for examples", "no mat 'lop'"),
+        ("at most 10 mm", "no mat 'lop' (at most 10 mm)"),
+    ],
+)
+def test_below_a_list_its_names_are_not_told(hint: str, told: str) -> None:
+    assert in_a_list(TuisimError("no mat 'lop'", hint)) == told

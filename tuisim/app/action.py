@@ -203,6 +203,12 @@ TYPING_KEYS: tuple[KeyWord, ...] = (
 """Keys while the user types in the program."""
 
 
+def panel_keys(focused: DOMNode | None) -> tuple[KeyWord, ...]:
+    """Return the keys that a panel has for the footer, as `FOOTER_KEYS`, while the focus is in it; else nothing."""
+    around = focused.ancestors_with_self if focused else ()
+    return next((one.FOOTER_KEYS for one in around if hasattr(one, "FOOTER_KEYS")), ())
+
+
 BETWEEN_GROUPS = " │"
 _FEWEST, _FEWEST_AT, _COLUMNS_FOR_ONE = 9, 80, 20
 """A footer has so many entries at so many columns, and one more for every further ones: more are not read."""

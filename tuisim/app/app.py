@@ -16,7 +16,7 @@ from textual.timer import Timer
 from textual.widget import Widget
 from textual.widgets import Input
 
-from tuisim.app.action import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings
+from tuisim.app.action import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings, panel_keys
 from tuisim.app.actions import ActionContext, time_travel
 from tuisim.app.actions.files import welcome_at_start
 from tuisim.app.actions.keys import ACTIONS, PAGES, RUN_KEYS, TEXT_KEYS, footer_actions, working
@@ -510,20 +510,20 @@ class LabApp(PanelMessages):
         if self.panel_area.is_single:
             names = ("panel-next", *names)
         actions = footer_actions(self.ACTIONS, names, state.situation, state.playing)
-        if keys := self._field_keys():
+        if (keys := self._field_keys()) in (FIELD_KEYS, TYPING_KEYS):
             field = self.focused
             actions = [one for one in actions if isinstance(field, NumberInput) and field.leaves(one.key)]
         self.key_footer.show(actions, state.status, keys, state.failed)
 
     def _field_keys(self) -> tuple[KeyWord, ...]:
-        """Return the keys of the text field that has the focus; empty if there is none."""
+        """Return the keys of the text field or of the panel that has the focus; empty if it has none of its own."""
         # The focus may already be gone while the app ends.
         focused = self.focused if self.screen_stack else None
         if isinstance(focused, Input):
             return FIELD_KEYS
         code = self.panel_area.code
         typing = code is not None and code.typing and focused is not None and code in focused.ancestors
-        return TYPING_KEYS if typing else ()
+        return TYPING_KEYS if typing else panel_keys(focused)
 
     # Panels
 

@@ -61,6 +61,9 @@ def remedy(words: str) -> str:
     return "" if parts is None else f"{_missing(words)}: {parts}. {{robot}} chooses another robot"
 
 
-def without_shell(error: TuisimError) -> str:
-    """Return an error as the app says it: without a hint that is a command of the shell."""
-    return error.message if "`tuisim " in error.hint else str(error)
+def in_a_list(error: TuisimError) -> str:
+    """Return an error about what was typed into a list: without the names that are in the list, or a shell command."""
+    guess, asked, _ = error.hint.partition("?")
+    if asked and guess.startswith("did you mean"):
+        return f"{error.message} ({guess}?)"
+    return error.message if "`tuisim " in error.hint or error.hint.startswith("one of ") else str(error)

@@ -116,6 +116,16 @@ async def test_a_field_for_numbers_names_the_letters_that_are_keys() -> None:
         assert last_line(pilot).rstrip().split("q quit")[0].endswith("? help ")
 
 
+@pytest.mark.parametrize(("key", "own"), [("c", "← → cursor 1…9 traces"), ("Z", "↑ ↓ fields ← → choices")])
+async def test_the_keys_of_the_panel_with_the_focus_come_first(key: str, own: str) -> None:
+    async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        await pilot.press(key)
+        await until(pilot, lambda: last_line(pilot).startswith(f" {own} R run "))
+        await pilot.press(key)
+        await until(pilot, lambda: own not in last_line(pilot))
+
+
 @pytest.mark.parametrize("key", ["r", "b", "h", "o", "ctrl+p"])
 async def test_under_a_dialog_the_footer_names_only_keys_that_work_in_it(key: str) -> None:
     async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:

@@ -19,7 +19,7 @@ from textual.widgets.option_list import Option
 from tuisim.app import background
 from tuisim.app.dialogs.dialog import MOVE_KEYS, Dialog, name_and_title
 from tuisim.app.dialogs.save import typed_path
-from tuisim.app.error_words import without_shell
+from tuisim.app.error_words import in_a_list
 from tuisim.config.folders import user_path
 from tuisim.config.mat_image import decode, read_file
 from tuisim.config.mats import find_mat, spec_name
@@ -122,7 +122,7 @@ class ListDialog(Dialog[str]):
 
     def unread(self, error: TuisimError) -> None:
         """Say why nothing can be chosen by what was typed, which stays to be corrected."""
-        self.app.notify(without_shell(error), severity="error", markup=False)
+        self.app.notify(in_a_list(error), severity="error", markup=False)
 
 
 class Chooser(ListDialog):
@@ -295,7 +295,7 @@ WIDEST_NAME = 32
 """Most columns of the list: a custom file may have any name."""
 
 
-class MatPicker(ListDialog):
+class MatPicker(Chooser):
     """Returns the name of the chosen mat, or the path of an image.
 
     Args:
@@ -304,30 +304,24 @@ class MatPicker(ListDialog):
         folder: The user's own folder of mats; None for the default one only.
     """
 
-    TITLE_TEXT: str = "Mats"
-    HINT: str = "Enter selects · tab to the field · Escape closes"
-
     def __init__(self, current: str, known: Mapping[str, Background], folder: str | None) -> None:
-        super().__init__()
-        self._current, self._mats, self._folder = current, known, folder
+        laid = next((name for name, mat in known.items() if spec_name(mat) == current), next(iter(known), ""))
+        groups = [ChoiceGroup("", [(name, name, "") for name in known])]
+        find = partial(find_mat, folder=folder)
+        super().__init__("Mats", groups, laid, "path of an image of your own", find)
+        self._mats, self._folder = known, folder
         self._shown = ""
         self._pictures: dict[tuple[str, Viewport], Pixels] = {}
 
     def content(self) -> ComposeResult:
-        listed = OptionList(*(Option(name, id=name) for name in self._mats), markup=False)
+        listed = self.listed()
         listed.styles.width = min(max(map(len, self._mats), default=0) + 5, WIDEST_NAME)
-        names = [spec_name(mat) for mat in self._mats.values()]
-        listed.highlighted = names.index(self._current) if self._current in names else 0
         with Horizontal(classes="mats"):
             yield listed
             with Vertical():
                 yield _MatPicture()
                 yield Static(id="title", markup=False)
-        yield Input(placeholder="Or the path of an image of your own", compact=True, select_on_focus=False)
-
-    def read(self, typed: str) -> object:
-        """Find the mat of a typed name or path."""
-        return find_mat(typed, self._folder)
+        yield self.field()
 
     def on_mount(self) -> None:
         self.call_after_refresh(self._begin)

@@ -11,6 +11,7 @@ from textual import events
 from textual.binding import Binding, BindingType
 from textual.message import Message
 
+from tuisim.app.action import KeyWord
 from tuisim.app.plot_view import PlotView
 from tuisim.app.snapshot import AT_REST, RunPhase, Snapshot
 from tuisim.charts import axes
@@ -31,6 +32,7 @@ _PERIOD_S = 0.33
 class Chart(LinesPanel, can_focus=True):
     """The chart panel. Keeps data that arrives while it is hidden."""
 
+    FOOTER_KEYS: ClassVar[tuple[KeyWord, ...]] = (("← →", "cursor"), ("1…9", "traces"))
     FROZEN: ClassVar[str] = "frozen: f follows again"
 
     BINDINGS: ClassVar[list[BindingType]] = [

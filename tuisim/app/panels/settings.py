@@ -12,7 +12,7 @@ from textual.message import Message
 from textual.widget import Widget
 from textual.widgets import Static
 
-from tuisim.app.action import action_link
+from tuisim.app.action import KeyWord, action_link
 from tuisim.app.form import Choice, Row
 from tuisim.app.setup.fields import FieldGroup, FormField, find, sections, step
 from tuisim.app.setup.next_run import NextRun
@@ -28,6 +28,7 @@ _LINKS = (
 class Settings(VerticalScroll, can_focus=False):
     """The settings panel: a scrolled form."""
 
+    FOOTER_KEYS: ClassVar[tuple[KeyWord, ...]] = (("↑ ↓", "fields"), ("← →", "choices"))
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("down", "app.focus_next", "Next field", show=False),
         Binding("up", "app.focus_previous", "Previous field", show=False),
