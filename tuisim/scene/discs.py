@@ -76,17 +76,18 @@ class DiscFace:
         """Return the comparisons of the program and what they give now, such as `line 15 asks > 90: no`.
 
         Args:
-            width: Letters; the lines are left out to fit, then all but the first comparison.
+            width: Letters; to fit, `asks` is left out, then the lines, then all but the first comparison.
         """
         said = []
         for one in self.thresholds:
             holds = one.holds(one.read.measured(self.seen, self.reflected_max))
             said.append(one.words + ("" if holds is None else ": yes" if holds else ": no"))
-        with_lines = (
+        asking = (
             f"line {one.line}{':' if one.sign == AIM else ' asks'} {words}"
             for words, one in zip(said, self.thresholds, strict=True)
         )
-        variants = ("; ".join(with_lines), "; ".join(said), *said[:1])
+        short = [f"line {one.line} {words}" for words, one in zip(said, self.thresholds, strict=True)]
+        variants = ("; ".join(asking), "; ".join(short), "; ".join(said), *short[:1], *said[:1])
         return next((words for words in variants if len(words) <= width), variants[-1])
 
     @property
