@@ -446,13 +446,13 @@ class LabApp(PanelMessages):
             (run.spec, run.next_spec, run.past, run.now_tick),
             (run.face, run.pressed),
         )
+        if output := self.panel_area.output:
+            program = (self.run_controller.timeline.recording or self.run_controller).program
+            output.set_program(program.name if program else "")
         if now == self._drawn and not force and not self.feed.is_behind:
             return False
         self._drawn = now
         self.feed.show()
-        if output := self.panel_area.output:
-            program = self.run_controller.program
-            output.set_program(program.name if program else "")
         self.panel_area.show(run)
         if force or self._footed != _footed(state):
             self._show_footer(state)
