@@ -322,3 +322,18 @@ async def test_an_example_is_opened_by_its_name_and_the_footer_shows_the_keys_ag
 
         assert app.run_controller.program is not None
         assert app.run_controller.program.name == "log_greys.py"
+
+
+@pytest.mark.slow
+async def test_the_output_has_the_name_of_its_own_program_until_another_one_runs(folder: Path) -> None:
+    async with LabApp(with_file(folder / "mine.py", speed=0.0)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        output = app.panel_area.output
+        await pilot.press("R")
+        await until(pilot, lambda: app.run_controller.state is RunPhase.ENDED)
+        (folder / "other.py").write_text("print('B: 1')\n")
+        await open_path(pilot, "other.py")
+        app.draw(force=True)
+        assert output is not None and "mine.py" in str(output.border_title)
+        await pilot.press("R")
+        await until(pilot, lambda: "other.py" in str(output.border_title))

@@ -80,3 +80,16 @@ async def test_the_world_is_as_large_as_its_panel(size: tuple[int, int]) -> None
         # The panel has the shape of the mat, but for the row of the time bar; below 60 columns it is the screen.
         if size[0] >= 60:
             assert columns * rows >= 0.8 * view.size.width * (view.size.height - 1)
+
+
+async def test_the_panel_with_the_focus_stays_when_the_keyboard_of_a_phone_takes_room() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(64, 60)) as pilot:
+        app = await ready(pilot)
+        area = app.panel_area
+        await until(pilot, lambda: area.shown("code"))
+        area.attend("code")
+        await until(pilot, lambda: area.focused_panel() == "code")
+        for rows in (56, 40, 30, 60):
+            await pilot.resize_terminal(64, rows)
+            await until(pilot, lambda rows=rows: area.size.height == rows - 1)  # type: ignore[misc]
+            assert (area.shown("code"), area.focused_panel()) == (True, "code"), rows

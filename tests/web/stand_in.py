@@ -38,7 +38,8 @@ while True:
         send(b"M", json.dumps({"type": "deliver_file_start"} | file).encode())
     elif data.startswith(b"tell "):
         _, what, name = data.decode().split(" ", 2)
-        send(b"M", json.dumps({"type": "tell", "what": what, "program": name}).encode())
+        told = {"type": "tell", "what": what, "program": name, "shown": name.split()}
+        send(b"M", json.dumps(told).encode())
         send(b"D", b"told")
     elif data.startswith(b"end "):
         _, code, text = data.decode().split(" ", 2)

@@ -56,6 +56,16 @@ async def test_a_second_tab_takes_a_session_over(visited: Visited) -> None:
     assert is_there(pid)
 
 
+async def test_each_page_is_told_which_panels_there_are(visited: Visited) -> None:
+    visitor = await visited()
+    first, _ = await visitor.started()
+    await first.send_json(["stdin", "tell panels world code"])
+    panels = json.dumps(["panels", ["world", "code"]])
+    assert {await heard(first), await heard(first)} == {"told", panels}
+    second = await visitor.socket(f"?width=90&height=30&session={await the_session(visitor)}")
+    assert panels in [await heard(second) for _ in range(2)]
+
+
 async def test_what_is_offered_while_no_tab_is_open_waits_for_the_next(visited: Visited) -> None:
     visitor = await visited()
     socket, _ = await visitor.started()

@@ -11,12 +11,13 @@ from rich.console import Console
 from rich.style import Style
 from rich.table import Table
 from rich.text import Text
-from textual import events
+from textual import events, on
 from textual.app import App
 from textual.binding import Binding, BindingType
 from textual.dom import DOMNode
 from textual.keys import format_key
 from textual.message import Message
+from textual.screen import Screen
 from textual.widget import Widget
 
 from tuisim import palette
@@ -259,6 +260,27 @@ class ActionWords(Widget):
             self.post_message(Act(name))
 
 
+async def press(screen: Screen[Any], key: str) -> None:
+    """Run the action of a key, as the widget with the focus, or one around it, understands it."""
+    for node in (screen.focused or screen).ancestors_with_self:
+        if bound := bindings_of(node).key_to_bindings.get(key):
+            await screen.app.run_action(bound[0].action, node)
+            return
+
+
+def _key_at(x: int, words: Iterable[KeyWord]) -> str:
+    """Return the key whose words are at a column; empty if there is none."""
+    end = 0
+    for key, word in words:
+        end += len(key) + len(word) + 2
+        if x < end:
+            return key
+    return ""
+
+
+_KEYS_OF_FIELDS = {"esc": "escape"}
+
+
 class KeyFooter(ActionWords):
     """The bottom row of the screen."""
 
@@ -281,12 +303,15 @@ class KeyFooter(ActionWords):
 
     def key_of_dialog_at(self, x: int) -> str:
         """Return the display name of the dialog's key at a column of the row; empty if there is none."""
-        at = 0
-        for key, word in self._of_dialog:
-            at += len(key) + len(word) + 2
-            if x < at:
-                return key
-        return ""
+        return _key_at(x, self._of_dialog)
+
+    @on(events.Click)
+    async def press_key_of_field(self, event: events.Click) -> None:
+        """Press the key of the text field whose word was clicked: a phone may lack it."""
+        if not self._of_dialog and (label := _key_at(event.x, self._typing)):
+            # The field keeps the focus.
+            event.stop()
+            await press(self.screen, _KEYS_OF_FIELDS.get(label, label.replace("^", "ctrl+")))
 
     def show(
         self,

@@ -447,12 +447,11 @@ class LabApp(PanelMessages):
             (run.spec, run.next_spec, run.past, run.now_tick),
             (run.face, run.pressed),
         )
+        self.feed.name_output()
         if now == self._drawn and not force and not self.feed.is_behind:
             return False
         self._drawn = now
         self.feed.show()
-        if output := self.panel_area.output:
-            output.set_program(self._program_name)
         self.panel_area.show(run)
         if force or self._footed != _footed(state):
             self._show_footer(state)

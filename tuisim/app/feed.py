@@ -191,6 +191,12 @@ class PanelFeed:
         """Return the mat that the chart's readings are taken from; None if no chart or no mat."""
         return self._runs.mat_for(feed.recording.spec) if self._panel_area.shown("chart") else None
 
+    def name_output(self) -> None:
+        """Name the program that has printed the output; before the first run, the one that is open."""
+        if output := self._panel_area.output:
+            program = (self._runs.timeline.recording or self._runs).program
+            output.set_program(program.name if program else "")
+
     def show(self) -> None:
         """Pass on the telemetry since the last call; keep trace and output at the instant in view."""
         self._chart_rows()

@@ -298,15 +298,24 @@ class PanelArea(Container):
             return [self.alone or self.front], []
         return wanted, fill
 
-    def lay_out(self) -> None:
-        """Lay out every panel."""
-        if not self.size:
-            return
+    def _arranged(self) -> PanelLayout:
         wanted, fill = self._wanted()
         if self.is_stacked:
-            self.arrangement = stacked(wanted[0], wanted[1], self.size.width, self.size.height)
-        else:
-            self.arrangement = arrange(wanted, self.size.width, self.size.height, fill, self.preset)
+            return stacked(wanted[0], wanted[1], self.size.width, self.size.height)
+        return arrange(wanted, self.size.width, self.size.height, fill, self.preset)
+
+    def lay_out(self, keeps: str = "") -> None:
+        """Lay out every panel.
+
+        Args:
+            keeps: A panel that stays before others, such as the one that is typed in above the keyboard of a phone.
+        """
+        if not self.size:
+            return
+        self.arrangement = self._arranged()
+        if keeps and keeps not in self.arrangement.boxes and not self.alone:
+            self._asked[keeps] = True
+            self.arrangement = self._arranged()
         with self.app.batch_update():
             for panel, widget in self.panels.items():
                 widget.display = panel in self.arrangement.boxes
@@ -375,7 +384,7 @@ class PanelArea(Container):
     def on_resize(self, event: events.Resize) -> None:
         if not self._is_loaded:
             self._load()
-        self.lay_out()
+        self.lay_out(keeps=self.focused_panel())
 
     def on_descendant_focus(self, event: events.DescendantFocus) -> None:
         """Mark the panel that has the focus.

@@ -53,6 +53,10 @@ class PanelMessages(LabHost):
             self.say(f"The program {does}: {{panel-brick}} opens its panel")
         self.has_hinted = True
 
+    def on_panel_area_rearranged(self) -> None:
+        """Tell the page, whose buttons show which panels are there."""
+        self.context.app.tell_server("panels", shown=[*self.context.panels.arrangement.boxes])
+
     def on_code_typing_changed(self, message: Code.TypingChanged) -> None:
         self.situation_changed()
         area = self.context.panels

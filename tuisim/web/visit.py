@@ -23,6 +23,8 @@ from tuisim.web.sockets import close
 _LONGEST_S = 86400.0
 """The longest that a timer waits at once."""
 _LARGEST_SIZE = 1000
+_MOST_PANELS, _LONGEST_NAME = 50, 50
+"""What an app tells of its panels is not trusted."""
 _ANSWER = re.compile(r"\x1b(\[[\d;]*[cnRt]|\[[?>=][\d;:]*\$?[A-Za-z]|[P_\]^][^\x07\x1b]*(\x07|\x1b\\))")
 """What a terminal sends by itself: reports of its cursor, size, modes, colours and name."""
 
@@ -87,7 +89,10 @@ class Visit:
         self._session = WebSession(command, self._link, downloads, place)
         self.doing = Doing()
         """What the app does."""
-        self._session.told = self.doing.note
+        self._session.told = self._told
+        self._panels: list[str] = []
+        """The panels that the app shows, as far as it has told."""
+        self._telling: asyncio.Task[None] | None = None
         self._size = 0, 0
         self._begun_s = time.monotonic()
         self._left: asyncio.TimerHandle | None = None
@@ -140,6 +145,8 @@ class Visit:
         await self._link.take(socket, json.dumps(["session", self.id]), "Another tab has taken this session over.")
         if self._link.watchers:
             await self._tell_watched()
+        if self._panels:
+            await self._tell_panels()
 
     async def take_over(self, socket: web.WebSocketResponse, width: int, height: int) -> None:
         """Let another browser show the app from now on; the one before is told.
@@ -173,6 +180,17 @@ class Visit:
         # A file that is offered waits for a browser; this is of no use to a later one, which is told when it comes.
         if (socket := self._link.socket) is not None and not socket.closed:
             await self._link.send_str(json.dumps(["watched", len(self._link.watchers)]))
+
+    def _told(self, said: Mapping[str, Any]) -> None:
+        self.doing.note(said)
+        if said.get("what") == "panels":
+            self._panels = [str(panel)[:_LONGEST_NAME] for panel in said["shown"][:_MOST_PANELS]]
+            self._telling = asyncio.create_task(self._tell_panels())
+
+    async def _tell_panels(self) -> None:
+        # Of no use to a later browser, as above.
+        if (socket := self._link.socket) is not None and not socket.closed:
+            await self._link.send_str(json.dumps(["panels", self._panels]))
 
     def _resized(self, width: int, height: int) -> None:
         self._size = _within(width, height)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ from textual.widgets import Input
 from tests.app.app_help import ready, screen_text, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.save import SaveDialog
+from tuisim.source import Program
 
 
 async def test_a_click_on_a_word_of_the_footer_presses_its_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -28,3 +30,21 @@ async def test_a_click_on_a_word_of_the_footer_presses_its_key(tmp_path: Path, m
             await click(word)
             await until(pilot, lambda: len(app.screen_stack) == 1)
             assert Path("mine.toml").exists() is writes, word
+
+
+async def test_a_click_on_a_word_of_the_editors_keys_saves_the_program(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "mine.py"
+    file.write_text("print(1)\n")
+    given = Program(file.name, file.read_text(), "preloaded", str(file))
+    async with LabApp(replace(settings(), program=given)).run_test(size=(80, 24)) as pilot:
+        app = await ready(pilot)
+        await pilot.press("d")
+        await until(pilot, lambda: "^s save" in screen_text(app))
+        await pilot.press("#")
+        for word in ("^s save", "esc done"):
+            await pilot.click(offset=(screen_text(app).splitlines()[-1].index(word) + 1, 23))
+            await until(pilot, lambda: file.read_text() == "#print(1)\n")
+        await until(pilot, lambda: not app.is_typed_into)

@@ -23,7 +23,7 @@ from textual.strip import Strip
 from textual.widgets import Input, OptionList, Static
 
 from tuisim.app import background
-from tuisim.app.action import KeyFooter, KeyWord, label_of_key
+from tuisim.app.action import KeyFooter, KeyWord, label_of_key, press
 from tuisim.app.background import Made
 from tuisim.errors import TuisimError
 from tuisim.terminal.cell_view import JoinedStrip, LazyStrip
@@ -205,14 +205,7 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
         for footer in footers:
             if footer.region.contains(event.screen_x, event.screen_y):
                 label = footer.key_of_dialog_at(event.screen_x - footer.region.x)
-                await self._press(keys.get(label, ""))
-
-    async def _press(self, key: str) -> None:
-        """Run the action of a key, as the widget with the focus, or one around it, understands it."""
-        for node in (self.focused or self).ancestors_with_self:
-            if bound := bindings_of(node).key_to_bindings.get(key):
-                await self.app.run_action(bound[0].action, node)
-                return
+                await press(self, keys.get(label, ""))
 
     def _gets(self, key: str) -> bool:
         """Return whether a field with the focus leaves a key to the dialog."""

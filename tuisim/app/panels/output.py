@@ -68,7 +68,7 @@ class Output(Vertical):
         yield self._past_log
 
     def set_program(self, name: str) -> None:
-        """Show the name of the program."""
+        """Show the name of the program whose output this is."""
         if name != self._program_name:
             self._program_name, self.border_title = name, _INFO.titled(name)
 

@@ -179,6 +179,11 @@ const session = (() => {
       if (typeof data !== "string") return;
       const [what, told] = JSON.parse(data);
       if (what === "watched") document.getElementById("watched").hidden = !told;
+      if (what === "panels") {
+        for (const button of document.querySelectorAll("[data-act^=panel-]:not([data-act=panel-next])")) {
+          button.setAttribute("aria-pressed", String(told.includes(button.dataset.act.slice("panel-".length))));
+        }
+      }
       if (what !== "session") return;
       chosen = told;
       document.body.classList.remove("-closed");
