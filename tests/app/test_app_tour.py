@@ -72,7 +72,8 @@ def test_the_tour_can_be_typed(terminal: Terminal, tmp_path: Path) -> None:
     for row in ROWS:
         if row[0] == "arrows":
             # Without code, chart and debugger there is room for the position among the readings.
-            terminal.keys("D", "c", "G")
+            # The first press of a key focuses the panel.
+            terminal.keys("D", "c", "c", "G", "G")
             terminal.until(lambda text: "─ Code" not in text and re.search(_POSITION, text) is not None)
         before = terminal.screen()
         for key in keys_of(row):

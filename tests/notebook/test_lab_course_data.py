@@ -167,7 +167,7 @@ def test_pictures_are_of_the_sensors_disc(done: Mapping[str, NotebookNode], tmp_
         (picture,) = pictures(done[name])
         picture.save(tmp_path / f"{name}.png")
         sizes[name] = picture.size
-    assert sizes == dict(zip(shown, [(200, 200), (200, 200), (140, 140), (290, 140), (140, 140), (200, 200)],
+    assert sizes == dict(zip(shown, [(200, 200), (200, 200), (140, 140), (310, 174), (140, 140), (200, 200)],
                              strict=True))  # fmt: skip
     corner, middle = (np.asarray(pictures(done["picture"])[0])[at, at] for at in (2, 100))
     assert corner.tolist() == [245, 226, 225]

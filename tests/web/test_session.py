@@ -54,7 +54,7 @@ class Tab:
                 kind, said = json.loads(message.data)
                 if kind == "session":
                     self.session = said
-                else:
+                elif kind != "panels":
                     self.offered += [said]
                 self._news.set()
                 continue

@@ -384,7 +384,8 @@ class PanelArea(Container):
     def on_resize(self, event: events.Resize) -> None:
         if not self._is_loaded:
             self._load()
-        self.lay_out(keeps=self.focused_panel())
+        panel = self.focused_panel()
+        self.lay_out(keeps=panel if self.shown(panel) else "")
 
     def on_descendant_focus(self, event: events.DescendantFocus) -> None:
         """Mark the panel that has the focus.

@@ -183,8 +183,8 @@ class Visit:
 
     def _told(self, said: Mapping[str, Any]) -> None:
         self.doing.note(said)
-        if said.get("what") == "panels":
-            self._panels = [str(panel)[:_LONGEST_NAME] for panel in said["shown"][:_MOST_PANELS]]
+        if said.get("what") == "panels" and isinstance(shown := said.get("shown"), list):
+            self._panels = [str(panel)[:_LONGEST_NAME] for panel in shown[:_MOST_PANELS]]
             self._telling = asyncio.create_task(self._tell_panels())
 
     async def _tell_panels(self) -> None:
