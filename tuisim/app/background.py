@@ -88,11 +88,16 @@ async def _awaited(work: Callable[[], None]) -> None:
         with suppress(RuntimeError):
             loop.call_soon_threadsafe(settle, problem)
 
-    _threads[:] = [thread for thread in _threads if thread.is_alive()]
     # With the context, which tells the thread its worker.
-    _threads.append(Thread(target=copy_context().run, args=(target,), daemon=True))
-    _threads[-1].start()
+    start(partial(copy_context().run, target))
     await done
+
+
+def start(work: Callable[[], object]) -> None:
+    """Run a function in a thread; nobody gets what it returns."""
+    _threads[:] = [thread for thread in _threads if thread.is_alive()]
+    _threads.append(Thread(target=work, daemon=True))
+    _threads[-1].start()
 
 
 def enter() -> None:

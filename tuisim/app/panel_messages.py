@@ -62,6 +62,9 @@ class PanelMessages(LabHost):
         area = self.context.panels
         if not message.typing:
             area.maximize("")
+            if code := area.code:
+                # Once the panel has its new size.
+                code.call_after_refresh(code.show_cursor)
         else:
             columns = _LESSON_COLUMNS if area.shown("lesson") else ROOMY_COLUMNS
             area.make_room("code", columns, ROOMY_ROWS)

@@ -5,13 +5,18 @@ from __future__ import annotations
 import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
 
 from tuisim.core.conditions import Operator, ValueCondition, ValueSource, comparison_form, run_condition_in, spelled
 from tuisim.core.field import Field
-from tuisim.core.sensors import column_names, named_column
+from tuisim.core.sensors import mounted, named_column
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
+from tuisim.runs.arrays import world_points_mm
 from tuisim.runs.brick_state import BrickState, face_after
 from tuisim.runs.frames import begins, column_values, held
 from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow
@@ -165,18 +170,42 @@ def forms(timeline: Timeline) -> list[tuple[str, str]]:
 def proposal(timeline: Timeline, mat: Field | None) -> str:
     """Return the words to search for: those of the last search, else where a light sensor's reading last changed.
 
-    That is where a robot lost its line. Empty if no reading has changed, or there is no run yet.
+    That is where a robot lost its line. Where the edge of the mat came later, it is told as a time. Empty if
+    no reading has changed, or there is no run yet.
     """
     recording = timeline.recording
     if timeline.searched or mat is None or recording is None or recording.newest < 0:
         return timeline.searched
-    import numpy as np
+    sensors = {
+        f"{one.name}_red_pc": one for _, one in mounted(recording.spec.robot) if isinstance(one, ColorSensorSpec)
+    }
+    records = recording.telemetry.array()[: timeline.tick + 1]
+    values = column_values(tuple(sensors), records, recording.spec, recording.actions(), mat)
+    found = []
+    for name, sensor in sensors.items():
+        changes = np.diff(values[name]) != 0
+        is_on = _is_on_mat(records, sensor)
+        found.append((_last_in(changes & is_on[1:] & is_on[:-1]), _last_in(changes), name))
+    on_mat, _, name = max(found, default=(-1, -1, ""))
+    if on_mat < 0:
+        return ""
+    if max(anywhere for _, anywhere, _ in found) > on_mat:
+        return f"{(on_mat + 1) / timeline.tick_hz:.2f}"
+    return f"{name} {Operator.CHANGES} back"
 
-    names = tuple(name for name in column_names(recording.spec.robot) if name.endswith("_red_pc"))
-    values = column_values(names, recording.telemetry.array(), recording.spec, recording.actions(), mat)
-    changes = ((np.flatnonzero(np.diff(values[name][: timeline.tick + 1])), name) for name in names)
-    latest = max(((int(ticks[-1]), name) for ticks, name in changes if ticks.size), default=None)
-    return f"{latest[1]} {Operator.CHANGES} back" if latest else ""
+
+def _is_on_mat(records: npt.NDArray[Any], sensor: ColorSensorSpec) -> npt.NDArray[np.bool_]:
+    """Return at which ticks all that a sensor sees is on the mat, shape (n,)."""
+    x_mm, y_mm = world_points_mm(records, sensor.x_mm, sensor.y_mm)
+    edge_mm = sensor.diameter_mm / 2
+    in_width = (x_mm >= edge_mm) & (x_mm <= FIELD_WIDTH_MM - edge_mm)
+    return in_width & (y_mm >= edge_mm) & (y_mm <= FIELD_HEIGHT_MM - edge_mm)
+
+
+def _last_in(true: npt.NDArray[np.bool_]) -> int:
+    """Return the last place of a true value, -1 if there is none."""
+    places = np.flatnonzero(true)
+    return int(places[-1]) if places.size else -1
 
 
 _HINT = f"3.5, tick 120, line 12, sample NAME, sample {comparison_form()}, COLUMN < 50, print REGEX, start or end"

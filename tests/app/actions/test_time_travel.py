@@ -20,7 +20,7 @@ from tuisim.app.panels.chart import Chart
 from tuisim.app.setup.next_run import with_obstacles
 from tuisim.app.snapshot import RunPhase
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import NoiseSpec, Obstacle
+from tuisim.core.spec import FIELD_WIDTH_MM, NoiseSpec, Obstacle
 from tuisim.protocol import Answer, Resume, SetNoise
 from tuisim.runs.rerun import rerun, same
 from tuisim.runs.store import RunStore
@@ -253,8 +253,23 @@ async def test_go_to_proposes_where_a_light_reading_last_changed(home: object) -
         await ready(pilot)
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         timeline = app.run_controller.timeline
-        await pilot.press("g", "enter")
+        await pilot.press("g")
+        assert app.screen.query_one(Input).value in ("left_red_pc changes back", "right_red_pc changes back")
+        await pilot.press("enter")
         assert 0 < (timeline.at or 0) < timeline.newest
-        assert timeline.searched in ("left_red_pc changes back", "right_red_pc changes back")
         await pilot.press("g", *"x_mm", "space", ">", "space", *"300", "enter", "g")
         assert app.screen.query_one(Input).value == timeline.searched == "x_mm > 300"
+
+
+@pytest.mark.slow
+async def test_go_to_proposes_no_change_at_the_edge_of_the_mat(home: object) -> None:
+    program = "# %%sim_magic_preloaded -b Grey_bands\ntank_drive.on_for_seconds(100, 100, 6)\n"
+    app = LabApp(settings(program, autorun=True, speed=0.0, background="Grey_bands"))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        recording = app.run_controller.timeline.recording
+        assert recording is not None and recording.telemetry.record(recording.newest).x_mm > FIELD_WIDTH_MM
+        await pilot.press("g", "enter")
+        at = app.run_controller.timeline.at
+        assert at is not None and recording.telemetry.record(at).x_mm < FIELD_WIDTH_MM - 200

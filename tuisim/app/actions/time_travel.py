@@ -133,13 +133,14 @@ def ask_where(context: ActionContext) -> None:
 
     def go(text: str) -> None:
         to_tick(context, find(text, timeline, field, first_at_end=True))
-        timeline.searched = text
+        if text != proposed:
+            timeline.searched = text
 
     goes_on = context.runs.state in (RunPhase.STARTING, RunPhase.RUNNING) and not context.runs.in_past
     title = "Go to · pauses the program" if goes_on else f"Go to · now at {timeline.time_s:.2f} s"
     words = column_names(context.runs.spec.robot)
-    text = proposal(timeline, field)
-    context.app.push_screen(LinePrompt(title, go, text, forms=forms(timeline), words=words, sees_below=True))
+    proposed = proposal(timeline, field)
+    context.app.push_screen(LinePrompt(title, go, proposed, forms=forms(timeline), words=words, sees_below=True))
 
 
 def to_sample(context: ActionContext, words: str) -> None:

@@ -54,7 +54,7 @@ class ChoiceGroup:
 
 
 def files_here(suffixes: Iterable[str], fits: Callable[[Path], object] | None = None) -> ChoiceGroup:
-    """Return the files in the current folder.
+    """Return the files in the current folder but hidden ones.
 
     Args:
         suffixes: With their dots.
@@ -64,7 +64,7 @@ def files_here(suffixes: Iterable[str], fits: Callable[[Path], object] | None = 
     found = sorted(
         path
         for path in Path.cwd().iterdir()
-        if path.suffix.lower() in wanted and not is_companion(path) and path.is_file()
+        if path.suffix.lower() in wanted and not (path.name.startswith(".") or is_companion(path)) and path.is_file()
     )
     if fits:
         found = [path for path in found[:MAX_TRIED] if _passes(fits, path)]

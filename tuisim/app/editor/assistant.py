@@ -84,7 +84,7 @@ class Assistant:
 
     def start(self) -> None:
         """Begin to help while typing: the first name that is looked up need not wait for the library."""
-        background.run(self._area, completion.warm_up, lambda _: None, group="warm-up")
+        background.start(completion.warm_up)
 
     def stop(self) -> None:
         """End what only helps while typing."""

@@ -310,6 +310,10 @@ class Code(Vertical):
         self._type(False)
         self._area.scroll_to(x=0, animate=False, force=True)
 
+    def show_cursor(self) -> None:
+        """Scroll to the cursor."""
+        self._area.scroll_cursor_visible(animate=False)
+
     def _type(self, typing: bool) -> None:
         if typing != self.typing:
             self._area.read_only = not typing
