@@ -21,6 +21,9 @@ def held_at(text: str) -> tuple[int, str, str]:
     return (int(where[1]), where[2], value[1] if value else "") if where else (0, "", "")
 
 
+_IS_BUSY = re.compile(r"tick \d+ …")
+
+
 def press_and_wait(terminal: Terminal, key: str, times: int) -> list[tuple[int, str, str]]:
     """Press a key so many times, each time the program stands elsewhere; return where it stood."""
     return [held_after(terminal, key) for _ in range(times)]
@@ -30,7 +33,7 @@ def held_after(terminal: Terminal, key: str) -> tuple[int, str, str]:
     """Press a key and wait until the program stands at another line."""
     before = held_at(terminal.screen())[0]
     terminal.keys(key)
-    return held_at(terminal.until(lambda text: held_at(text)[0] not in (0, before) and " …" not in text))
+    return held_at(terminal.until(lambda text: held_at(text)[0] not in (0, before) and not _IS_BUSY.search(text)))
 
 
 def hold_at_line_15(terminal: Terminal) -> None:
