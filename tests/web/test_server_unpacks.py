@@ -4,26 +4,28 @@ from __future__ import annotations
 
 import json
 import random
-import subprocess
 import zlib
 from base64 import b64decode, b64encode
-from shutil import which
+from pathlib import Path
 
 import pytest
 
+from tests.web.chromium import chromium, needs_chromium
 from tuisim.web.server import PAGE
 
 _UNPACKS = """
-const { readFileSync } = require("fs");
-const inflate = new Function(`${readFileSync(process.argv[1])}; return inflate`)();
-const given = JSON.parse(readFileSync(0));
-const unpack = ([data, size]) => Buffer.from(inflate(Buffer.from(data, "base64"), size)).toString("base64");
-console.log(JSON.stringify(given.map(unpack)));
+(() => {
+  const inflate = (() => { %s; return inflate; })();
+  const bytes = (text) => Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
+  const text = (data) => btoa(Array.from(data, (code) => String.fromCharCode(code)).join(""));
+  return JSON.stringify(%s.map(([data, size]) => text(inflate(bytes(data), size))));
+})()
 """
 
 
-@pytest.mark.skipif(which("node") is None, reason="needs a JavaScript engine: node")
-def test_the_page_unpacks_what_zlib_has_packed() -> None:
+@pytest.mark.slow
+@needs_chromium
+async def test_the_page_unpacks_what_zlib_has_packed(tmp_path: Path) -> None:
     chance = random.Random(1)
     kinds = [
         bytes(18_000),
@@ -34,7 +36,6 @@ def test_the_page_unpacks_what_zlib_has_packed() -> None:
     ]
     packed = [(zlib.compress(data, level), data) for data in kinds for level in (0, 1, 6, 9)]
     given = json.dumps([(b64encode(short).decode(), len(data)) for short, data in packed])
-    done = subprocess.run(
-        ["node", "-e", _UNPACKS, str(PAGE / "inflate.js")], input=given, capture_output=True, text=True, check=True
-    )
-    assert [b64decode(one) for one in json.loads(done.stdout)] == [data for _, data in packed]
+    async with chromium(tmp_path, 400, 300, 1, fingers=False) as page:
+        unpacked = json.loads(await page.js(_UNPACKS % ((PAGE / "inflate.js").read_text("utf-8"), given)))
+    assert [b64decode(one) for one in unpacked] == [data for _, data in packed]

@@ -63,10 +63,7 @@ class Tutor:
         if visit is None:
             return {"name": name, "app": None}
         memory_bytes = self._used.get(visit.pid, Usage()).memory_bytes
-        return {
-            "name": name,
-            "app": {**visit.to_plain(), **visit.doing.to_plain(), "memory_mb": memory_bytes >> 20},
-        }
+        return {"name": name, "app": {**visit.to_plain(), **visit.doing.to_plain(), "memory_mb": memory_bytes >> 20}}
 
     def _visit(self, name: str) -> Visit | None:
         server = self._servers.get(name)

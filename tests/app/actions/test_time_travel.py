@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -245,13 +247,20 @@ async def test_a_line_of_a_module_beside_the_program_is_shown(tmp_path: Path, mo
         await until(pilot, lambda: "  return by + 1" in screen_text(app))
 
 
-@pytest.mark.slow
-async def test_go_to_proposes_where_a_light_reading_last_changed(home: object) -> None:
-    program = "# %%sim_magic_preloaded -b Grey_bands -x 250\ntank_drive.on_for_seconds(50, 50, 1)\n"
+@asynccontextmanager
+async def run_over_bands(program: str) -> AsyncIterator[tuple[Pilot[Any], LabApp]]:
+    """Yield an app whose program has ended on the mat with grey bands."""
     app = LabApp(settings(program, autorun=True, speed=0.0, background="Grey_bands"))
     async with app.run_test(size=(120, 40)) as pilot:
         await ready(pilot)
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        yield pilot, app
+
+
+@pytest.mark.slow
+async def test_go_to_proposes_where_a_light_reading_last_changed(home: object) -> None:
+    program = "# %%sim_magic_preloaded -b Grey_bands -x 250\ntank_drive.on_for_seconds(50, 50, 1)\n"
+    async with run_over_bands(program) as (pilot, app):
         timeline = app.run_controller.timeline
         await pilot.press("g")
         assert app.screen.query_one(Input).value in ("left_red_pc changes back", "right_red_pc changes back")
@@ -264,10 +273,7 @@ async def test_go_to_proposes_where_a_light_reading_last_changed(home: object) -
 @pytest.mark.slow
 async def test_go_to_proposes_no_change_at_the_edge_of_the_mat(home: object) -> None:
     program = "# %%sim_magic_preloaded -b Grey_bands\ntank_drive.on_for_seconds(100, 100, 6)\n"
-    app = LabApp(settings(program, autorun=True, speed=0.0, background="Grey_bands"))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+    async with run_over_bands(program) as (pilot, app):
         recording = app.run_controller.timeline.recording
         assert recording is not None and recording.telemetry.record(recording.newest).x_mm > FIELD_WIDTH_MM
         await pilot.press("g", "enter")

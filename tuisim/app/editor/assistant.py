@@ -84,7 +84,8 @@ class Assistant:
 
     def start(self) -> None:
         """Begin to help while typing: the first name that is looked up need not wait for the library."""
-        background.start(completion.warm_up)
+        if not completion.is_ready():
+            background.start(completion.warm_up)
 
     def stop(self) -> None:
         """End what only helps while typing."""

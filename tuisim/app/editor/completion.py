@@ -174,9 +174,8 @@ def is_ready() -> bool:
 
 
 def warm_up() -> None:
-    """Read what every program uses, unless it has been asked before, so that nobody waits for it later."""
-    if not is_ready():
-        candidates(*_FIRST)
+    """Read what every program uses, so that nobody waits for it later. Blocks."""
+    candidates(*_FIRST)
 
 
 def _answer(ask: Callable[[], Result], otherwise: Result) -> Result:
