@@ -46,6 +46,7 @@ async def listed(pilot: Pilot[Any], text: str) -> tuple[Code, CodeArea]:
 async def test_the_library_is_read_when_typing_begins(monkeypatch: pytest.MonkeyPatch) -> None:
     is_warm = Event()
     monkeypatch.setattr(completion, "warm_up", is_warm.set)
+    monkeypatch.setattr(completion, "is_ready", lambda: False)
     async with CodeApp().run_test(size=SIZE) as pilot:
         await alone(pilot, "x = 1")
         await pilot.pause()
