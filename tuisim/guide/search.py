@@ -3,6 +3,8 @@
 SQLite ranks pages, and their passages, by BM25 of the stems of their words: a rare word counts more. A page counts with
 its best passage, and its further words are words of each. Which passage of a page answers is ranked without these: they
 would make the rarest words of a page look common, and all its passages alike.
+
+A question that is like one of `asked` also counts for its page, and finds the passage that answers it.
 """
 
 from __future__ import annotations
@@ -13,11 +15,10 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 
 from tuisim.data_class import dataclass
+from tuisim.guide import asked
 from tuisim.guide.catalogue import pages
 from tuisim.guide.tables import markdown_of
 
-_WORD = re.compile(r"\w+(?:→\w+)*")
-"""A word; words joined by an arrow, as `in→out`, are looked for together."""
 _HEADING = re.compile(r"^##+ (.+)$", re.MULTILINE)
 _FENCE = re.compile(r"^```.*\n?", re.MULTILINE)
 _PASSAGE_END = re.compile(r"\n\s*\n(?!    )|\n(?=- |\| )")
@@ -26,22 +27,15 @@ _HEAD = re.compile(r"^\|.*\n(?=\| ---)", re.MULTILINE)
 """The head of a table, which answers nothing."""
 _RULE = re.compile(r"[-| ]*")
 """The line below it."""
-_CONTRACTED = re.compile(r"(n't|['’](s|m|d|re|ve|ll|t))\b")
-"""The ends of `doesn't`, `it's`, `I'm`."""
-_SAYS_NOTHING = """
-a about all am an and any are as at be because been being both but by can come could did do does doing each few for from
-further get gets go goes going had has have having he her here hers him his how i if in into is it its itself just look
-make makes making me more most my nor not of on once only or our ours see she should show so some somebody such tell
-than that the their theirs them then there these they this those to too use used very want wanted was we were what when
-where whether which while who whom why will with would you your yours
-"""
-_IGNORED = frozenset(_SAYS_NOTHING.split())
-"""Words that say nothing about the subject of a question."""
 _SHORTEST = 3
 """Letters from which a word may be the beginning of another."""
 _FIELDS = "name UNINDEXED, heading UNINDEXED, passage, titles, words"
 _TITLES, _WORDS = 2.0, 2.0
 """How much a word counts in title and heading, and among the page's further words; 1 in the text."""
+_ASKED = 1.5
+"""How much the same question counts, where the page with most of the words counts 1; one less alike counts far less."""
+_LIKE = 0.5
+"""From this cosine on, the passage that answers a question which people ask answers the one that somebody types."""
 _MOST = 10
 """So many pages are read through; further ones share common words only."""
 
@@ -94,18 +88,33 @@ def _found(table: str, query: str) -> Mapping[str, tuple[float, SearchResult]]:
     return {name: (score, SearchResult(name, *rest)) for score, name, *rest in _index().execute(ranked, (query,))}
 
 
+def _passage_with(name: str, key: str) -> SearchResult | None:
+    """Return the passage of a page that has a text. Keys that a user has changed may be in none."""
+    rows = _index().execute("SELECT heading, passage FROM answers WHERE name = ? ORDER BY rowid", (name,))
+    return next((SearchResult(name, *row) for row in rows if key in row[1]), None)
+
+
 def search(question: str) -> list[SearchResult]:
     """Return the pages that answer words of a question best, the best one first, ten at most.
 
     Args:
         question: Words; one that no page has may be the beginning of another.
     """
-    words = dict.fromkeys(_WORD.findall(_CONTRACTED.sub("", question.lower())))
-    terms = [f'"{word}"' for word in words if word not in _IGNORED]
+    terms = [f'"{word}"' for word in asked.words_of(question)]
     whole = [term if len(term) < _SHORTEST + 2 or _found("whole", term) else f"{term}*" for term in terms]
     if not whole:
         return []
     query = " OR ".join(whole)
     best, of_pages, answers = (_found(table, query) for table in ("passages", "whole", "answers"))
-    order = sorted(best, key=lambda name: -best[name][0] - of_pages[name][0])
-    return [answers[name][1] if name in answers else SearchResult(name, "", "") for name in order[:_MOST]]
+    scores = {name: best[name][0] + of_pages[name][0] for name in best}
+    most, like = max(scores.values(), default=1.0), asked.like(question)
+
+    def score(name: str) -> float:
+        return scores.get(name, 0.0) / most + (_ASKED * like[name].cosine ** 3 if name in like else 0.0)
+
+    def answer(name: str) -> SearchResult:
+        if name in like and like[name].cosine >= _LIKE and (found := _passage_with(name, like[name].key)):
+            return found
+        return answers[name][1] if name in answers else SearchResult(name, "", "")
+
+    return [answer(name) for name in sorted({**scores, **like}, key=score, reverse=True)[:_MOST]]

@@ -1,0 +1,44 @@
+"""Questions that people ask find the passage that answers them."""
+
+from __future__ import annotations
+
+import pytest
+
+from tuisim.guide.asked import asked_questions, like, words_of
+from tuisim.guide.catalogue import pages
+from tuisim.guide.search import search
+from tuisim.guide.tables import markdown_of
+
+
+def test_each_answer_is_in_its_page() -> None:
+    for name, answers in asked_questions().items():
+        text = markdown_of(pages()[name])
+        assert [key for key in answers if key not in text] == [], name
+
+
+@pytest.mark.parametrize("name", asked_questions())
+def test_each_question_finds_its_answer_among_the_first_two(name: str) -> None:
+    missed = [
+        (key, ask, [one.name for one in search(ask)[:2]])
+        for key, asks in asked_questions()[name].items()
+        for ask in asks
+        if not any(one.name == name and key in one.passage for one in search(ask)[:2])
+    ]
+    assert missed == []
+
+
+def test_no_question_has_two_answers() -> None:
+    asks = [ask for answers in asked_questions().values() for asks in answers.values() for ask in asks]
+    assert len(asks) == len({*asks})
+
+
+def test_what_is_denied_is_another_question() -> None:
+    assert (
+        like("the robot doesn't move")["when-it-goes-wrong"].cosine
+        > like("move the robot")["when-it-goes-wrong"].cosine
+    )
+    assert [*words_of("why doesn't it move", frozenset(["not"]))] == ["not", "move"]
+
+
+def test_words_that_nobody_asks_are_like_nothing() -> None:
+    assert like("xyzzy") == {}
