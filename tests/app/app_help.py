@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from textual.pilot import Pilot
+from textual.widgets import Static
 
 from tests.running import PATIENCE_S
 from tuisim.app.app import AppSettings, LabApp
@@ -62,6 +63,11 @@ async def ready(pilot: Pilot[Any]) -> LabApp:
 
 def notices(app: LabApp) -> list[str]:
     return [str(notice.message) for notice in app._notifications]
+
+
+def message_of(app: LabApp) -> str:
+    """What the open dialog says about what was typed."""
+    return "".join(str(one.content) for one in app.screen.query("#message").results(Static))
 
 
 def screen_text(app: LabApp) -> str:

@@ -9,7 +9,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input
 
-from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until, until_shown
+from tests.app.app_help import ENDLESS, LOGS, message_of, notices, ready, screen_text, settings, until, until_shown
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
@@ -102,7 +102,7 @@ async def test_a_wrong_world_changes_nothing(folder: Path) -> None:
         app = await ready(pilot)
         before = app.run_controller.next_run, app.run_controller.program
         await enter_path(pilot, "lab.toml")
-        await until(pilot, lambda: any("pen.width_mm: must be a number" in notice for notice in notices(app)))
+        await until(pilot, lambda: "pen.width_mm: must be a number" in message_of(app))
         assert (app.run_controller.next_run, app.run_controller.program) == before
         assert app.loader.world_file is None
         # It can be corrected.

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from textual.app import App
-from textual.widgets import Input, OptionList
+from textual.widgets import Input, OptionList, Static
 from textual.widgets._toast import Toast
 
 from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser, files_here
@@ -53,7 +53,40 @@ async def test_what_is_typed_searches_the_list_or_is_a_path(typed: str, listed: 
         if not result:
             assert app.screen is dialog
             assert dialog.query_one(Input).value == typed
-            assert [str(one.message) for one in app._notifications] == [f"{typed}: there is no such program"]
+            assert str(dialog.query_one("#message", Static).content) == f"{typed}: there is no such program"
+
+
+async def test_tab_completes_a_path_and_enter_looks_into_a_folder(tmp_path: Path) -> None:
+    (tmp_path / "robots" / "deep").mkdir(parents=True)
+    (tmp_path / "robots" / "deep" / "mine.py").write_text("")
+    chosen: list[str | None] = []
+    app: App[None] = App()
+    async with app.run_test() as pilot:
+        app.push_screen(Chooser("Open", GROUPS, path_hint="path", read=no_file, suffixes=[".py"]), chosen.append)
+        await pilot.pause()
+        await pilot.press("/")
+        field, listed = app.screen.query_one(Input), app.screen.query_one(OptionList)
+        field.value = f"{tmp_path}/ro"
+        await pilot.press("tab")
+        assert field.value == f"{tmp_path}/robots/"
+        await pilot.pause()
+        assert [option.id for option in listed.options if option.id] == [f"{tmp_path}/robots/deep/"]
+        listed.action_select()
+        await pilot.pause()
+        assert (field.value, field.has_focus, chosen) == (f"{tmp_path}/robots/deep/", True, [])
+        listed.action_select()
+        await pilot.pause()
+        assert chosen == [f"{tmp_path}/robots/deep/mine.py"]
+
+
+async def test_a_path_to_nothing_is_told_at_once() -> None:
+    app: App[None] = App()
+    async with app.run_test() as pilot:
+        app.push_screen(Chooser("Open", GROUPS, path_hint="path", read=no_file, suffixes=[".py"]))
+        await pilot.pause()
+        await pilot.press(*"/no/such")
+        await pilot.pause()
+        assert str(app.screen.query_one("#message", Static).content) == "no such file here"
 
 
 async def test_the_arrows_move_in_the_list_while_one_types() -> None:

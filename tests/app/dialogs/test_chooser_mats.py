@@ -9,7 +9,7 @@ from PIL import Image
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
-from tests.app.app_help import LOGS, notices, ready, settings, until
+from tests.app.app_help import LOGS, message_of, notices, ready, settings, until
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.config.options import Settings
 from tuisim.terminal.cell_view import PixelView
@@ -70,7 +70,7 @@ async def test_what_is_no_image_changes_nothing(content: str | None, tmp_path: P
         await pilot.press("b")
         await pilot.pause()
         await enter_path(pilot, path)
-        await until(pilot, lambda: any("none.png" in notice for notice in notices(app)))
+        await until(pilot, lambda: any("none.png" in told for told in (*notices(app), message_of(app))))
         await until(pilot, lambda: app.run_controller.next_run == before)
         assert app.loader.mat_is_ready
         assert app.run_controller.snapshot().colors["left"].rgb == (255, 255, 255)

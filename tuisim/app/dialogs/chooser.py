@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -13,11 +14,13 @@ from textual import events, on
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Horizontal, Vertical
+from textual.widget import Widget
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim.app import background
 from tuisim.app.dialogs.dialog import MOVE_KEYS, Dialog, name_and_title
+from tuisim.app.dialogs.paths import completed, is_path, paths_after
 from tuisim.app.dialogs.save import typed_path
 from tuisim.app.error_words import in_a_list
 from tuisim.config.folders import user_path
@@ -39,6 +42,9 @@ if TYPE_CHECKING:
     from tuisim.app.setup.next_run import NextRun
     from tuisim.config.mats import Background
 
+OPENABLE, TABLES = (".py", ".toml"), (".toml", ".json")
+IMAGES = (".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff")
+"""Endings of the files that choosers list in a folder."""
 MAX_FILES = 200
 MAX_TRIED = 50
 """Most files of the folder that are opened to check their format."""
@@ -99,7 +105,11 @@ class ListDialog(Dialog[str]):
 
     @on(OptionList.OptionSelected)
     def _chosen(self, event: OptionList.OptionSelected) -> None:
-        self.dismiss(event.option.id)
+        self.choose(event.option.id or "")
+
+    def choose(self, value: str) -> None:
+        """Return what was chosen from the list."""
+        self.dismiss(value)
 
     @on(Input.Submitted)
     def _typed(self, event: Input.Submitted) -> None:
@@ -134,6 +144,7 @@ class Chooser(ListDialog):
         current: The current value, selected at first.
         path_hint: What the field takes beside words to search for; without it there is no field.
         read: Reads what a name or a path stands for; raises a TuisimError.
+        suffixes: Those of the files that a path may name, with their dots.
     """
 
     HINT: str = "Enter selects · Escape closes"
@@ -145,11 +156,13 @@ class Chooser(ListDialog):
         current: str = "",
         path_hint: str = "",
         read: Callable[[str], object] = str,
+        suffixes: Sequence[str] = (),
     ) -> None:
         super().__init__()
         self.TITLE_TEXT = title
         if path_hint:
-            self.HINT = "Enter selects · type to search · Escape closes"
+            self.HINT = "Enter selects · type to search, tab completes a path · Escape closes"
+        self._suffixes = suffixes
         self._groups = [group for group in groups if group.entries]
         self._current = current
         self._path_hint = path_hint
@@ -159,8 +172,13 @@ class Chooser(ListDialog):
 
     def content(self) -> ComposeResult:
         if self._path_hint:
-            yield self.field()
+            yield from self.asked()
         yield self.listed()
+
+    def asked(self) -> Iterable[Widget]:
+        """Yield the field, and below it the line that says what is wrong with its text."""
+        yield self.field()
+        yield Static(id="message", markup=False)
 
     def field(self) -> Input:
         """Return the field."""
@@ -195,12 +213,41 @@ class Chooser(ListDialog):
         listed, typed = self.query_one(OptionList), event.value.strip()
         # The dialog keeps its place while the list becomes shorter.
         listed.styles.height = listed.outer_size.height if typed else None
-        found = searched(self._groups, typed)
+        found = self._found(typed)
         listed.clear_options()
         listed.add_options(self._options(found))
+        self.say("" if found else "no such file here" if is_path(typed) else "no name has these words")
         if found:
-            best = best_match(found, typed) if typed else self._current
+            best = best_match(found, os.path.basename(typed)) if typed else self._current
             listed.highlighted = next((at for at, one in enumerate(listed.options) if one.id == best), None)
+
+    def _found(self, typed: str) -> Sequence[ChoiceGroup]:
+        if not (self._suffixes and is_path(typed)):
+            return searched(self._groups, typed)
+        entries = paths_after(typed, self._suffixes)
+        return [ChoiceGroup(f"In {os.path.dirname(typed) or '.'}", entries)] if entries else []
+
+    def on_key(self, event: events.Key) -> None:
+        """Complete a path by tab."""
+        fields = self.query(Input)
+        typed = fields.first().value if fields else ""
+        if event.key == "tab" and fields and fields.first().has_focus and self._suffixes and is_path(typed):
+            event.stop()
+            event.prevent_default()
+            self._type(completed(typed, paths_after(typed, self._suffixes)))
+
+    def _type(self, text: str) -> None:
+        field = self.query_one(Input)
+        field.value = text
+        field.cursor_position = len(text)
+        field.focus()
+
+    def choose(self, value: str) -> None:
+        """Look into a folder, or return what was chosen."""
+        if is_path(value) and value.endswith("/"):
+            self._type(value)
+        else:
+            super().choose(value)
 
     def read(self, typed: str) -> object:
         """Read what a typed name or path stands for."""
@@ -210,7 +257,7 @@ class Chooser(ListDialog):
         """Choose what the search has found; without that, say what is wrong."""
         listed = self.query_one(OptionList)
         if listed.highlighted is None:
-            super().unread(error)
+            self.say(in_a_list(error), wrong=True)
         else:
             listed.action_select()
 
@@ -252,7 +299,7 @@ def program_chooser() -> Chooser:
         ChoiceGroup("Examples of goals", [(str(path), path.name, title_of(path)) for path in goals]),
     ]
     hint = "path of a program, world or goals file"
-    return Chooser("Programs, worlds and goals", groups, path_hint=hint, read=_read_openable)
+    return Chooser("Programs, worlds and goals", groups, path_hint=hint, read=_read_openable, suffixes=OPENABLE)
 
 
 def _read_openable(word: str) -> object:
@@ -277,7 +324,7 @@ def obstacle_chooser(plan: NextRun) -> Chooser:
     ]
     groups = [ChoiceGroup("", presets), files_here([".toml", ".json"], lambda path: load_obstacles(str(path)))]
     return Chooser(
-        "Obstacles", groups, plan.words.get("obstacles", ""), "path of a .toml or .json file", load_obstacles
+        "Obstacles", groups, plan.words.get("obstacles", ""), "path of a .toml or .json file", load_obstacles, TABLES
     )
 
 
@@ -288,7 +335,9 @@ def profile_chooser(plan: NextRun) -> Chooser:
         for name, p in PROFILES.items()
     ]
     groups = [ChoiceGroup("", presets), files_here([".toml"], lambda path: load_profile(str(path)))]
-    return Chooser("Profiles", groups, plan.words.get("profile", ""), "path of a profile's .toml file", load_profile)
+    return Chooser(
+        "Profiles", groups, plan.words.get("profile", ""), "path of a profile's .toml file", load_profile, [".toml"]
+    )
 
 
 WIDEST_NAME = 32
@@ -308,7 +357,7 @@ class MatPicker(Chooser):
         laid = next((name for name, mat in known.items() if spec_name(mat) == current), next(iter(known), ""))
         groups = [ChoiceGroup("", [(name, name, "") for name in known])]
         find = partial(find_mat, folder=folder)
-        super().__init__("Mats", groups, laid, "path of an image of your own", find)
+        super().__init__("Mats", groups, laid, "path of an image of your own", find, IMAGES)
         self._mats, self._folder = known, folder
         self._shown = ""
         self._pictures: dict[tuple[str, Viewport], Pixels] = {}
@@ -321,7 +370,7 @@ class MatPicker(Chooser):
             with Vertical():
                 yield _MatPicture()
                 yield Static(id="title", markup=False)
-        yield self.field()
+        yield from self.asked()
 
     def on_mount(self) -> None:
         self.call_after_refresh(self._begin)
@@ -346,9 +395,9 @@ class MatPicker(Chooser):
         """Preview a mat: its title at once, its image as soon as it is decoded."""
         self._shown = name
         view = self.query_one(PixelView)
-        if name not in self._mats or not view.size:
+        if not (name in self._mats or Path(name).suffix.lower() in IMAGES) or not view.size:
             return
-        self.query_one("#title", Static).update(self._mats[name].title)
+        self.query_one("#title", Static).update(self._mats[name].title if name in self._mats else Path(name).name)
         port = field_view(view)
         if (picture := self._pictures.get((name, port))) is not None:
             view.set_fine_picture(picture, view.graphics)

@@ -16,7 +16,7 @@ from textual.containers import Horizontal, Vertical
 from textual.widgets import OptionList
 
 from tuisim import palette
-from tuisim.app.dialogs.chooser import WIDEST_NAME, ChoiceGroup, Chooser, files_here
+from tuisim.app.dialogs.chooser import TABLES, WIDEST_NAME, ChoiceGroup, Chooser, files_here
 from tuisim.config.robots import ROBOTS, choose_robot, load_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
@@ -69,7 +69,7 @@ class RobotPicker(Chooser):
     """
 
     def __init__(self, groups: Sequence[ChoiceGroup], current: str, robots: Mapping[str, RobotSpec]) -> None:
-        super().__init__("Robots", groups, current, "path of a robot's .toml or .json file", choose_robot)
+        super().__init__("Robots", groups, current, "path of a robot's .toml or .json file", choose_robot, TABLES)
         self._robots = dict(robots)
 
     def content(self) -> ComposeResult:
@@ -81,7 +81,7 @@ class RobotPicker(Chooser):
             with Vertical():
                 yield RobotPicture()
                 yield RobotParts()
-        yield self.field()
+        yield from self.asked()
 
     @on(OptionList.OptionHighlighted)
     def _highlighted(self, event: OptionList.OptionHighlighted) -> None:

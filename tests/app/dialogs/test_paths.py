@@ -1,0 +1,70 @@
+"""Files that a typed path may mean."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from tuisim.app.dialogs.paths import completed, is_path, paths_after
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "sub").mkdir()
+    for name in ("line.py", "Line_two.py", "list.txt", ".hidden.py"):
+        (tmp_path / name).write_text("")
+    return tmp_path
+
+
+def values(typed: str) -> list[str]:
+    return [value for value, *_ in paths_after(typed, [".py"])]
+
+
+def test_files_of_the_kind_and_folders_are_listed(folder: Path) -> None:
+    assert values(f"{folder}/") == [f"{folder}/Line_two.py", f"{folder}/line.py", f"{folder}/sub/"]
+    assert values(f"{folder}/.") == [f"{folder}/.hidden.py"]
+
+
+def test_case_does_not_count(folder: Path) -> None:
+    assert values(f"{folder}/LI") == [f"{folder}/Line_two.py", f"{folder}/line.py"]
+
+
+def test_a_home_stays_as_it_was_typed(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(folder))
+    assert values("~/s") == ["~/sub/"]
+    assert values("~") == ["~/"]
+
+
+def test_a_folder_of_this_one_is_found(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(folder)
+    assert values("./su") == ["./sub/"]
+    assert values(".") == ["./"]
+
+
+@pytest.mark.parametrize("typed", ["/no/such/folder/", "~nobody_of_that_name/x", "/dev/null/x", "a\0/b"])
+def test_nothing_is_in_what_is_no_folder(typed: str) -> None:
+    assert values(typed) == []
+
+
+def test_a_path_is_completed_as_far_as_all_agree(folder: Path) -> None:
+    assert completed(f"{folder}/L", paths_after(f"{folder}/L", [".py"])) == f"{folder}/Line"
+    assert completed(f"{folder}/su", paths_after(f"{folder}/su", [".py"])) == f"{folder}/sub/"
+    assert completed(f"{folder}/x", []) == f"{folder}/x"
+
+
+@pytest.mark.parametrize(
+    ("typed", "expected"),
+    [
+        ("/tmp", True),
+        ("~/x", True),
+        (".", True),
+        (f"a{os.sep}b", True),
+        ("line", False),
+        ("3 grey", False),
+        ("", False),
+    ],
+)
+def test_words_are_no_path(typed: str, expected: bool) -> None:
+    assert is_path(typed) is expected

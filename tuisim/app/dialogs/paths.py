@@ -1,0 +1,56 @@
+"""Files that a typed path may mean."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection
+from pathlib import Path
+
+from tuisim.config.folders import user_path
+from tuisim.logs.export import is_companion
+
+
+def is_path(typed: str) -> bool:
+    """Return whether a text is a path, and not words to search for."""
+    return typed.startswith(("/", "~", ".")) or os.sep in typed
+
+
+def paths_after(typed: str, suffixes: Collection[str]) -> list[tuple[str, str, str]]:
+    """Return the folders and files that a typed path may become, as entries of a list: value, name, and no title.
+
+    Args:
+        typed: A path; what stands after its last `/` is the beginning of a name, in which case does not count.
+        suffixes: Those of the files, with their dots. The value of a folder ends with `/`.
+    """
+    if typed in ("~", ".", ".."):
+        return [(f"{typed}/", f"{typed}/", "")]
+    folder, begun = os.path.split(typed)
+    # Joined as it was typed, so that `~` stays.
+    stem = typed[: len(typed) - len(begun)]
+    found = []
+    try:
+        inside = sorted(os.scandir(user_path(folder or ".")), key=lambda one: one.name)
+    except (OSError, ValueError):
+        return []
+    for one in inside:
+        if not one.name.lower().startswith(begun.lower()) or (one.name.startswith(".") and not begun.startswith(".")):
+            continue
+        if _is_folder(one):
+            found.append((f"{stem}{one.name}/", f"{one.name}/", ""))
+        elif Path(one.name).suffix.lower() in suffixes and not is_companion(Path(one.path)):
+            found.append((f"{stem}{one.name}", one.name, ""))
+    # Files are what is looked for.
+    return sorted(found, key=lambda entry: entry[0].endswith("/"))
+
+
+def completed(typed: str, entries: Collection[tuple[str, str, str]]) -> str:
+    """Return a typed path with what all of its entries have in common after it."""
+    common = os.path.commonprefix([value.lower() for value, *_ in entries])
+    return next((value[: len(common)] for value, *_ in entries), typed) if len(common) > len(typed) else typed
+
+
+def _is_folder(one: os.DirEntry[str]) -> bool:
+    try:
+        return one.is_dir()
+    except OSError:
+        return False
