@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection
+from itertools import takewhile
 from pathlib import Path
 
 from tuisim.config.folders import user_path
@@ -45,8 +46,10 @@ def paths_after(typed: str, suffixes: Collection[str]) -> list[tuple[str, str, s
 
 def completed(typed: str, entries: Collection[tuple[str, str, str]]) -> str:
     """Return a typed path with what all of its entries have in common after it."""
-    common = os.path.commonprefix([value.lower() for value, *_ in entries])
-    return next((value[: len(common)] for value, *_ in entries), typed) if len(common) > len(typed) else typed
+    values = [value for value, *_ in entries]
+    columns = zip(*(value.lower() for value in values), strict=False)
+    common = sum(1 for _ in takewhile(lambda letters: len({*letters}) == 1, columns))
+    return values[0][:common] if common > len(typed) else typed
 
 
 def _is_folder(one: os.DirEntry[str]) -> bool:
