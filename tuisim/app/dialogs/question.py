@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 from rich.table import Table
@@ -25,6 +25,13 @@ Answer = tuple[str, str]
 """A key, and what it does. The key is the result."""
 
 
+def _answers_row(answers: Iterable[tuple[str, str, str]]) -> Iterator[Static]:
+    """Yield the row of answers, below a free one: for each an action, its key, and what it does."""
+    yield Static()
+    words = (f"[@click=screen.{action}]  {key}  {does}  [/]" for action, key, does in answers)
+    yield Static("   ".join(words), classes="link")
+
+
 class Question(Dialog[str]):
     """Returns the key of the answer, None on Escape.
 
@@ -44,9 +51,7 @@ class Question(Dialog[str]):
 
     def content(self) -> ComposeResult:
         yield Static(self._text, markup=False)
-        yield Static()
-        words = (f"[@click=screen.answer('{key}')]  {key}  {does}  [/]" for key, does in self._answers)
-        yield Static("   ".join(words), classes="link")
+        yield from _answers_row((f"answer('{key}')", key, does) for key, does in self._answers)
 
     @property
     def keys(self) -> tuple[KeyWord, ...]:
@@ -95,10 +100,13 @@ class BranchQuestion(Dialog[str]):
 
     def content(self) -> ComposeResult:
         yield Static(self._text, markup=False)
-        answers = ["[@click=screen.branch]  y  Branch  [/]", "[@click=screen.leave]  n  Stay  [/]"]
-        if self._restart:
-            answers.insert(1, "[@click=screen.restart]  r  Run from the start  [/]")
-        yield Static("   ".join(answers))
+        answers = [("branch", "y", "Branch"), ("restart", "r", "Run from the start"), ("leave", "n", "Stay")]
+        yield from _answers_row(one for one in answers if self._restart or one[0] != "restart")
+
+    @property
+    def keys(self) -> tuple[KeyWord, ...]:
+        """Those of the answers that are offered, then Escape."""
+        return tuple(one for one in super().keys if self._restart or one[0] != "r")
 
     def action_branch(self) -> None:
         self.dismiss(BRANCH)
@@ -121,7 +129,7 @@ class LeaveQuestion(Dialog[bool]):
 
     def content(self) -> ComposeResult:
         yield Static("A program is running. Everything logged so far is kept.", markup=False)
-        yield Static("[@click=screen.yes]  y  Stop it and quit  [/]   [@click=screen.leave]  n  Stay  [/]")
+        yield from _answers_row([("yes", "y", "Stop it and quit"), ("leave", "n", "Stay")])
 
     def action_yes(self) -> None:
         self.dismiss(True)
