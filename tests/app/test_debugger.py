@@ -11,6 +11,7 @@ from textual.widgets import Input, OptionList, Static
 from tests.app.app_help import notices, press_and_stand, ready, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.debugger import Kept, following, keep, load_kept
+from tuisim.app.snapshot import RunPhase
 from tuisim.breakpoints import parse_breakpoints
 from tuisim.protocol import Inspected
 
@@ -289,3 +290,19 @@ async def test_breaks_are_kept_with_a_program_that_no_panel_shows(home: object) 
         await pilot.press("D")
         await until(pilot, lambda: app.panel_area.code is not None)
         assert [one.text for one in app.debugger.breaks] == ["4", "6"]
+
+
+async def test_editing_begins_where_the_program_is_paused(home: object) -> None:
+    app = LabApp(settings(COUNTS))
+    async with app.run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        await pilot.press("R")
+        await until(pilot, lambda: app.run_controller.snapshot().state is RunPhase.RUNNING)
+        await pilot.press("space")
+        await until(pilot, lambda: app.run_controller.snapshot().state is RunPhase.PAUSED)
+        # A panel that is opened has seen nothing of the run.
+        assert not app.panel_area.shown("code")
+        await pilot.press("d")
+        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
+        assert app.panel_area.code is not None
+        assert app.panel_area.code.cursor_line == app.run_controller.snapshot().line > 1

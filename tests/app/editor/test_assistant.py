@@ -151,11 +151,21 @@ async def test_the_list_follows_neither_the_cursor_nor_the_focus(home: Path) -> 
         await until(pilot, lambda: not area.candidates.is_open)
 
 
-async def test_tab_indents_where_nothing_may_follow(home: Path) -> None:
+async def test_tab_after_a_name_that_nothing_begins_with_says_so(home: Path) -> None:
     async with CodeApp().run_test(size=SIZE) as pilot:
-        _, area = await typed(pilot, "nothing_like_it")
+        code, area = await typed(pilot, "nothing_like_it")
         await pilot.press("tab")
-        await until(pilot, lambda: area.program_text == "nothing_like_it ")
+        await until(pilot, lambda: "no name begins with nothing_like_it" in str(code.border_subtitle))
+        assert area.program_text == "nothing_like_it"
+        await pilot.press("backspace")
+        await until(pilot, lambda: "no name begins" not in str(code.border_subtitle))
+
+
+async def test_tab_indents_where_no_name_may_follow(home: Path) -> None:
+    async with CodeApp().run_test(size=SIZE) as pilot:
+        _, area = await typed(pilot, "x = 1  #")
+        await pilot.press("tab")
+        await until(pilot, lambda: area.program_text.startswith("x = 1  # "))
 
 
 async def test_the_frame_shows_the_signature_of_the_call(home: Path) -> None:

@@ -207,6 +207,7 @@ def _type(context: ActionContext) -> None:
     if context.panels.shown("code") and (code := context.panels.code):
         # A newly mounted panel has not received the program yet.
         context.document.introduce()
+        code.show(context.runs.snapshot())
         code.start_typing(at_error=True)
 
 

@@ -113,6 +113,8 @@ class CodeArea(TextArea):
         self._breaks: Mapping[int, str] = {}
         self._lit = self._error = 0
         self.is_completing = False
+        self.unknown_word: str | None = None
+        """What nothing that may follow begins with, until something else is typed."""
         """Whether names are looked up: keys wait for them, however long it takes."""
         self.path = ""
         """Of the program's file, or its name."""
@@ -348,6 +350,7 @@ class CodeArea(TextArea):
             return
         # What was typed just before may not have been reported yet.
         self.follow_word()
+        self._tell_unknown(None)
         if event.character in _AFTER_NAMES and self.candidates.may_complete(self._word() or ""):
             # Who types on has not waited for the list.
             self.put_in(self.candidates.take_key("enter"))
@@ -406,11 +409,21 @@ class CodeArea(TextArea):
         elif found and word is not None:
             row, column = place
             self.candidates.open(found, (row, column - len(word)), word, self._place_of(word))
+        elif word is not None:
+            self._tell_unknown(word)
         else:
             self.insert_text(" " * columns_to_tab_stop(self))
 
+    def _tell_unknown(self, word: str | None) -> None:
+        if word != self.unknown_word:
+            self.unknown_word = word
+            self._tell_looked_up()
+
     def _set_completing(self, on: bool) -> None:
         self.is_completing = on
+        self._tell_looked_up()
+
+    def _tell_looked_up(self) -> None:
         # This widget's own messages wait for the key that it handles.
         if isinstance(self.parent, Widget):
             self.parent.post_message(self.LookedUp())

@@ -174,6 +174,8 @@ class Code(Vertical):
         helped = Text() if words else self._assistant.said(self.size.width - _FRAME)
         if self._area.is_completing:
             helped = Text("looking up …")
+        elif (word := self._area.unknown_word) is not None:
+            helped = Text(f"no name begins with {word}" if word else "nothing known follows the dot")
         self.border_subtitle = helped if helped else as_markup(told)
 
     def on_resize(self) -> None:
@@ -304,6 +306,8 @@ class Code(Vertical):
         if at_end:
             self._area.action_go_to_end(True)
         self._type(True)
+        # A panel that was opened for this has got no size yet.
+        self.call_after_refresh(self.show_cursor)
 
     def stop_typing(self) -> None:
         """Stop typing: letters are keys of the app again."""
@@ -311,7 +315,8 @@ class Code(Vertical):
         self._area.scroll_to(x=0, animate=False, force=True)
 
     def show_cursor(self) -> None:
-        """Scroll to the cursor."""
+        """Scroll to the cursor, and no farther to the right than that needs."""
+        self._area.scroll_to(x=0, animate=False, force=True)
         self._area.scroll_cursor_visible(animate=False)
 
     def _type(self, typing: bool) -> None:
