@@ -9,7 +9,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList
 
-from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
+from tests.app.app_help import ENDLESS, LOGS, message_of, notices, ready, screen_text, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.form import Choice, Row
 from tuisim.app.setup.next_run import with_robot
@@ -164,7 +164,7 @@ async def test_a_wrong_robot_file_changes_nothing(tmp_path: Path, monkeypatch: p
         entry.focus()
         entry.value = "bad.toml"
         await pilot.press("enter")
-        await until(pilot, lambda: any("bad.toml: wheels: no such key" in notice for notice in notices(app)))
+        await until(pilot, lambda: "bad.toml: wheels: no such key" in message_of(app))
         assert app.run_controller.next_run == before
 
 
