@@ -486,8 +486,8 @@ class LabApp(PanelMessages):
     def _situation(self, phase: RunPhase) -> Situation:
         runs, timeline, code = self.run_controller, self.run_controller.timeline, self.panel_area.code
         facts = runs.program is not None, timeline.recording is not None, timeline.at is not None
-        is_away = self._looks_back or self.debugger.replay.busy
-        return Situation(phase, *facts, is_away, code is not None and code.is_read, self.has_pixels)
+        is_away, reads_code = self._looks_back or self.debugger.replay.busy, code is not None and code.is_read
+        return Situation(phase, *facts, is_away, reads_code, self.has_pixels, runs.earlier is not None)
 
     @property
     def _looks_back(self) -> bool:

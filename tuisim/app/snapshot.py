@@ -169,6 +169,8 @@ class Situation:
     """Whether the code has the focus."""
     has_pixels: bool = False
     """Whether pictures are drawn with pixels, or were until the user switched to characters."""
+    has_earlier: bool = False
+    """Whether there is an earlier run that the one in view is compared with."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -329,16 +329,17 @@ RUN_KEYS = frozenset(
 def _next_steps(now: Situation) -> tuple[str, ...]:
     """Return the ids of the likely next steps: out of the past, on with a run, to its results, or to a first run."""
     code = ("to-cursor", "break") if now.reads_code else ()
+    parting = ("parting",) if now.has_earlier else ()
     if now.looks_back:
         return ("now", "branch", "line-back", "next-line", *code)
     if now.state == RunPhase.PAUSED:
-        return ("stop", "pause", "next-line", "line-back", *code)
+        return ("stop", "pause", "next-line", "line-back", *code, *parting)
     if now.state in IN_RUN:
         return ("stop", "pause")
     if now.reads_code:
         return ("run", *(("analyse", "panel-chart") if now.has_run else ()), "edit", *code)
     if now.has_run:
-        return ("run", "analyse", "export", "panel-chart", "edit", "back", "parting")
+        return ("run", "analyse", "export", "panel-chart", "edit", "back", *parting)
     return ("run", "open", "edit", "mats")
 
 

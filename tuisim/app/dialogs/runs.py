@@ -155,7 +155,7 @@ class RunChooser(ListDialog):
         options.add_options(Option(self.line(run), id=run.id) for run in found[:MOST_LISTED])
         options.highlighted = 0 if found else None
         if not self._runs:
-            self.say("No runs yet: run a program, and every run is kept")
+            self.say("No runs yet: each run of a program is kept")
         elif len(found) > MOST_LISTED:
             self.say(f"The newest {MOST_LISTED} of {len(found):,} runs: search for the others")
         else:
