@@ -168,10 +168,11 @@ def forms(timeline: Timeline) -> list[tuple[str, str]]:
 
 
 def proposal(timeline: Timeline, mat: Field | None) -> str:
-    """Return the words to search for: those of the last search, else where a light sensor's reading last changed.
+    """Return the words to search for: those of the last search, else where a light sensor left what it last saw.
 
-    That is where a robot lost its line. Where the edge of the mat came later, it is told as a time. Empty if
-    no reading has changed, or there is no run yet.
+    That is where a robot lost its line: of the sensor whose reading changed last on the mat, where the reading was half
+    way to what it is since then. Where the search would find another instant, such as at the edge of the mat, that is
+    told as a time. Empty if no reading has changed, or there is no run yet.
     """
     recording = timeline.recording
     if timeline.searched or mat is None or recording is None or recording.newest < 0:
@@ -183,15 +184,32 @@ def proposal(timeline: Timeline, mat: Field | None) -> str:
     values = column_values(tuple(sensors), records, recording.spec, recording.actions(), mat)
     found = []
     for name, sensor in sensors.items():
-        changes = np.diff(values[name]) != 0
         is_on = _is_on_mat(records, sensor)
-        found.append((_last_in(changes & is_on[1:] & is_on[:-1]), _last_in(changes), name))
-    on_mat, _, name = max(found, default=(-1, -1, ""))
-    if on_mat < 0:
+        found.append((_last_in((np.diff(values[name]) != 0) & is_on[1:] & is_on[:-1]), name, is_on))
+    last, name, is_on = max(found, key=lambda one: one[:2], default=(-1, "", np.zeros(0, bool)))
+    if last < 0:
         return ""
-    if max(anywhere for _, anywhere, _ in found) > on_mat:
-        return f"{(on_mat + 1) / timeline.tick_hz:.2f}"
-    return f"{name} {Operator.CHANGES} back"
+    comparison, became = _left(values[name], is_on, last)
+    tick = int(became[became <= last + 1][-1])
+    return f"{name} {comparison} back" if tick == became[-1] < timeline.tick else f"{tick / timeline.tick_hz:.2f}"
+
+
+def _left(values: npt.NDArray[Any], is_on: npt.NDArray[np.bool_], last: int) -> tuple[str, npt.NDArray[np.intp]]:
+    """Return the comparison that tells what a reading has become from what it was before, and where it became true.
+
+    Args:
+        values: The reading at each tick, in percent.
+        is_on: Whether it is one of the mat.
+        last: The tick before its last change on the mat.
+    """
+    now, before = values[last + 1], values[: last + 1][is_on[: last + 1]]
+    was = before[np.argmax(np.abs(before - now))]
+    middle = round(float(now + was) / 2)
+    if not min(now, was) < middle < max(now, was):
+        # Two greys that are nearly the same.
+        return str(Operator.CHANGES), np.flatnonzero(np.diff(values)) + 1
+    true = values > middle if now > was else values < middle
+    return f"{'>' if now > was else '<'} {middle}", np.flatnonzero(true[1:] & ~true[:-1]) + 1
 
 
 def _is_on_mat(records: npt.NDArray[Any], sensor: ColorSensorSpec) -> npt.NDArray[np.bool_]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
@@ -258,14 +259,20 @@ async def run_over_bands(program: str) -> AsyncIterator[tuple[Pilot[Any], LabApp
 
 
 @pytest.mark.slow
-async def test_go_to_proposes_where_a_light_reading_last_changed(home: object) -> None:
+async def test_go_to_proposes_where_a_light_sensor_left_what_it_last_saw(home: object) -> None:
     program = "# %%sim_magic_preloaded -b Grey_bands -x 250\ntank_drive.on_for_seconds(50, 50, 1)\n"
     async with run_over_bands(program) as (pilot, app):
         timeline = app.run_controller.timeline
         await pilot.press("g")
-        assert app.screen.query_one(Input).value in ("left_red_pc changes back", "right_red_pc changes back")
+        proposed = app.screen.query_one(Input).value
+        assert re.fullmatch(r"(left|right)_red_pc [<>] \d+ back", proposed)
         await pilot.press("enter")
         assert 0 < (timeline.at or 0) < timeline.newest
+        # There the reading is near the middle between the two.
+        name, comparison, middle, _ = proposed.split()
+        seen = app.run_controller.snapshot().colors[name.removesuffix("_red_pc")].rgb[0] / 2.55
+        assert abs(seen - int(middle)) < 8
+        assert (seen > int(middle)) == (comparison == ">")
         await pilot.press("g", *"x_mm", "space", ">", "space", *"300", "enter", "g")
         assert app.screen.query_one(Input).value == timeline.searched == "x_mm > 300"
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext
     from tuisim.runs.recorded_run import Recording
 
-_SEEK = "{go-to} and Enter go to where a light reading last changed"
+_SEEK = "{go-to} and Enter go to where a light sensor last left what it saw"
 _NO_EARLIER = f"No other run on this mat to compare with. {_SEEK}, {{compare}} chooses a run"
 MANY_TICKS = 10
 """Ticks that `:` runs."""
