@@ -126,3 +126,13 @@ async def test_a_folder_of_mats_that_is_gone_is_told(tmp_path: Path) -> None:
         folder.rmdir()
         await pilot.press("b")
         await until(pilot, lambda: any("there is no such folder" in notice for notice in notices(app)))
+
+
+async def test_a_path_to_nothing_has_no_preview() -> None:
+    async with LabApp(with_mats(None)).run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await pilot.press("b")
+        title = pilot.app.screen.query_one("#title", Static)
+        await until(pilot, lambda: bool(str(title.content)))
+        await pilot.press(*"/no/such.png")
+        await until(pilot, lambda: not str(title.content))

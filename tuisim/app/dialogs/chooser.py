@@ -217,9 +217,14 @@ class Chooser(ListDialog):
         listed.clear_options()
         listed.add_options(self._options(found))
         self.say("" if found else "no such file here" if is_path(typed) else "no name has these words")
-        if found:
+        if not found:
+            self.nothing_found()
+        else:
             best = best_match(found, os.path.basename(typed)) if typed else self._current
             listed.highlighted = next((at for at, one in enumerate(listed.options) if one.id == best), None)
+
+    def nothing_found(self) -> None:
+        """Show nothing of what was chosen before."""
 
     def _found(self, typed: str) -> Sequence[ChoiceGroup]:
         if not (self._suffixes and is_path(typed)):
@@ -383,6 +388,10 @@ class MatPicker(Chooser):
         view.styles.height = max(1, round(view.size.width * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / 2))
         self.call_after_refresh(self.show_again)
 
+    def nothing_found(self) -> None:
+        """Show no mat."""
+        self._show("")
+
     def show_again(self) -> None:
         """Show the current selection, which may have changed since the call was scheduled."""
         self._show(self._shown)
@@ -396,6 +405,8 @@ class MatPicker(Chooser):
         self._shown = name
         view = self.query_one(PixelView)
         if not (name in self._mats or Path(name).suffix.lower() in IMAGES) or not view.size:
+            view.clear_picture()
+            self.query_one("#title", Static).update("")
             return
         self.query_one("#title", Static).update(self._mats[name].title if name in self._mats else Path(name).name)
         port = field_view(view)
