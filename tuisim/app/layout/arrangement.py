@@ -42,6 +42,8 @@ _LOW_COLS, _LOW_ROWS = 112, 33
 _READINGS_COLS, _TEXT_COLS = 48, 32
 """Columns of the readings in three lines, and of the output beside them."""
 _MAX_SIDE_COLS = 46
+_CODE_COLS = 64
+"""Columns in which most lines of code are whole, with the values beside them."""
 _COLUMN_COLS = 40
 """Columns below the world are not made narrower."""
 _LEAST_TEXT, _MOST_TEXT = 40, 58
@@ -125,11 +127,19 @@ def _stacks(columns: Sequence[Sequence[str]], fixed: Mapping[int, int], width: i
     return joined(Axis.COLUMNS, nodes, shares=shares)
 
 
-def _strip(panels: Sequence[str], width: int) -> list[Node]:
-    """Return the bottom strip: panels side by side, as many as fit, the others below the first ones."""
+def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
+    """Return the bottom strip: panels side by side, as many as fit, the others below the first ones.
+
+    Code that would be narrow has the whole width, above the others, if all of them are high enough.
+    """
     if not panels:
         return []
     columns = max(1, min(len(panels), width // MIN_STRIP_COLS))
+    others = [panel for panel in panels if panel != "code"]
+    if others != panels and others and width < columns * _CODE_COLS:
+        stacked = ["code", *_strip(others, width, height)]
+        if sum(fair_rows(node, width) for node in stacked) <= height:
+            return stacked
     count = ceil(len(panels) / columns)
     stacks = [joined(Axis.ROWS, panels[first : first + count]) for first in range(0, len(panels), count)]
     return [joined(Axis.COLUMNS, stacks)]
@@ -141,7 +151,8 @@ def _wide(panels: Sequence[str], width: int, height: int) -> Node:
     if not strip and not main:
         return joined(Axis.ROWS, side)
     beside = side_width(width, side) if side else 0
-    left = joined(Axis.ROWS, [*main, *_strip(strip, width - beside)])
+    wide = width - beside
+    left = joined(Axis.ROWS, [*main, *_strip(strip, wide, height - (ideal_rows(wide) if main else 0))])
     if not side:
         return left
     shares = (1 - beside / width, beside / width)
