@@ -14,6 +14,7 @@ from tuisim.app.app import LabApp
 from tuisim.app.guide.screen import KEYS, TOPICS, GuideScreen
 from tuisim.app.panels import PANELS
 from tuisim.guide.catalogue import pages
+from tuisim.guide.search import search
 from tuisim.guide.text import headings_in
 
 SMALL, MEDIUM = (80, 24), (120, 40)
@@ -136,6 +137,22 @@ async def test_escape_leaves_the_search_first() -> None:
         await until_shown(pilot, "Tutorials")
         await pilot.press("escape")
         await until(pilot, lambda: not isinstance(pilot.app.screen, GuideScreen))
+
+
+async def test_each_down_goes_to_the_next_answer_and_escape_back_to_the_contents() -> None:
+    question = "leave a trace behind the robot"
+    second, third = ((one.name, one.heading) for one in search(question)[1:3])
+    async with LabApp(settings()).run_test(size=SMALL) as pilot:
+        screen = await opened(pilot)
+        await pilot.press("slash", *("space" if letter == " " else letter for letter in question), "down")
+        await until(pilot, lambda: screen.place == second)
+        await pilot.press("down")
+        await until(pilot, lambda: screen.place == third)
+        await pilot.press("enter")
+        await until(pilot, lambda: screen._page.has_focus)
+        await pilot.press("escape")
+        await until_shown(pilot, "Tutorials")
+        assert lab(pilot).screen is screen
 
 
 @pytest.mark.slow

@@ -220,7 +220,8 @@ class GuideScreen(Dialog[None]):
         Binding("question_mark,q", "leave", "Close", show=False),
         Binding("slash", "search", "Search", show=False),
         Binding("tab,shift+tab", "other_side", "Contents or page", show=False),
-        Binding("left,down", "contents", "Contents", show=False),
+        Binding("left", "contents", "Contents", show=False),
+        Binding("down", "down", "Contents or next answer", show=False),
         Binding("right", "page", "Page", show=False),
     ]
 
@@ -232,7 +233,7 @@ class GuideScreen(Dialog[None]):
 
     def is_ready_for(self, event: events.Event) -> bool:
         """Return whether what a key is meant for is there: the results of the search, where it leads to them."""
-        leads_there = isinstance(event, events.Key) and event.key in ("enter", "tab", "shift+tab")
+        leads_there = isinstance(event, events.Key) and event.key in ("enter", "down", "tab", "shift+tab")
         return super().is_ready_for(event) and not (leads_there and self._answered != self._question)
 
     def content(self) -> ComposeResult:
@@ -325,7 +326,7 @@ class GuideScreen(Dialog[None]):
 
     @on(Input.Submitted)
     def _open_first(self) -> None:
-        """Read the best answer, which is shown already; `down` goes to the others."""
+        """Read the best answer, which is shown already."""
         if self._found:
             self.action_page()
         else:
@@ -333,6 +334,13 @@ class GuideScreen(Dialog[None]):
 
     def action_search(self) -> None:
         self._search.focus()
+
+    def action_down(self) -> None:
+        """Go to the contents, from the question to its second answer, since the first is in view."""
+        if self._search.has_focus and len(self._found) > 1:
+            self._contents.cursor_line = 1
+            self._show([*self._found][1])
+        self.action_contents()
 
     def action_contents(self) -> None:
         self._arrange(reading=False)
@@ -349,8 +357,8 @@ class GuideScreen(Dialog[None]):
             self.action_contents()
 
     def action_leave(self) -> None:
-        """Leave the search, else the guide."""
-        if self._search.has_focus and self._search.value:
+        """Leave the search and its answers, else the guide."""
+        if self._search.value:
             self._search.value = ""
             self.action_contents()
         else:
