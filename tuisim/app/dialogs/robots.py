@@ -87,11 +87,12 @@ class RobotPicker(Chooser):
     def _highlighted(self, event: OptionList.OptionHighlighted) -> None:
         robot = self._robot(event.option.id or "")
         lines = list(part_lines(robot)) if robot else []
-        rows = self.app.size.height - _OTHER_ROWS - len(lines)
+        parts = self.query_one(RobotParts)
+        parts.show(lines)
+        rows = self.app.size.height - _OTHER_ROWS - parts.rows
         picture = self.query_one(RobotPicture)
         picture.styles.height = min(max(rows, _LEAST_ROWS), _MOST_ROWS)
         picture.show(robot)
-        self.query_one(RobotParts).show(lines)
 
     def _robot(self, name: str) -> RobotSpec | None:
         """Return a robot by name or path; None for a file that has changed since it was listed."""
@@ -138,8 +139,14 @@ class RobotParts(LinesPanel):
 
     def show(self, lines: list[Line]) -> None:
         """Show some lines."""
-        self._lines, self.styles.height = lines, max(len(lines), 1)
+        self._lines = lines
+        self.styles.height = self.rows
         self._redraw()
+
+    @property
+    def rows(self) -> int:
+        """The rows that it takes."""
+        return max(len(self._lines), 1)
 
     def _redraw(self) -> None:
         self._text.set_lines(self._lines)
