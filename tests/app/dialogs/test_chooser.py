@@ -79,6 +79,25 @@ async def test_tab_completes_a_path_and_enter_looks_into_a_folder(tmp_path: Path
         assert chosen == [f"{tmp_path}/robots/deep/mine.py"]
 
 
+async def test_tab_says_when_several_names_go_on_in_other_ways(tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text("")
+    (tmp_path / "minor.py").write_text("")
+    app: App[None] = App()
+    async with app.run_test() as pilot:
+        app.push_screen(Chooser("Open", GROUPS, path_hint="path", read=no_file, suffixes=[".py"]))
+        await pilot.pause()
+        await pilot.press("/")
+        field, message = app.screen.query_one(Input), app.screen.query_one("#message", Static)
+        field.value = f"{tmp_path}/m"
+        await pilot.press("tab")
+        assert (field.value, str(message.content)) == (f"{tmp_path}/min", "")
+        await pilot.press("tab")
+        assert str(message.content).startswith("2 names begin like this")
+        await pilot.press("e")
+        await pilot.pause()
+        assert str(message.content) == ""
+
+
 async def test_a_path_to_nothing_is_told_at_once() -> None:
     app: App[None] = App()
     async with app.run_test() as pilot:

@@ -239,7 +239,11 @@ class Chooser(ListDialog):
         if event.key == "tab" and fields and fields.first().has_focus and self._suffixes and is_path(typed):
             event.stop()
             event.prevent_default()
-            self._type(completed(typed, paths_after(typed, self._suffixes)))
+            entries = paths_after(typed, self._suffixes)
+            longer = completed(typed, entries)
+            self._type(longer)
+            if longer == typed and len(entries) > 1:
+                self.say(f"{len(entries)} names begin like this: type more, or choose one")
 
     def _type(self, text: str) -> None:
         field = self.query_one(Input)
