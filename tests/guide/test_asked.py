@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.guide.asked import asked_questions, like, words_of
+from tuisim.guide.asked import asked_questions
 from tuisim.guide.catalogue import pages
 from tuisim.guide.search import search
 from tuisim.guide.tables import markdown_of
@@ -30,15 +30,3 @@ def test_each_question_finds_its_answer_among_the_first_two(name: str) -> None:
 def test_no_question_has_two_answers() -> None:
     asks = [ask for answers in asked_questions().values() for asks in answers.values() for ask in asks]
     assert len(asks) == len({*asks})
-
-
-def test_what_is_denied_is_another_question() -> None:
-    assert (
-        like("the robot doesn't move")["when-it-goes-wrong"].cosine
-        > like("move the robot")["when-it-goes-wrong"].cosine
-    )
-    assert [*words_of("why doesn't it move", frozenset(["not"]))] == ["not", "move"]
-
-
-def test_words_that_nobody_asks_are_like_nothing() -> None:
-    assert like("xyzzy") == {}

@@ -1,23 +1,26 @@
-"""Search: which pages answer words that somebody types, the best one first.
+"""Search: which passages of the guide answer words that somebody types, the best one first.
 
-SQLite ranks pages, and their passages, by BM25 of the stems of their words: a rare word counts more. A page counts with
-its best passage, and its further words are words of each. Which passage of a page answers is ranked without these: they
-would make the rarest words of a page look common, and all its passages alike.
-
-A question that is like one of `asked` also counts for its page, and finds the passage that answers it.
+Question and passages are compared by the cosine of the stems of their words, in which a word counts more the fewer
+passages have it, and words that mean the same count as one, too. A passage counts with its own words, with those of its
+headings and its page, and with the questions that people ask and it answers: with the one that is most alike, and with
+all of them together, since people ask for the same thing in many words.
 """
 
 from __future__ import annotations
 
+import math
 import re
-import sqlite3
-from collections.abc import Iterator, Mapping
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
+from statistics import median
+from typing import TypeAlias
 
 from tuisim.data_class import dataclass
-from tuisim.guide import asked
+from tuisim.guide.asked import asked_questions
 from tuisim.guide.catalogue import pages
 from tuisim.guide.tables import markdown_of
+from tuisim.guide.words import stems_of
 
 _HEADING = re.compile(r"^##+ (.+)$", re.MULTILINE)
 _FENCE = re.compile(r"^```.*\n?", re.MULTILINE)
@@ -25,96 +28,178 @@ _PASSAGE_END = re.compile(r"\n\s*\n(?!    )|\n(?=- |\| )")
 """A passage is a paragraph, with a text set in below it, an item of a list or a row of a table."""
 _HEAD = re.compile(r"^\|.*\n(?=\| ---)", re.MULTILINE)
 """The head of a table, which answers nothing."""
-_RULE = re.compile(r"[-| ]*")
-"""The line below it."""
+_NO_ANSWER = re.compile(r"# .*|[-| ]*")
+"""The title of a page, and the line below the head of a table."""
 _SHORTEST = 3
 """Letters from which a word may be the beginning of another."""
-_FIELDS = "name UNINDEXED, heading UNINDEXED, passage, titles, words"
-_TITLES, _WORDS = 2.0, 2.0
-"""How much a word counts in title and heading, and among the page's further words; 1 in the text."""
-_ASKED = 1.5
-"""How much the same question counts, where the page with most of the words counts 1; one less alike counts far less."""
-_LIKE = 0.5
-"""From this cosine on, the passage that answers a question which people ask answers the one that somebody types."""
-_MOST = 10
-"""So many pages are read through; further ones share common words only."""
+_ITS_WORDS, _HEADINGS, _PAGE_WORDS, _WHOLE_PAGE = 1.0, 0.6, 1.0, 0.6
+"""How much the words of a passage count, those of its headings, the further words of its page, and the share of the
+question that is anywhere on its page."""
+_ALL_ASKED, _MOST_ALIKE, _SAME = 1.0, 0.5, 1.5
+"""How much the questions count that people ask: all together, the one most alike, and its cube: the same question."""
+_COMMON = 0.05
+"""The least weight of a word, however common it is."""
+_MOST = 12
+"""So many passages are found; further ones share common words only."""
+
+_Stems: TypeAlias = frozenset[str]
 
 
 @dataclass(frozen=True, slots=True)
 class SearchResult:
-    """A page that answers a question."""
+    """A passage that answers a question."""
 
     name: str
+    """Of its page."""
     heading: str
-    """The section that answers best; empty for the beginning of the page."""
+    """The section that it is in; empty for the beginning of the page."""
     passage: str
-    """The part of it that answers best, in Markdown: a paragraph, an item of a list or a row of a table; empty if only
-    the page as a whole answers."""
+    """In Markdown: a paragraph, an item of a list or a row of a table."""
 
 
-def _passages() -> Iterator[tuple[str, ...]]:
+class _Postings:
+    """Texts by their stems.
+
+    Args:
+        texts: The stems of each text, with their weights.
+        power: 1 for the cosine; below, longer texts count more.
+    """
+
+    def __init__(self, texts: Sequence[Mapping[str, float]], power: float = 1.0) -> None:
+        self._rows: defaultdict[str, list[tuple[int, float]]] = defaultdict(list)
+        lengths = [math.hypot(*weights.values()) for weights in texts]
+        usual = median(length for length in lengths if length) ** (1 - power)
+        for row, (weights, length) in enumerate(zip(texts, lengths, strict=True)):
+            for stem, weight in weights.items():
+                self._rows[stem].append((row, weight / (length**power * usual)))
+
+    def like(self, question: Mapping[str, float]) -> Mapping[int, float]:
+        """Return the texts that have a stem of a question of length 1, by row, with how much they are alike."""
+        found: defaultdict[int, float] = defaultdict(float)
+        for stem, weight in question.items():
+            for row, its in self._rows.get(stem, ()):
+                found[row] += weight * its
+        return found
+
+
+class _Index:
+    """All passages, with the stems of their words and of the questions that they answer."""
+
+    def __init__(self) -> None:
+        self.passages = list(_passages())
+        row_of = {(name, key): self._row(name, key) for name, of in asked_questions().items() for key in of}
+        asks = [(row, ask) for (name, key), row in row_of.items() if row >= 0 for ask in asked_questions()[name][key]]
+        self.row_of_ask = [row for row, _ in asks]
+        texts = stems_of(one.passage for one in self.passages)
+        asked = stems_of(ask for _, ask in asks)
+        heads = stems_of(f"{pages()[one.name].title} {one.heading}" for one in self.passages)
+        of_pages = stems_of(f"{page.words} {page.about}" for page in pages().values())
+        words = dict(zip(pages(), of_pages, strict=True))
+        self._having = _counts(texts, zip(self.row_of_ask, asked, strict=True))
+        self.stems_of_page = {
+            name: frozenset().union(*(texts[row] | heads[row] | words[name] for row in rows))
+            for name, rows in self._rows_of_pages().items()
+        }
+        self.stems = frozenset().union(*self.stems_of_page.values(), *asked)
+        self.texts = _Postings([self.weights(stems) for stems in texts], power=0.5)
+        self.heads = _Postings([self.weights(stems) for stems in heads])
+        self.words = _Postings([self.weights(words[one.name]) for one in self.passages])
+        self.asks = _Postings([self.weights(stems) for stems in asked])
+        self.all_asks = _Postings(self._sums(asked))
+
+    def _row(self, name: str, key: str) -> int:
+        """Return the passage of a page that has a text; -1 if none has: keys that a user has changed may be in none."""
+        return next((row for row, one in enumerate(self.passages) if one.name == name and key in one.passage), -1)
+
+    def _rows_of_pages(self) -> Mapping[str, Sequence[int]]:
+        rows: defaultdict[str, list[int]] = defaultdict(list)
+        for row, one in enumerate(self.passages):
+            rows[one.name].append(row)
+        return rows
+
+    def _sums(self, asked: Iterable[_Stems]) -> list[dict[str, float]]:
+        """Return by passage the sum of its questions, each of length 1."""
+        sums: list[dict[str, float]] = [{} for _ in self.passages]
+        for row, stems in zip(self.row_of_ask, asked, strict=True):
+            weights = self.weights(stems)
+            length = math.hypot(*weights.values())
+            for stem, weight in weights.items():
+                sums[row][stem] = sums[row].get(stem, 0.0) + weight / length
+        return sums
+
+    def weights(self, stems: Iterable[str]) -> dict[str, float]:
+        """Return how much each stem counts."""
+        count = len(self.passages) + 1
+        return {stem: max(math.log(count / (self._having[stem] + 0.5)), _COMMON) for stem in stems}
+
+    def known(self, typed: _Stems) -> _Stems:
+        """Return the stems of a question; one that is nowhere stands for all that begin like it."""
+        begun = tuple(stem for stem in typed - self.stems if len(stem) >= _SHORTEST)
+        return (typed & self.stems).union(stem for stem in self.stems if begun and stem.startswith(begun))
+
+
+def _counts(texts: Sequence[_Stems], asked: Iterable[tuple[int, _Stems]]) -> Counter[str]:
+    """Return how many passages have each stem, in themselves or in a question."""
+    of_each = [{*stems} for stems in texts]
+    for row, stems in asked:
+        of_each[row] |= stems
+    return Counter(stem for stems in of_each for stem in stems)
+
+
+def _passages() -> Iterator[SearchResult]:
     for name, page in pages().items():
         parts = ["", *_HEADING.split(_HEAD.sub("", _FENCE.sub("", markdown_of(page))))]
         for heading, text in zip(parts[::2], parts[1::2], strict=True):
-            found = map(str.strip, _PASSAGE_END.split(text))
-            for passage in (one for one in found if not _RULE.fullmatch(one)):
-                yield name, heading, passage, f"{page.title} {name} {heading}", f"{page.words} {page.about}"
+            for passage in map(str.strip, _PASSAGE_END.split(text)):
+                if not _NO_ANSWER.fullmatch(passage):
+                    yield SearchResult(name, heading, passage)
 
 
 @cache
-def _index() -> sqlite3.Connection:
-    # The app searches in threads, one at a time.
-    index = sqlite3.connect(":memory:", check_same_thread=False)
-    for table in ("passages", "whole", "answers"):
-        index.execute(f"CREATE VIRTUAL TABLE {table} USING fts5({_FIELDS}, tokenize = 'porter unicode61')")
-    index.executemany("INSERT INTO passages VALUES (?, ?, ?, ?, ?)", _passages())
-    index.execute(
-        "INSERT INTO whole SELECT name, '', group_concat(passage, ' '), group_concat(titles, ' '), words "
-        "FROM passages GROUP BY name"
-    )
-    # The title of a page answers nothing.
-    index.execute(
-        "INSERT INTO answers SELECT name, heading, passage, heading, '' FROM passages WHERE passage NOT LIKE '# %'"
-    )
-    return index
+def _index() -> _Index:
+    return _Index()
 
 
-def _found(table: str, query: str) -> Mapping[str, tuple[float, SearchResult]]:
-    """Return by page the best row of a table, with its score."""
-    ranked = (
-        f"SELECT -bm25({table}, 0, 0, 1, {_TITLES}, {_WORDS}) AS score, name, heading, passage FROM {table} "
-        f"WHERE {table} MATCH ? ORDER BY score"
-    )
-    return {name: (score, SearchResult(name, *rest)) for score, name, *rest in _index().execute(ranked, (query,))}
-
-
-def _passage_with(name: str, key: str) -> SearchResult | None:
-    """Return the passage of a page that has a text. Keys that a user has changed may be in none."""
-    rows = _index().execute("SELECT heading, passage FROM answers WHERE name = ? ORDER BY rowid", (name,))
-    return next((SearchResult(name, *row) for row in rows if key in row[1]), None)
+def _scores(index: _Index, typed: _Stems) -> Mapping[int, float]:
+    """Return how well passages answer a question, by row."""
+    weights = index.weights(typed)
+    length = math.hypot(*weights.values())
+    question = {stem: weight / length for stem, weight in weights.items()}
+    scores: defaultdict[int, float] = defaultdict(float)
+    for field, much in (
+        (index.texts, _ITS_WORDS),
+        (index.heads, _HEADINGS),
+        (index.words, _PAGE_WORDS),
+        (index.all_asks, _ALL_ASKED),
+    ):
+        for row, cosine in field.like(question).items():
+            scores[row] += much * cosine
+    alike: dict[int, float] = {}
+    for at, cosine in index.asks.like(question).items():
+        row = index.row_of_ask[at]
+        alike[row] = max(cosine, alike.get(row, 0.0))
+    for row, cosine in alike.items():
+        scores[row] += _MOST_ALIKE * cosine + _SAME * cosine**3
+    whole = sum(weights.values())
+    on_page = {name: sum(weights[stem] for stem in typed & of) / whole for name, of in index.stems_of_page.items()}
+    return {row: score + _WHOLE_PAGE * on_page[index.passages[row].name] for row, score in scores.items()}
 
 
 def search(question: str) -> list[SearchResult]:
-    """Return the pages that answer words of a question best, the best one first, ten at most.
+    """Return the passages that answer a question best, the best one first, one of each section.
 
     Args:
         question: Words; one that no page has may be the beginning of another.
     """
-    terms = [f'"{word}"' for word in asked.words_of(question)]
-    whole = [term if len(term) < _SHORTEST + 2 or _found("whole", term) else f"{term}*" for term in terms]
-    if not whole:
+    index = _index()
+    typed = index.known(stems_of([question])[0])
+    if not typed:
         return []
-    query = " OR ".join(whole)
-    best, of_pages, answers = (_found(table, query) for table in ("passages", "whole", "answers"))
-    scores = {name: best[name][0] + of_pages[name][0] for name in best}
-    most, like = max(scores.values(), default=1.0), asked.like(question)
-
-    def score(name: str) -> float:
-        return scores.get(name, 0.0) / most + (_ASKED * like[name].cosine ** 3 if name in like else 0.0)
-
-    def answer(name: str) -> SearchResult:
-        if name in like and like[name].cosine >= _LIKE and (found := _passage_with(name, like[name].key)):
-            return found
-        return answers[name][1] if name in answers else SearchResult(name, "", "")
-
-    return [answer(name) for name in sorted({**scores, **like}, key=score, reverse=True)[:_MOST]]
+    scores = _scores(index, typed)
+    found: dict[tuple[str, str], SearchResult] = {}
+    for row in sorted(scores, key=lambda row: -scores[row]):
+        one = index.passages[row]
+        found.setdefault((one.name, one.heading), one)
+        if len(found) == _MOST:
+            break
+    return [*found.values()]

@@ -54,12 +54,12 @@ def contents_lines(width: int) -> list[Line]:
 
 
 def result_lines(found: list[SearchResult], width: int) -> list[Line]:
-    """Return what a search has found, the best page first, each with the passage that answers."""
+    """Return what a search has found, the best passage first, each below its page and section."""
     lines = []
     for one in found:
         title = f"- `{one.name}` **{pages()[one.name].title}**{f': {one.heading}' if one.heading else ''}"
         passage = wrap(
-            passage_text(one.passage or pages()[one.name].about),
+            passage_text(one.passage),
             max(20, width - 3),
             max_lines=_PASSAGE_LINES,
             placeholder=" …",

@@ -113,7 +113,7 @@ async def test_a_program_opened_without_its_mat_runs_only_on_one_that_is_chosen(
         told = "prog.py cannot run: line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
         # The frame of the code is too narrow for all of it.
         assert "prog.py cannot run" in screen_text(app)
-        assert str(code.border_subtitle) == "no Grey_bnds: did you mean Grey_bands?"
+        assert str(code.border_subtitle) == "line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
         assert not app.document.apply()
         await pilot.pause()
         assert told in notices(app)

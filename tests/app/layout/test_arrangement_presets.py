@@ -53,6 +53,13 @@ def test_code_and_chart_have_room_beside_each_other_in_a_medium_terminal() -> No
     assert boxes["chart"].height - 2 - 4 >= 10
 
 
+def test_lines_of_code_are_whole_in_a_medium_terminal() -> None:
+    layout = layout_of(Preset.STANDARD, 120, 40)
+    assert layout.boxes["code"].width - 2 >= 72 and layout.boxes["code"].height - 2 >= 9
+    # A printed line, the end of the program and those before them.
+    assert layout.boxes["output"].height - 2 >= 5
+
+
 @in_each_size
 def test_the_output_leaves_its_rows_to_the_code_when_debugging(size: tuple[int, int]) -> None:
     boxes = layout_of(Preset.DEBUG, *size).boxes

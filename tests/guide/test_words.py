@@ -1,0 +1,31 @@
+"""Words of questions: what says nothing is left out, forms of a word are one, and some words mean the same."""
+
+from __future__ import annotations
+
+import pytest
+
+from tuisim.guide.words import stems_of, words_of
+
+
+def test_what_is_denied_is_another_question() -> None:
+    assert [*words_of("why doesn't it move")] == ["not", "move"]
+    assert [*words_of("It cannot find the colours, can't it?")] == ["not", "find", "colours"]
+
+
+@pytest.mark.parametrize("question", ["", "how do I", "What's that?"])
+def test_words_that_say_nothing_are_left_out(question: str) -> None:
+    assert stems_of([question]) == [frozenset()]
+
+
+def test_forms_of_a_word_are_one() -> None:
+    assert len({*stems_of(["turning", "Turns", "turned", "turn"])}) == 1
+
+
+def test_words_that_mean_the_same_share_a_meaning() -> None:
+    graph, chart, wall = stems_of(["graph", "chart", "wall"])
+    assert graph & chart == {"=chart"}
+    assert not graph & wall
+
+
+def test_words_joined_by_an_arrow_are_kept_together() -> None:
+    assert [*words_of("what is in→out")] == ["in→out"]

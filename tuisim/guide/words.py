@@ -1,0 +1,62 @@
+"""The words of questions and of the guide: their stems, and which of them mean the same."""
+
+from __future__ import annotations
+
+import re
+import sqlite3
+import tomllib
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from functools import cache
+from pathlib import Path
+
+_DENIES = re.compile(r"\bcan(?:not|['’]t)\b|n['’]t\b")
+_CONTRACTED = re.compile(r"['’](s|m|d|re|ve|ll)\b")
+"""The ends of `it's`, `I'm`."""
+_COLOR = re.compile(r"\bcolor(?!_)")
+_WORD = re.compile(r"\w+(?:→\w+)*")
+"""A word; words joined by an arrow, as `in→out`, are looked for together."""
+_SAYS_NOTHING = """
+a about all am an and any are as at be because been being both but by can come could did do does doing each few for from
+further get gets go goes going had has have having he her here hers him his how i if in into is it its itself just look
+make makes making me more most my nor of on once only or our ours see she should show so some somebody such tell
+than that the their theirs them then there these they this those to too use used very want wanted was we were what when
+where whether which while who whom why will with would you your yours
+"""
+_IGNORED = frozenset(_SAYS_NOTHING.split())
+"""Words that say nothing about the subject of a question. "Not" does: "does not move" is not about moving."""
+
+
+def words_of(text: str) -> Iterable[str]:
+    """Return the words of a text that say something, each once."""
+    plain = _COLOR.sub("colour", _CONTRACTED.sub("", _DENIES.sub(" not ", text.lower())))
+    return dict.fromkeys(word for word in _WORD.findall(plain) if word not in _IGNORED)
+
+
+def stems_of(texts: Iterable[str]) -> list[frozenset[str]]:
+    """Return the stems of the words of each text, and the meanings of those that have one."""
+    return [stems.union(*(_meanings().get(stem, ()) for stem in stems)) for stems in _stems(texts)]
+
+
+def _stems(texts: Iterable[str]) -> list[frozenset[str]]:
+    """Return the stems of the words of each text, as SQLite finds them."""
+    rows = [(row, " ".join(words_of(text))) for row, text in enumerate(texts)]
+    found: defaultdict[int, set[str]] = defaultdict(set)
+    with sqlite3.connect(":memory:") as index:
+        index.execute("CREATE VIRTUAL TABLE texts USING fts5(words, tokenize = 'porter unicode61')")
+        index.execute("CREATE VIRTUAL TABLE terms USING fts5vocab(texts, instance)")
+        index.executemany("INSERT INTO texts (rowid, words) VALUES (?, ?)", rows)
+        for term, row in index.execute("SELECT term, doc FROM terms"):
+            found[row].add(term)
+    return [frozenset(found[row]) for row, _ in rows]
+
+
+@cache
+def _meanings() -> Mapping[str, frozenset[str]]:
+    """Return what stems mean, as `=chart`: the groups of `synonyms.toml` that they are in, each by its first word."""
+    groups = tomllib.loads((Path(__file__).parent / "synonyms.toml").read_text(encoding="utf-8"))["groups"]
+    found: defaultdict[str, set[str]] = defaultdict(set)
+    for group, stems in zip(groups, _stems(groups), strict=True):
+        for stem in stems:
+            found[stem].add(f"={group.split()[0]}")
+    return {stem: frozenset(meanings) for stem, meanings in found.items()}
