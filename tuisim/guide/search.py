@@ -186,7 +186,7 @@ def _scores(index: _Index, typed: _Stems) -> Mapping[int, float]:
 
 
 def search(question: str) -> list[SearchResult]:
-    """Return the passages that answer a question best, the best one first, one of each section.
+    """Return the passages that answer a question best, the best one first.
 
     Args:
         question: Words; one that no page has may be the beginning of another.
@@ -196,10 +196,4 @@ def search(question: str) -> list[SearchResult]:
     if not typed:
         return []
     scores = _scores(index, typed)
-    found: dict[tuple[str, str], SearchResult] = {}
-    for row in sorted(scores, key=lambda row: -scores[row]):
-        one = index.passages[row]
-        found.setdefault((one.name, one.heading), one)
-        if len(found) == _MOST:
-            break
-    return [*found.values()]
+    return [index.passages[row] for row in sorted(scores, key=lambda row: -scores[row])[:_MOST]]

@@ -58,14 +58,20 @@ def result_lines(found: list[SearchResult], width: int) -> list[Line]:
     lines = []
     for one in found:
         title = f"- `{one.name}` **{pages()[one.name].title}**{f': {one.heading}' if one.heading else ''}"
-        passage = wrap(
-            passage_text(one.passage),
-            max(20, width - 3),
-            max_lines=_PASSAGE_LINES,
-            placeholder=" …",
-        )
+        passage = beginning(one, max(20, width - 3), _PASSAGE_LINES)
         lines += [*markdown_lines(title, width), *([("   " + line, PLAIN)] for line in passage)]
     return lines
+
+
+def beginning(one: SearchResult, width: int, most: int) -> list[str]:
+    """Return the beginning of a passage that was found, in lines of plain text.
+
+    Args:
+        one: What was found.
+        width: Columns.
+        most: So many lines at most; what is left out is an ellipsis.
+    """
+    return wrap(passage_text(one.passage), width, max_lines=most, placeholder=" …")
 
 
 def passage_text(markdown: str) -> str:

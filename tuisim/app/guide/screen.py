@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import ClassVar, TypeAlias
 
@@ -19,6 +19,7 @@ from tuisim import palette
 from tuisim.app import background
 from tuisim.app.action import KeyWord, key_table
 from tuisim.app.dialogs.dialog import Dialog
+from tuisim.app.guide.answers import Answers
 from tuisim.data_class import dataclass
 from tuisim.guide.catalogue import CONTENTS, pages
 from tuisim.guide.search import SearchResult, search
@@ -71,8 +72,6 @@ TOPICS: Mapping[str, Topic] = {
 _SIDE_BY_SIDE, _PREVIEW = 100, 66
 """Columns from which the contents stay beside a page that is being read, and from which a page is shown beside them."""
 _SEARCH_AGAIN_S = 0.15
-_CONTENTS_CELLS = 40
-"""Width of the contents before they are laid out."""
 
 _FOUND = Style(bgcolor=palette.CHOSEN)
 """What a search has found."""
@@ -122,21 +121,10 @@ class _Contents(Tree[Place | None]):
         for other in linked_names(page):
             node.add_leaf(f"→ {pages()[other].title}", (other, ""))
 
-    def show_found(self, found: list[SearchResult]) -> None:
-        """Show the results of a search."""
+    def show_nothing(self) -> None:
+        """Say that a search has found nothing."""
         self.clear()
-        for one in found:
-            title = pages()[one.name].title
-            whole = Text.assemble(one.heading, (f" · {title}", "dim")) if one.heading else Text(title)
-            whole.truncate(self._label_cells, overflow="ellipsis")
-            self.root.add_leaf(whole, (one.name, one.heading))
-        if not found:
-            self.root.add_leaf(NO_WORDS, None)
-
-    @property
-    def _label_cells(self) -> int:
-        """The cells of a label at the first level."""
-        return (self.size.width or _CONTENTS_CELLS) - self.guide_depth
+        self.root.add_leaf(NO_WORDS, None)
 
     def go_to(self, place: Place) -> None:
         """Move the cursor to a page, without opening it."""
@@ -229,7 +217,7 @@ class GuideScreen(Dialog[None]):
         super().__init__()
         self._keys, self._topic = keys, topic
         self._question = self._answered = ""
-        self._found: Mapping[Place, SearchResult] = {}
+        self._found: list[SearchResult] = []
 
     def is_ready_for(self, event: events.Event) -> bool:
         """Return whether what a key is meant for is there: the results of the search, where it leads to them."""
@@ -240,6 +228,7 @@ class GuideScreen(Dialog[None]):
         yield Input(placeholder="Search: words or a question", compact=True, id="search")
         with Horizontal(id="both"):
             yield _Contents()
+            yield Answers()
             yield _Page(self._keys, self._topic)
 
     def on_mount(self) -> None:
@@ -253,6 +242,10 @@ class GuideScreen(Dialog[None]):
         return self.query_one(_Contents)
 
     @property
+    def _answers(self) -> Answers:
+        return self.query_one(Answers)
+
+    @property
     def _page(self) -> _Page:
         return self.query_one(_Page)
 
@@ -261,21 +254,32 @@ class GuideScreen(Dialog[None]):
         return self.query_one("#search", Input)
 
     @property
+    def answers(self) -> Sequence[SearchResult]:
+        """What the search has found, the best answer first."""
+        return self._found if self._answered == self._question else []
+
+    @property
     def place(self) -> Place:
         """The page in view, and the section that was gone to."""
         return self._page.place
 
     def on_resize(self, event: events.Resize) -> None:
         self._arrange(self._page.has_focus)
+        self.call_after_refresh(lambda: self._answers.fit(self._columns))
+
+    @property
+    def _columns(self) -> int:
+        return self.query_one("#both").size.width
 
     def on_descendant_focus(self, event: events.DescendantFocus) -> None:
         self._arrange(event.widget is self._page)
 
     def _arrange(self, reading: bool) -> None:
-        """Leave out one of the two sides where there is no room for both."""
-        columns = self.app.size.width
-        self._contents.display = columns >= _SIDE_BY_SIDE or not reading
-        self._page.display = columns >= _PREVIEW or reading
+        """Leave out what has no room beside what is being read; answers have the whole width."""
+        columns, searched = self.app.size.width, bool(self._found)
+        self._answers.display = searched and not reading
+        self._contents.display = not searched and (columns >= _SIDE_BY_SIDE or not reading)
+        self._page.display = reading or (not searched and columns >= _PREVIEW)
 
     @on(Tree.NodeHighlighted)
     def _preview(self, event: Tree.NodeHighlighted[Place | None]) -> None:
@@ -291,7 +295,14 @@ class GuideScreen(Dialog[None]):
         self.action_page()
 
     def _show(self, place: Place) -> None:
-        self._page.show(place, self._found.get(place))
+        self._page.show(place)
+
+    @on(Answers.OptionSelected)
+    def _read(self) -> None:
+        """Read the page of the highlighted answer."""
+        if (one := self._answers.chosen) is not None:
+            self.action_page()
+            self._page.show((one.name, one.heading), one)
 
     @on(Input.Changed)
     def _type(self, event: Input.Changed) -> None:
@@ -302,8 +313,9 @@ class GuideScreen(Dialog[None]):
         if question != self._question:
             return
         if not question.strip():
-            self._found = {}
+            self._found = []
             self._contents.show_all(self._keys.title)
+            self._arrange(self._page.has_focus)
             self._now_answered(question)
             return
         # The first search loads every command, for its page.
@@ -313,11 +325,11 @@ class GuideScreen(Dialog[None]):
     def _answer(self, question: str, found: list[SearchResult]) -> None:
         if question != self._question or self.is_closed:
             return
-        self._found = {(one.name, one.heading): one for one in found}
-        self._contents.show_found(found)
-        if found:
-            self._contents.cursor_line = 0
-            self._show((found[0].name, found[0].heading))
+        self._found = found
+        self._arrange(self._page.has_focus)
+        self._answers.show(found, self._columns)
+        if not found:
+            self._contents.show_nothing()
         self._now_answered(question)
 
     def _now_answered(self, question: str) -> None:
@@ -326,9 +338,9 @@ class GuideScreen(Dialog[None]):
 
     @on(Input.Submitted)
     def _open_first(self) -> None:
-        """Read the best answer, which is shown already."""
+        """Read the page of the best answer."""
         if self._found:
-            self.action_page()
+            self._read()
         else:
             self.action_contents()
 
@@ -336,15 +348,15 @@ class GuideScreen(Dialog[None]):
         self._search.focus()
 
     def action_down(self) -> None:
-        """Go to the contents, from the question to its second answer, since the first is in view."""
+        """Go to the contents, or from the question to its second answer."""
         if self._search.has_focus and len(self._found) > 1:
-            self._contents.cursor_line = 1
-            self._show([*self._found][1])
+            self._answers.highlighted = 1
         self.action_contents()
 
     def action_contents(self) -> None:
+        """Go to the contents, or to the answers."""
         self._arrange(reading=False)
-        self._contents.focus()
+        (self._answers if self._found else self._contents).focus()
 
     def action_page(self) -> None:
         self._arrange(reading=True)
@@ -353,13 +365,18 @@ class GuideScreen(Dialog[None]):
     def action_other_side(self) -> None:
         if self._contents.has_focus:
             self.action_page()
+        elif self._answers.has_focus:
+            self._read()
         else:
             self.action_contents()
 
     def action_leave(self) -> None:
-        """Leave the search and its answers, else the guide."""
-        if self._search.value:
+        """Leave the page of an answer, else the search, else the guide."""
+        if self._found and self._page.has_focus:
+            self.action_contents()
+        elif self._search.value:
             self._search.value = ""
+            self._found = []
             self.action_contents()
         else:
             self.dismiss(None)
