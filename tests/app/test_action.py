@@ -57,5 +57,5 @@ async def test_above_the_analyser_it_offers_no_key_of_the_lab(tmp_path: Path) ->
         await app.push_screen(analyser)
         await until(pilot, lambda: analyser.is_open)
         await pilot.press("ctrl+p", *"quit")
-        await until(pilot, lambda: re.search("Nothing found|Quit", screen_text(app)) is not None)
+        await until(pilot, lambda: re.search("No command has|Quit", screen_text(app)) is not None)
         assert "Quit" not in screen_text(app)

@@ -256,13 +256,23 @@ class TerminalApp(BufferedApp):
         host = self.screen if isinstance(self.screen, ActionHost) else self
         if isinstance(self.screen, Dialog) or not isinstance(host, ActionHost) or is_leaving(self):
             return
-        from tuisim.app.dialogs.palette import Palette
+        from tuisim.app.dialogs.palette import ASKS, Palette
 
         def chosen(action: str | None) -> None:
-            if action is not None:
+            if action is not None and action.startswith(ASKS):
+                self._ask_guide(host, action.removeprefix(ASKS))
+            elif action is not None:
                 host.action_act(action)
 
         self.push_screen(Palette(host.ACTIONS.values(), host.situation()), chosen)
+
+    def _ask_guide(self, host: ActionHost, question: str) -> None:
+        """Open the guide with a question."""
+        from tuisim.app.guide.screen import GuideScreen
+
+        host.action_act("help")
+        if isinstance(self.screen, GuideScreen):
+            self.screen.ask(question)
 
 
 def picture_mode_at_start(cells: str | None, colors: str) -> PictureMode:

@@ -8,7 +8,8 @@ from textual.widgets import Input
 from tests.app.app_help import lab, ready, screen_text, settings, until
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.app.app import LabApp
-from tuisim.app.dialogs.palette import Entry, matching
+from tuisim.app.dialogs.palette import Entry, ThemeChooser, matching
+from tuisim.app.guide.screen import GuideScreen
 
 pytestmark = pytest.mark.usefixtures("home")
 
@@ -52,4 +53,24 @@ async def test_the_palette_keeps_its_place_while_the_list_becomes_shorter() -> N
         await pilot.pause()
         assert frame.region == before
         assert pilot.app.screen.query_one("#message").display
-        await until(pilot, lambda: "Nothing found. Try" in screen_text(lab(pilot)))
+        await until(pilot, lambda: "No command has these words" in screen_text(lab(pilot)))
+
+
+async def test_words_of_no_command_are_a_question_to_the_guide() -> None:
+    async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        await pilot.press("ctrl+p")
+        await until(pilot, lambda: bool(pilot.app.screen.query(".dialog")))
+        pilot.app.screen.query_one(Input).value = "what turns the robot by ninety degrees"
+        await pilot.press("enter")
+        await until(pilot, lambda: isinstance(pilot.app.screen, GuideScreen) and bool(pilot.app.screen.answers))
+        await until(pilot, lambda: "To turn on the spot" in screen_text(lab(pilot)))
+
+
+async def test_enter_where_nothing_is_typed_or_found_does_nothing() -> None:
+    async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        await pilot.press("f10")
+        await until(pilot, lambda: isinstance(pilot.app.screen, ThemeChooser))
+        await pilot.press(*"xyzzy", "enter")
+        assert isinstance(pilot.app.screen, ThemeChooser)

@@ -107,8 +107,15 @@ class SearchList(Dialog[str]):
         self.query_one("#message").display = not found
 
     @on(Input.Submitted)
-    def _entered(self) -> None:
-        self.query_one(OptionList).action_select()
+    def _entered(self, event: Input.Submitted) -> None:
+        listed = self.query_one(OptionList)
+        if listed.option_count:
+            listed.action_select()
+        else:
+            self.unfound(event.value.strip())
+
+    def unfound(self, typed: str) -> None:
+        """Enter was pressed where nothing has the words that are typed."""
 
     @on(OptionList.OptionSelected)
     def _chosen(self, event: OptionList.OptionSelected) -> None:
@@ -126,13 +133,17 @@ def _line(entry: Entry, cells: int) -> Text:
     return line
 
 
+ASKS = "?"
+"""Before words for the guide, where a palette returns the id of an action."""
+
+
 class Palette(SearchList):
-    """Returns the id of an action: those that work now come first."""
+    """Returns the id of an action: those that work now come first. Where none is found, words for the guide."""
 
     TITLE_TEXT: str = "Commands"
     NOTHING: str = (
-        "Nothing found. Try one word for what you see or do, such as mat, grey, chart, pen or speed. {help} and / "
-        "search the guide for questions."
+        "No command has these words: Enter asks the guide. Or try one word for what you see or do, such as mat, grey, "
+        "chart, pen or speed."
     )
 
     def __init__(self, actions: Iterable[Action[Any, Any]], now: object) -> None:
@@ -140,6 +151,11 @@ class Palette(SearchList):
             Entry(one.id, one.title, one.group, one.key_label, one.words, not one.why_not(now)) for one in actions
         )
         super().__init__(sorted(entries, key=lambda entry: not entry.works))
+
+    def unfound(self, typed: str) -> None:
+        """Ask the guide."""
+        if typed:
+            self.dismiss(ASKS + typed)
 
 
 class ThemeChooser(SearchList):

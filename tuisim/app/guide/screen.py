@@ -216,7 +216,7 @@ class GuideScreen(Dialog[None]):
     def __init__(self, keys: KeyPage, topic: Topic) -> None:
         super().__init__()
         self._keys, self._topic = keys, topic
-        self._question = self._answered = ""
+        self._question = self._answered = self._at_first = ""
         self._found: list[SearchResult] = []
 
     def is_ready_for(self, event: events.Event) -> bool:
@@ -234,8 +234,16 @@ class GuideScreen(Dialog[None]):
     def on_mount(self) -> None:
         super().on_mount()
         self._contents.show_all(self._keys.title)
-        self._page.focus()
+        if self._at_first:
+            self._search.value = self._at_first
+            self._search.focus()
+        else:
+            self._page.focus()
         self.call_after_refresh(self._contents.go_to, self.place)
+
+    def ask(self, question: str) -> None:
+        """Begin with a question; to be called before the screen is shown."""
+        self._at_first = question
 
     @property
     def _contents(self) -> _Contents:
