@@ -146,6 +146,16 @@ async def test_the_tutor_ends_an_app_and_hands_a_link_out_again(opened: Opened) 
     await found["Bob"].started()
 
 
+async def test_who_comes_back_at_once_gets_the_place_of_the_app_that_is_ending(opened: Opened) -> None:
+    found = await opened()
+    socket, before = await found["Bob"].started()
+    assert await found["tutor"].post("students/Bob/end") == 204
+    # It has said so, and its process is still ending.
+    await heard(socket)
+    _, after = await found["Bob"].started()
+    assert after != before
+
+
 async def test_the_tutor_looks_on_and_nothing_that_is_sent_reaches_the_app(opened: Opened) -> None:
     found = await opened()
     socket, pid = await found["Ada"].started()

@@ -96,7 +96,7 @@ class Server:
         self.gate = gate
         self._downloads = DownloadManager()
         self._visits: dict[str, Visit] = {}
-        self._lives: set[asyncio.Task[None]] = set()
+        self._lives: dict[str, asyncio.Task[None]] = {}
 
     @property
     def routes(self) -> Routes:
@@ -141,15 +141,18 @@ class Server:
         return socket
 
     async def begin(self, width: int, height: int, socket: web.WebSocketResponse | None = None) -> Visit | None:
-        """Start an app for a visitor; return None if all places are taken.
+        """Start an app for a visitor; return None if all places are taken. Waits for the place of an app that is ending.
 
         Args:
             width: Columns of the visitor's terminal.
             height: Its rows.
             socket: The connection to the browser that shows it from its first frame; None for none yet.
         """
-        if self._free <= 0:
-            return None
+        while self._free <= 0:
+            ending = [life for id_, life in self._lives.items() if self._visits[id_].is_ending]
+            if not ending:
+                return None
+            await asyncio.wait(ending, return_when=asyncio.FIRST_COMPLETED)
         visit = Visit(self._command, self._downloads, self._limits.visit, self._report, self._place)
         self._visits[visit.id] = visit
         self._among.free -= 1
@@ -161,12 +164,10 @@ class Server:
             try:
                 await visit.live(width, height, has_begun.set)
             finally:
-                del self._visits[visit.id]
+                del self._visits[visit.id], self._lives[visit.id]
                 self._among.free += 1
 
-        life = asyncio.create_task(live())
-        self._lives.add(life)
-        life.add_done_callback(self._lives.discard)
+        self._lives[visit.id] = asyncio.create_task(live())
         await has_begun.wait()
         return visit
 
@@ -222,7 +223,7 @@ class Server:
         """End the apps of all visitors."""
         for visit in self._visits.values():
             visit.end("The server has been ended.")
-        await asyncio.gather(*self._lives)
+        await asyncio.gather(*self._lives.values())
 
 
 async def to_page(_: object, request: web.Request) -> web.StreamResponse:

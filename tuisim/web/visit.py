@@ -233,6 +233,11 @@ class Visit:
         """The process of its app; 0 if it has none."""
         return self._session.pid
 
+    @property
+    def is_ending(self) -> bool:
+        """Whether it has ended for the visitor; its app may still be ending."""
+        return self._end.done()
+
     def end(self, reason: str) -> None:
         """End the visit and tell the visitor why."""
         if not self._end.done():
