@@ -10,8 +10,8 @@ import pytest
 
 from tests.guide.questions import QUESTIONS
 from tuisim.guide.catalogue import pages
-from tuisim.guide.search import search
-from tuisim.guide.text import end_of_passage, page_lines, passage_text, rows_of
+from tuisim.guide.search import SearchResult, search
+from tuisim.guide.text import beginning, end_of_passage, page_lines, passage_text, rows_of
 
 STUDENTS = tomllib.loads((Path(__file__).parent / "questions.toml").read_text(encoding="utf-8"))
 """What students ask, with the pages that answer it."""
@@ -125,3 +125,15 @@ def test_a_passage_ends_where_the_next_one_begins(question: str, width: int) -> 
     end = end_of_passage(lines, row, first.passage)
     shown = "".join("".join(part for part, _ in line) for line in lines[row:end])
     assert sorted(re.findall(r"\w", shown)) == sorted(re.findall(r"\w", passage_text(first.passage)))
+
+
+def test_the_beginning_of_an_answer_has_its_code_in_lines_of_their_own() -> None:
+    one = SearchResult("writing-programs", "", "- **To wait**, write:\n\n      for n in x:\n          wait()\n")
+    assert beginning(one, 40, 9) == ["• To wait, write:", "for n in x:", "    wait()"]
+    assert beginning(one, 40, 2) == ["• To wait, write:", "for n in x:"]
+    assert beginning(one, 9, 1) == ["• To …"]
+
+
+def test_what_follows_a_colon_is_of_the_same_passage() -> None:
+    found = next(one for one in search("export a stored run") if one.heading == "After the run")
+    assert found.passage.endswith("tuisim log export last --out again.arrow")

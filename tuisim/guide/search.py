@@ -24,8 +24,9 @@ from tuisim.guide.words import stems_of
 
 _HEADING = re.compile(r"^##+ (.+)$", re.MULTILINE)
 _FENCE = re.compile(r"^```.*\n?", re.MULTILINE)
-_PASSAGE_END = re.compile(r"\n\s*\n(?!    )|\n(?=- |\| )")
-"""A passage is a paragraph, with a text set in below it, an item of a list or a row of a table."""
+_PASSAGE_END = re.compile(r"(?<!:)\n\s*\n(?!    )|\n(?=- |\| )")
+"""A passage is a paragraph, with a text set in below it or what follows its colon, an item of a list or a row of a
+table."""
 _HEAD = re.compile(r"^\|.*\n(?=\| ---)", re.MULTILINE)
 """The head of a table, which answers nothing."""
 _NO_ANSWER = re.compile(r"# .*|[-| ]*")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from itertools import accumulate
-from textwrap import wrap
+from textwrap import dedent, wrap
 
 from rich.style import Style
 
@@ -19,6 +19,8 @@ _HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
 _LETTERS = re.compile(r"[\W_]+")
 _MANY_LETTERS, _FEW_LETTERS = (40, 20), (10, 5)
 """How many letters tell where a passage begins, those that tell it best first."""
+_CODE_BELOW = re.compile(r"(?<=:)\n\s*\n|\n\s*\n(?=    )")
+"""Before the code that belongs to a passage."""
 _PASSAGE_LINES = 2
 """How much of a passage is shown among results."""
 NO_WORDS = "No page has these words"
@@ -71,7 +73,10 @@ def beginning(one: SearchResult, width: int, most: int) -> list[str]:
         width: Columns.
         most: So many lines at most; what is left out is an ellipsis.
     """
-    return wrap(passage_text(one.passage), width, max_lines=most, placeholder=" …")
+    words, *code = _CODE_BELOW.split(one.passage)
+    lines = wrap(passage_text(words), width, max_lines=most, placeholder=" …")
+    shown = [line[:width] for line in dedent("\n".join(code)).split("\n") if line]
+    return lines + shown[: most - len(lines)]
 
 
 def passage_text(markdown: str) -> str:

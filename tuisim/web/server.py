@@ -141,7 +141,7 @@ class Server:
         return socket
 
     async def begin(self, width: int, height: int, socket: web.WebSocketResponse | None = None) -> Visit | None:
-        """Start an app for a visitor; return None if all places are taken. Waits for the place of an app that is ending.
+        """Start an app for a visitor, if need be once one that is ending has gone; return None if all live.
 
         Args:
             width: Columns of the visitor's terminal.

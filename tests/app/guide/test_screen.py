@@ -5,12 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from rich.text import Text
 from textual.pilot import Pilot
 from textual.widgets import Input, Tree
 
 from tests.app.app_help import lab, ready, screen_text, settings, until, until_shown
 from tests.guide.questions import QUESTIONS
 from tuisim.app.app import LabApp
+from tuisim.app.guide.answers import STANDS_OUT, Answers
 from tuisim.app.guide.screen import KEYS, TOPICS, GuideScreen
 from tuisim.app.panels import PANELS
 from tuisim.guide.catalogue import pages
@@ -154,6 +156,7 @@ async def test_escape_goes_from_a_page_to_the_answers_and_from_these_to_the_cont
         await pilot.press("down", "down", "enter")
         await until(pilot, lambda: screen._page.has_focus)
         assert screen.place == (answers[2].name, answers[2].heading)
+        await until_shown(pilot, f"Guide · {pages()[answers[2].name].title}")
         await pilot.press("escape")
         await until_shown(pilot, passage_text(answers[0].passage)[:40])
         await pilot.press("escape")
@@ -211,6 +214,7 @@ async def test_the_best_answers_are_in_sight_below_each_other(size: tuple[int, i
     async with LabApp(settings()).run_test(size=size) as pilot:
         await opened(pilot)
         answers = await asked(pilot, "How do I make the robot slower?")
+        await until_shown(pilot, passage_text(answers[0].passage)[:24])
         shown = [one for one in answers if passage_text(one.passage)[:24] in screen_text(lab(pilot))]
         assert shown == answers[: len(shown)] and len(shown) >= (3 if size != (40, 12) else 1)
 
@@ -238,6 +242,20 @@ async def test_answers_fit_a_window_that_has_changed() -> None:
         await opened(pilot)
         (first, *_) = await asked(pilot, "How do I make the robot slower?")
         words = passage_text(first.passage)
-        assert words[:60] in screen_text(lab(pilot)) and words[:90] not in screen_text(lab(pilot))
+        await until_shown(pilot, words[:60])
+        assert words[:90] not in screen_text(lab(pilot))
         await pilot.resize_terminal(150, 40)
         await until_shown(pilot, words[:90])
+
+
+async def test_words_of_the_question_stand_out_and_a_section_is_named_once() -> None:
+    async with LabApp(settings()).run_test(size=SMALL) as pilot:
+        await opened(pilot)
+        answers = await asked(pilot, "colours of the sensor")
+        listed = guide(pilot).query_one(Answers)
+        first, second = (listed.get_option_at_index(at).prompt for at in range(2))
+        assert isinstance(first, Text) and isinstance(second, Text)
+        bold = {str(first)[one.start : one.end].lower() for one in first.spans if one.style == STANDS_OUT}
+        assert bold <= {"colour", "color", "colours", "sensor", "sensors"} and bold
+        same = (answers[0].name, answers[0].heading) == (answers[1].name, answers[1].heading)
+        assert str(second).startswith("• ") == same

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from rich.style import Style
@@ -13,12 +14,18 @@ from tuisim import palette
 from tuisim.guide.catalogue import pages
 from tuisim.guide.search import SearchResult
 from tuisim.guide.text import beginning
+from tuisim.guide.words import words_of
 
-_FIRST_LINES, _LINES = 6, 3
+_FIRST_LINES, _LINES = 9, 3
 """Lines of the best answer, and of each other."""
 _EDGES = 3
 """Columns beside the text: a space at each side, and the scroll bar."""
 _LEAST_COLUMNS = 20
+_ITEM = "• "
+_LEAST_LETTERS, _ENDING = 4, 2
+"""Letters that tell a word, and those at its end that may be others in another form of it."""
+STANDS_OUT = Style(bold=True, color=palette.WHITE)
+"""A word of the question."""
 _SECTION, _PAGE, _TEXT = Style(bold=True, color=palette.BLUE), Style(color=palette.SOFT), Style(color=palette.INK)
 
 
@@ -28,15 +35,17 @@ class Answers(OptionList):
     def __init__(self) -> None:
         super().__init__(id="answers")
         self._found: Sequence[SearchResult] = ()
+        self._asked: re.Pattern[str] | None = None
 
-    def show(self, found: Sequence[SearchResult], width: int) -> None:
+    def show(self, question: str, found: Sequence[SearchResult], width: int) -> None:
         """Show other answers, the first one highlighted.
 
         Args:
+            question: What was asked; its words stand out.
             found: The best one first.
             width: Columns of the list.
         """
-        self._found = found
+        self._found, self._asked = found, _pattern_of(question)
         self.fit(width)
         self.highlighted = 0 if found else None
         self.scroll_home(animate=False)
@@ -45,9 +54,15 @@ class Answers(OptionList):
         """Draw the answers for a number of columns."""
         columns, at = max(width - _EDGES, _LEAST_COLUMNS), self.highlighted
         self.clear_options()
-        self.add_options(
-            Option(_text_of(one, columns, _LINES if row else _FIRST_LINES)) for row, one in enumerate(self._found)
-        )
+        above = ("", "")
+        for row, one in enumerate(self._found):
+            section = one.name, one.heading
+            text = _passage_of(one, columns, _LINES if row else _FIRST_LINES)
+            if self._asked:
+                text.highlight_regex(self._asked, STANDS_OUT)
+            # A section is named once above the answers in it that follow each other.
+            self.add_option(Option(text if section == above else _named(one, columns).append_text(text)))
+            above = section
         self.highlighted = at if at is not None and at < len(self._found) else None
 
     @property
@@ -56,9 +71,26 @@ class Answers(OptionList):
         return self._found[self.highlighted] if self.highlighted is not None else None
 
 
-def _text_of(one: SearchResult, columns: int, most: int) -> Text:
-    """Return an answer below the names of its section and page."""
+def name_of(one: SearchResult) -> tuple[str, str]:
+    """Return the names of the section and the page of an answer; the second is empty at the beginning of a page."""
     title = pages()[one.name].title
-    names = Text.assemble((one.heading, _SECTION), (f" · {title}", _PAGE)) if one.heading else Text(title, _SECTION)
+    return (one.heading, title) if one.heading else (title, "")
+
+
+def _named(one: SearchResult, columns: int) -> Text:
+    section, page = name_of(one)
+    names = Text.assemble((section, _SECTION), (f" · {page}" if page else "", _PAGE), no_wrap=True)
     names.truncate(columns, overflow="ellipsis")
-    return Text("\n", no_wrap=True).join([names, *(Text(line, _TEXT) for line in beginning(one, columns, most))])
+    return names.append("\n")
+
+
+def _passage_of(one: SearchResult, columns: int, most: int) -> Text:
+    """Return the beginning of an answer, as an item of a list."""
+    lines = beginning(one, columns - len(_ITEM), most)
+    return Text(_ITEM + f"\n{' ' * len(_ITEM)}".join(lines).removeprefix(_ITEM), _TEXT, no_wrap=True)
+
+
+def _pattern_of(question: str) -> re.Pattern[str] | None:
+    """Return what finds the words of a question in an answer, in other forms, too."""
+    begins = [re.escape(word[: max(_LEAST_LETTERS, len(word) - _ENDING)]) for word in words_of(question)]
+    return re.compile(rf"(?i)\b(?:{'|'.join(begins)})\w*") if begins else None

@@ -19,7 +19,7 @@ from tuisim import palette
 from tuisim.app import background
 from tuisim.app.action import KeyWord, key_table
 from tuisim.app.dialogs.dialog import Dialog
-from tuisim.app.guide.answers import Answers
+from tuisim.app.guide.answers import Answers, name_of
 from tuisim.data_class import dataclass
 from tuisim.guide.catalogue import CONTENTS, pages
 from tuisim.guide.search import SearchResult, search
@@ -288,6 +288,17 @@ class GuideScreen(Dialog[None]):
         self._answers.display = searched and not reading
         self._contents.display = not searched and (columns >= _SIDE_BY_SIDE or not reading)
         self._page.display = reading or (not searched and columns >= _PREVIEW)
+        self._frame(reading)
+
+    def _frame(self, reading: bool) -> None:
+        """Say in the frame where an answer is, and which keys lead on."""
+        frame, one = self.query_one(".dialog"), self._answers.chosen
+        frame.border_title, frame.border_subtitle = self.TITLE_TEXT, self.HINT
+        if self._found and not reading:
+            frame.border_subtitle = "↑ ↓ answers · Enter opens · / search · esc back"
+        elif self._found and one is not None:
+            frame.border_title = " · ".join(filter(None, (self.TITLE_TEXT, *reversed(name_of(one)))))
+            frame.border_subtitle = "esc back to the answers · / search"
 
     @on(Tree.NodeHighlighted)
     def _preview(self, event: Tree.NodeHighlighted[Place | None]) -> None:
@@ -335,7 +346,7 @@ class GuideScreen(Dialog[None]):
             return
         self._found = found
         self._arrange(self._page.has_focus)
-        self._answers.show(found, self._columns)
+        self._answers.show(question, found, self._columns)
         if not found:
             self._contents.show_nothing()
         self._now_answered(question)

@@ -44,6 +44,8 @@ _READINGS_COLS, _TEXT_COLS = 48, 32
 _MAX_SIDE_COLS = 46
 _CODE_COLS = 64
 """Columns in which most lines of code are whole, with the values beside them."""
+_ERROR_ROWS = 8
+"""Rows of the panels below it, so that *Output* shows an error with its traceback."""
 _COLUMN_COLS = 40
 """Columns below the world are not made narrower."""
 _LEAST_TEXT, _MOST_TEXT = 40, 58
@@ -139,7 +141,7 @@ def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
     if others != panels and others and width < columns * _CODE_COLS:
         stacked = ["code", *_strip(others, width, height)]
         if sum(fair_rows(node, width) for node in stacked) <= height:
-            return stacked
+            return [Split(Axis.ROWS, tuple(stacked), least=(0, *(_ERROR_ROWS for _ in stacked[1:])))]
     count = ceil(len(panels) / columns)
     stacks = [joined(Axis.ROWS, panels[first : first + count]) for first in range(0, len(panels), count)]
     return [joined(Axis.COLUMNS, stacks)]
