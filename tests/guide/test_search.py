@@ -134,6 +134,15 @@ def test_the_beginning_of_an_answer_has_its_code_in_lines_of_their_own() -> None
     assert beginning(one, 9, 1) == ["• To …"]
 
 
+def test_a_row_of_a_table_says_what_its_columns_are() -> None:
+    row = next(one for one in search("which formats can I export, csv or arrow") if "`.csv`" in one.passage[:9])
+    assert beginning(row, 80, 1)[0].startswith(".csv · keeps: text · units, seed")
+    key = next(one for one in search("zoom the world") if one.passage.startswith("| `v` |"))
+    assert beginning(key, 80, 1) == ["v · does: Zoom the world · group: Robot · id: zoom"]
+    pair = SearchResult("a", "", "| `x` | does this |", "| key | does |")
+    assert beginning(pair, 80, 1) == ["x · does this"]
+
+
 def test_what_follows_a_colon_is_of_the_same_passage() -> None:
     found = next(one for one in search("export a stored run") if one.heading == "After the run")
     assert found.passage.endswith("tuisim log export last --out again.arrow")

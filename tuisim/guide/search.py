@@ -13,6 +13,7 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
+from itertools import pairwise
 from statistics import median
 from typing import TypeAlias
 
@@ -27,10 +28,10 @@ _FENCE = re.compile(r"^```.*\n?", re.MULTILINE)
 _PASSAGE_END = re.compile(r"(?<!:)\n\s*\n(?!    )|\n(?=- |\| )")
 """A passage is a paragraph, with a text set in below it or what follows its colon, an item of a list or a row of a
 table."""
-_HEAD = re.compile(r"^\|.*\n(?=\| ---)", re.MULTILINE)
-"""The head of a table, which answers nothing."""
-_NO_ANSWER = re.compile(r"# .*|[-| ]*")
-"""The title of a page, and the line below the head of a table."""
+_RULE = re.compile(r"[-| ]+")
+"""The line below the head of a table."""
+_NO_ANSWER = re.compile(r"# .*|")
+"""The title of a page."""
 _SHORTEST = 3
 """Letters from which a word may be the beginning of another."""
 _ITS_WORDS, _HEADINGS, _PAGE_WORDS, _WHOLE_PAGE = 1.0, 0.6, 1.0, 0.6
@@ -56,6 +57,8 @@ class SearchResult:
     """The section that it is in; empty for the beginning of the page."""
     passage: str
     """In Markdown: a paragraph, an item of a list or a row of a table."""
+    head: str = ""
+    """The head of the table of which it is a row, in Markdown."""
 
 
 class _Postings:
@@ -149,11 +152,22 @@ def _counts(texts: Sequence[_Stems], asked: Iterable[tuple[int, _Stems]]) -> Cou
 
 def _passages() -> Iterator[SearchResult]:
     for name, page in pages().items():
-        parts = ["", *_HEADING.split(_HEAD.sub("", _FENCE.sub("", markdown_of(page))))]
+        parts = ["", *_HEADING.split(_FENCE.sub("", markdown_of(page)))]
         for heading, text in zip(parts[::2], parts[1::2], strict=True):
-            for passage in map(str.strip, _PASSAGE_END.split(text)):
+            for passage, head in _with_heads([*map(str.strip, _PASSAGE_END.split(text)), ""]):
                 if not _NO_ANSWER.fullmatch(passage):
-                    yield SearchResult(name, heading, passage)
+                    yield SearchResult(name, heading, passage, head)
+
+
+def _with_heads(passages: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Yield passages, rows of a table with its head, which answers nothing itself."""
+    head = ""
+    for passage, below in pairwise(passages):
+        if _RULE.fullmatch(below):
+            head = passage
+        elif not _RULE.fullmatch(passage):
+            head = head if passage.startswith("|") else ""
+            yield passage, head
 
 
 @cache

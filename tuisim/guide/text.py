@@ -12,13 +12,15 @@ from tuisim.guide.catalogue import CONTENTS, Page, pages
 from tuisim.guide.search import SearchResult
 from tuisim.guide.tables import markdown_of
 from tuisim.lessons.markdown import PLAIN, markdown_lines, plain_text
-from tuisim.terminal.text_runs import Line
+from tuisim.terminal.text_runs import Line, cut
 
 _LINK = re.compile(r"\[([^\[\]]+)\]\(([\w-]+)\.md\)")
 _HEADING = re.compile(r"^## (.+)$", re.MULTILINE)
 _LETTERS = re.compile(r"[\W_]+")
 _MANY_LETTERS, _FEW_LETTERS = (40, 20), (10, 5)
 """How many letters tell where a passage begins, those that tell it best first."""
+_CLEAR_COLUMNS = 2
+"""Rows of a table with so many columns need no heads."""
 _CODE_BELOW = re.compile(r"(?<=:)\n\s*\n|\n\s*\n(?=    )")
 """Before the code that belongs to a passage."""
 _PASSAGE_LINES = 2
@@ -74,9 +76,18 @@ def beginning(one: SearchResult, width: int, most: int) -> list[str]:
         most: So many lines at most; what is left out is an ellipsis.
     """
     words, *code = _CODE_BELOW.split(one.passage)
-    lines = wrap(passage_text(words), width, max_lines=most, placeholder=" …")
-    shown = [line[:width] for line in dedent("\n".join(code)).split("\n") if line]
+    lines = wrap(passage_text(_with_head(words, one.head)), width, max_lines=most, placeholder=" …")
+    shown = [cut(line, width) for line in dedent("\n".join(code)).split("\n") if line]
     return lines + shown[: most - len(lines)]
+
+
+def _with_head(passage: str, head: str) -> str:
+    """Return a row of a table of more than two columns with the heads of its columns, but for the first."""
+    cells, heads = cells_of(passage), cells_of(head)
+    if not head or len(cells) <= _CLEAR_COLUMNS or len(heads) != len(cells):
+        return passage
+    named = [f"{name}: {cell}" for name, cell in zip(heads[1:], cells[1:], strict=True) if cell]
+    return "| " + " | ".join([cells[0], *named]) + " |"
 
 
 def passage_text(markdown: str) -> str:
