@@ -10,6 +10,7 @@ from tuisim.guide.words import stems_of, words_of
 def test_what_is_denied_is_another_question() -> None:
     assert [*words_of("why doesn't it move")] == ["not", "move"]
     assert [*words_of("it doesnt move and I dont know")] == ["not", "move", "know"]
+    assert [*words_of("different current")] == ["different", "current"]
     assert [*words_of("It cannot find the colours, can't it?")] == ["not", "find", "colours"]
 
 

@@ -10,7 +10,9 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
-_DENIES = re.compile(r"\bcan(?:not|['’]?t)\b|n['’]t\b|(?<=\bdo|es|id|is|re|as|ve|ad|wo|ld)nt\b")
+_DENIES = re.compile(
+    r"\b(?:cannot|can['’]?t|(?:do|does|did|is|are|was|were|has|have|had|wo|would|could|should)nt)\b|n['’]t\b"
+)
 """`doesn't`, also typed as `doesnt`."""
 _CONTRACTED = re.compile(r"['’](s|m|d|re|ve|ll)\b")
 """The ends of `it's`, `I'm`."""
