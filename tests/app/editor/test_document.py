@@ -111,7 +111,6 @@ async def test_a_program_opened_without_its_mat_runs_only_on_one_that_is_chosen(
         app, code = await begun(pilot)
         await until(pilot, lambda: code.error_line == 1)
         told = "prog.py cannot run: line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
-        # The frame of the code is too narrow for all of it.
         assert "prog.py cannot run" in screen_text(app)
         assert str(code.border_subtitle) == "line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
         assert not app.document.apply()

@@ -12,7 +12,7 @@ from textual.widgets import Input, Tree
 from tests.app.app_help import lab, ready, screen_text, settings, until, until_shown
 from tests.guide.questions import QUESTIONS
 from tuisim.app.app import LabApp
-from tuisim.app.guide.answers import STANDS_OUT, Answers
+from tuisim.app.guide.answers import STANDS_OUT, AnswerList
 from tuisim.app.guide.screen import KEYS, TOPICS, GuideScreen
 from tuisim.app.panels import PANELS
 from tuisim.guide.catalogue import pages
@@ -257,7 +257,7 @@ async def test_words_of_the_question_stand_out_and_a_section_is_named_once() -> 
     async with LabApp(settings()).run_test(size=SMALL) as pilot:
         await opened(pilot)
         answers = await asked(pilot, "colours of the sensor")
-        listed = guide(pilot).query_one(Answers)
+        listed = guide(pilot).query_one(AnswerList)
         first, second = (listed.get_option_at_index(at).prompt for at in range(2))
         assert isinstance(first, Text) and isinstance(second, Text)
         bold = {str(first)[one.start : one.end].lower() for one in first.spans if one.style == STANDS_OUT}

@@ -13,7 +13,7 @@ from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim import palette
-from tuisim.app.action import Action, with_keys_of
+from tuisim.app.action import Action
 from tuisim.app.dialogs.dialog import MOVE_KEYS, Dialog
 from tuisim.terminal.text_runs import cut
 
@@ -70,7 +70,7 @@ class SearchList(Dialog[str]):
 
     HINT: str = "type to search · ↑ ↓ and Enter · Escape closes"
     NOTHING: str = "Nothing found"
-    """What to say where the list is empty, with ids of actions in braces."""
+    """What to say where the list is empty."""
     BINDINGS: ClassVar[list[BindingType]] = [*MOVE_KEYS]
 
     def __init__(self, entries: Sequence[Entry], current: str = "") -> None:
@@ -80,7 +80,7 @@ class SearchList(Dialog[str]):
     def content(self) -> ComposeResult:
         yield Input(placeholder="Search", compact=True, select_on_focus=False)
         yield OptionList()
-        yield Static(with_keys_of(self.app, self.NOTHING), id="message", markup=False)
+        yield Static(self.NOTHING, id="message", markup=False)
 
     def on_mount(self) -> None:
         self.app.clear_notifications()

@@ -29,7 +29,7 @@ STANDS_OUT = Style(bold=True, color=palette.WHITE)
 _SECTION, _PAGE, _TEXT = Style(bold=True, color=palette.BLUE), Style(color=palette.SOFT), Style(color=palette.INK)
 
 
-class Answers(OptionList):
+class AnswerList(OptionList):
     """The answers, the best one first, as many as the window shows; the others below."""
 
     def __init__(self) -> None:

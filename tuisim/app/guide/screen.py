@@ -19,7 +19,7 @@ from tuisim import palette
 from tuisim.app import background
 from tuisim.app.action import KeyWord, key_table
 from tuisim.app.dialogs.dialog import Dialog
-from tuisim.app.guide.answers import Answers, name_of
+from tuisim.app.guide.answers import AnswerList, name_of
 from tuisim.data_class import dataclass
 from tuisim.guide.catalogue import CONTENTS, pages
 from tuisim.guide.search import SearchResult, search
@@ -228,7 +228,7 @@ class GuideScreen(Dialog[None]):
         yield Input(placeholder="Search: words or a question", compact=True, id="search")
         with Horizontal(id="both"):
             yield _Contents()
-            yield Answers()
+            yield AnswerList()
             yield _Page(self._keys, self._topic)
 
     def on_mount(self) -> None:
@@ -250,8 +250,8 @@ class GuideScreen(Dialog[None]):
         return self.query_one(_Contents)
 
     @property
-    def _answers(self) -> Answers:
-        return self.query_one(Answers)
+    def _answers(self) -> AnswerList:
+        return self.query_one(AnswerList)
 
     @property
     def _page(self) -> _Page:
@@ -303,20 +303,17 @@ class GuideScreen(Dialog[None]):
     @on(Tree.NodeHighlighted)
     def _preview(self, event: Tree.NodeHighlighted[Place | None]) -> None:
         if event.node.data is not None and self._contents.has_focus:
-            self._show(event.node.data)
+            self._page.show(event.node.data)
 
     @on(Tree.NodeSelected)
     def _open(self, event: Tree.NodeSelected[Place | None]) -> None:
         if event.node.data is None:
             event.node.toggle()
             return
-        self._show(event.node.data)
+        self._page.show(event.node.data)
         self.action_page()
 
-    def _show(self, place: Place) -> None:
-        self._page.show(place)
-
-    @on(Answers.OptionSelected)
+    @on(AnswerList.OptionSelected)
     def _read(self) -> None:
         """Read the page of the highlighted answer."""
         if (one := self._answers.chosen) is not None:
