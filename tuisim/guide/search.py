@@ -13,21 +13,24 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
-from itertools import pairwise
+from itertools import pairwise, takewhile
 from statistics import median
+from textwrap import indent
 from typing import TypeAlias
 
 from tuisim.data_class import dataclass
 from tuisim.guide.asked import asked_questions
 from tuisim.guide.catalogue import pages
 from tuisim.guide.tables import markdown_of
-from tuisim.guide.words import stems_of
+from tuisim.guide.words import stems_of, words_of
 
 _HEADING = re.compile(r"^##+ (.+)$", re.MULTILINE)
-_FENCE = re.compile(r"^```.*\n?", re.MULTILINE)
-_PASSAGE_END = re.compile(r"(?<!:)\n\s*\n(?!    )|\n(?=- |\| )")
+_FENCED = re.compile(r"^```.*\n((?:.*\n)*?)```$\n?", re.MULTILINE)
+_PASSAGE_END = re.compile(r"(?<!:)\n\s*\n(?!    )|\n(?=- |\| |\d+\. )")
 """A passage is a paragraph, with a text set in below it or what follows its colon, an item of a list or a row of a
 table."""
+_ITEM = re.compile(r"- |\| |\d+\. ")
+_SET_IN = "    "
 _RULE = re.compile(r"[-| ]+")
 """The line below the head of a table."""
 _NO_ANSWER = re.compile(r"# .*|")
@@ -43,6 +46,12 @@ _COMMON = 0.05
 """The least weight of a word, however common it is."""
 _MOST = 12
 """So many passages are found; further ones share common words only."""
+_FIRST, _LEAST_SHARE = 2, 0.4
+"""So many are found however well they answer; each further one answers at least this much as well as the best one."""
+_JOINT = re.compile(r"[?!.;,]+\s+|\b(?:and|or|but|then)\b")
+"""Between two questions in one."""
+_WORDS_OF_A_PART = 2
+"""So many words say what a part of a question asks for."""
 
 _Stems: TypeAlias = frozenset[str]
 
@@ -59,6 +68,8 @@ class SearchResult:
     """In Markdown: a paragraph, an item of a list or a row of a table."""
     head: str = ""
     """The head of the table of which it is a row, in Markdown."""
+    below: tuple[str, ...] = ()
+    """The items of the list, or the rows of the table, that it introduces, which are passages, too."""
 
 
 class _Postings:
@@ -152,11 +163,18 @@ def _counts(texts: Sequence[_Stems], asked: Iterable[tuple[int, _Stems]]) -> Cou
 
 def _passages() -> Iterator[SearchResult]:
     for name, page in pages().items():
-        parts = ["", *_HEADING.split(_FENCE.sub("", markdown_of(page)))]
+        parts = ["", *_HEADING.split(_FENCED.sub(_set_in, markdown_of(page)))]
         for heading, text in zip(parts[::2], parts[1::2], strict=True):
-            for passage, head in _with_heads([*map(str.strip, _PASSAGE_END.split(text)), ""]):
+            found = list(_with_heads([*(part.strip("\n") for part in _PASSAGE_END.split(text)), ""]))
+            for at, (passage, head) in enumerate(found):
                 if not _NO_ANSWER.fullmatch(passage):
-                    yield SearchResult(name, heading, passage, head)
+                    below = takewhile(_ITEM.match, (one for one, _ in found[at + 1 :])) if passage.endswith(":") else ()
+                    yield SearchResult(name, heading, passage, head, tuple(below))
+
+
+def _set_in(fenced: re.Match[str]) -> str:
+    """Return a text between fences as one that is set in, so that it stays with the passage above it."""
+    return indent(fenced[1], _SET_IN, lambda _: True)
 
 
 def _with_heads(passages: Sequence[str]) -> Iterator[tuple[str, str]]:
@@ -200,15 +218,30 @@ def _scores(index: _Index, typed: _Stems) -> Mapping[int, float]:
     return {row: score + _WHOLE_PAGE * on_page[index.passages[row].name] for row, score in scores.items()}
 
 
-def search(question: str) -> list[SearchResult]:
-    """Return the passages that answer a question best, the best one first.
-
-    Args:
-        question: Words; one that no page has may be the beginning of another.
-    """
-    index = _index()
+def _best(index: _Index, question: str) -> list[int]:
+    """Return the rows of the passages that answer a question, the best one first, without those far behind."""
     typed = index.known(stems_of([question])[0])
     if not typed:
         return []
     scores = _scores(index, typed)
-    return [index.passages[row] for row in sorted(scores, key=lambda row: -scores[row])[:_MOST]]
+    rows = sorted(scores, key=lambda row: -scores[row])[:_MOST]
+    return [row for place, row in enumerate(rows) if place < _FIRST or scores[row] >= _LEAST_SHARE * scores[rows[0]]]
+
+
+def _parts(question: str) -> list[str]:
+    """Return the parts of a question that asks for several things; none if it asks for one."""
+    parts = [part for part in _JOINT.split(question) if len(list(words_of(part))) >= _WORDS_OF_A_PART]
+    return parts if len(parts) > 1 else []
+
+
+def search(question: str) -> list[SearchResult]:
+    """Return the passages that answer a question best, the best one first.
+
+    Args:
+        question: Words; one that no page has may be the beginning of another. What answers best a part of a question
+            that asks for several things comes after the first two.
+    """
+    index = _index()
+    rows = _best(index, question)
+    of_parts = [row for part in _parts(question) for row in _best(index, part)[:1]]
+    return [index.passages[row] for row in dict.fromkeys([*rows[:_FIRST], *of_parts, *rows])]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from itertools import accumulate
 from textwrap import dedent, wrap
 
@@ -23,6 +24,15 @@ _CLEAR_COLUMNS = 2
 """Rows of a table with so many columns need no heads."""
 _CODE_BELOW = re.compile(r"(?<=:)\n\s*\n|\n\s*\n(?=    )")
 """Before the code that belongs to a passage."""
+_CODE = "    "
+"""Begins each line of code in a passage."""
+_SENTENCE_END = re.compile(r"(?<=[.:!?]) (?=[\w`*])")
+_TOLD_BY = 4
+"""Letters that tell one word of a question from another."""
+_FOR_SCRIPTS = ("group", "id")
+"""Columns of the keys that say nothing to a reader of one of them."""
+_LEAST = 3
+"""Lines that make sense by themselves, of a text as of code."""
 _PASSAGE_LINES = 2
 """How much of a passage is shown among results."""
 NO_WORDS = "No page has these words"
@@ -67,18 +77,44 @@ def result_lines(found: list[SearchResult], width: int) -> list[Line]:
     return lines
 
 
-def beginning(one: SearchResult, width: int, most: int) -> list[str]:
+def beginning(one: SearchResult, width: int, most: int, asked: re.Pattern[str] | None = None) -> list[str]:
     """Return the beginning of a passage that was found, in lines of plain text.
 
     Args:
         one: What was found.
         width: Columns.
         most: So many lines at most; what is left out is an ellipsis.
+        asked: Finds the words of the question. A longer passage begins where most of them follow: at a sentence,
+            and its code at a line.
     """
-    words, *code = _CODE_BELOW.split(one.passage)
-    lines = wrap(passage_text(_with_head(words, one.head)), width, max_lines=most, placeholder=" …")
-    shown = [cut(line, width) for line in dedent("\n".join(code)).split("\n") if line]
-    return lines + shown[: most - len(lines)]
+    words, *code = ("", one.passage) if one.passage.startswith(_CODE) else _CODE_BELOW.split(one.passage)
+    below = [line for line in dedent("\n".join(code)).split("\n") if line.strip()]
+    below += [f"• {passage_text(item)}" for item in one.below]
+    text = passage_text(_with_head(words, one.head))
+    most_of_text = min(most, max(most - len(below), most - _LEAST, _LEAST))
+    if asked and len(wrap(text, width)) > most_of_text:
+        text = _from_sentence(text, width * most_of_text, asked)
+    lines = wrap(text, width, max_lines=most_of_text, placeholder=" …")
+    room = most - len(lines)
+    first = _line_with_most(below, room, asked) if asked and room >= _LEAST else 0
+    return lines + [cut(line, width) for line in below[first : first + room]]
+
+
+def _from_sentence(text: str, letters: int, asked: re.Pattern[str]) -> str:
+    """Return a text from the sentence on from which a number of letters has most words of a question."""
+    starts = [0, *(found.end() for found in _SENTENCE_END.finditer(text))]
+    start = max(starts, key=lambda at: (_words_in(text[at : at + letters], asked), -at))
+    return f"… {text[start:]}" if start else text
+
+
+def _line_with_most(lines: Sequence[str], count: int, asked: re.Pattern[str]) -> int:
+    """Return the line from which on a number of lines has most words of a question."""
+    starts = range(max(1, len(lines) - count + 1))
+    return max(starts, key=lambda at: (_words_in("\n".join(lines[at : at + count]), asked), -at))
+
+
+def _words_in(text: str, asked: re.Pattern[str]) -> int:
+    return len({word[:_TOLD_BY].lower() for word in asked.findall(text)})
 
 
 def _with_head(passage: str, head: str) -> str:
@@ -86,7 +122,8 @@ def _with_head(passage: str, head: str) -> str:
     cells, heads = cells_of(passage), cells_of(head)
     if not head or len(cells) <= _CLEAR_COLUMNS or len(heads) != len(cells):
         return passage
-    named = [f"{name}: {cell}" for name, cell in zip(heads[1:], cells[1:], strict=True) if cell]
+    said = [(name, cell) for name, cell in zip(heads[1:], cells[1:], strict=True) if cell and name not in _FOR_SCRIPTS]
+    named = [f"{name}: {cell}" for name, cell in said] if len(said) > 1 else [cell for _, cell in said]
     return "| " + " | ".join([cells[0], *named]) + " |"
 
 

@@ -35,14 +35,21 @@ class _Markdown(Markdown):
 
 
 def markdown_lines(text: str, width: int) -> list[Line]:
-    """Return Markdown as lines of at most a number of columns; lists are indented, code is coloured."""
+    """Return Markdown as lines of at most a number of columns; lists are indented, code is coloured.
+
+    Of several empty lines, as above and below code, there is one.
+    """
     console = Console(
         file=io.StringIO(), width=max(10, width), theme=_THEME, force_terminal=True, color_system="truecolor"
     )
     drawn = _Markdown(text, code_theme="ansi_dark", justify="left")
     lines = console.render_lines(drawn, console.options.update(width=max(10, width)), pad=False)
     found = [[_run(segment.text, segment.style) for segment in line if segment.text] for line in lines]
-    return [_stripped(line) for line in found]
+    return [_stripped(line) for line, above in zip(found, [[], *found], strict=False) if _text(line) or _text(above)]
+
+
+def _text(line: Line) -> str:
+    return "".join(text for text, _ in line).strip()
 
 
 def _run(text: str, style: Style | None) -> Run:

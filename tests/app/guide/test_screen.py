@@ -242,6 +242,18 @@ async def test_the_passage_of_an_answer_is_in_sight_on_its_page(question: str, p
         await until(pilot, lambda: passage in page_text(pilot))
 
 
+async def test_the_page_keys_go_on_to_further_answers_also_from_the_question() -> None:
+    async with LabApp(settings()).run_test(size=SMALL) as pilot:
+        await opened(pilot)
+        answers = await asked(pilot, "where is my data saved, and how do I read it in Python")
+        listed = guide(pilot).query_one(AnswerList)
+        await pilot.press("pagedown")
+        await until(pilot, lambda: listed.has_focus and (listed.highlighted or 0) > 1)
+        await pilot.press("pageup", "pageup")
+        await until(pilot, lambda: listed.highlighted == 0)
+        assert len(answers) > 3
+
+
 async def test_answers_fit_a_window_that_has_changed() -> None:
     async with LabApp(settings()).run_test(size=SMALL) as pilot:
         await opened(pilot)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from rich.style import Style
 from rich.text import Text
+from textual.geometry import Size
 from textual.widgets import OptionList
 from textual.widgets.option_list import Option
 
@@ -16,8 +17,8 @@ from tuisim.guide.search import SearchResult
 from tuisim.guide.text import beginning
 from tuisim.guide.words import words_of
 
-_FIRST_LINES, _LINES = 9, 3
-"""Lines of the best answer, and of each other."""
+_FIRST_LINES, _LINES = 9, (9, 6, 4, 3)
+"""Lines of the best answer, and of each other: as many as leave all in sight, else the fewest."""
 _EDGES = 3
 """Columns beside the text: a space at each side, and the scroll bar."""
 _LEAST_COLUMNS = 20
@@ -37,33 +38,40 @@ class AnswerList(OptionList):
         self._found: Sequence[SearchResult] = ()
         self._asked: re.Pattern[str] | None = None
 
-    def show(self, question: str, found: Sequence[SearchResult], width: int) -> None:
+    def show(self, question: str, found: Sequence[SearchResult], size: Size) -> None:
         """Show other answers, the first one highlighted.
 
         Args:
             question: What was asked; its words stand out.
             found: The best one first.
-            width: Columns of the list.
+            size: Columns and rows of the list.
         """
         self._found, self._asked = found, _pattern_of(question)
-        self.fit(width)
+        self.fit(size)
         self.highlighted = 0 if found else None
         self.scroll_home(animate=False)
 
-    def fit(self, width: int) -> None:
-        """Draw the answers for a number of columns."""
-        columns, at = max(width - _EDGES, _LEAST_COLUMNS), self.highlighted
+    def fit(self, size: Size) -> None:
+        """Draw the answers for a number of columns and rows."""
+        columns, at = max(size.width - _EDGES, _LEAST_COLUMNS), self.highlighted
+        for lines in _LINES:
+            drawn = list(self._drawn(columns, lines))
+            if sum(len(text.plain.split("\n")) for text in drawn) <= size.height:
+                break
         self.clear_options()
+        self.add_options(Option(text) for text in drawn)
+        self.highlighted = at if at is not None and at < len(self._found) else None
+
+    def _drawn(self, columns: int, lines: int) -> Iterator[Text]:
         above = ("", "")
         for row, one in enumerate(self._found):
             section = one.name, one.heading
-            text = _passage_of(one, columns, _LINES if row else _FIRST_LINES)
+            text = _passage_of(one, columns, lines if row else _FIRST_LINES, self._asked)
             if self._asked:
                 text.highlight_regex(self._asked, STANDS_OUT)
             # A section is named once above the answers in it that follow each other.
-            self.add_option(Option(text if section == above else _named(one, columns).append_text(text)))
+            yield text if section == above else _named(one, columns).append_text(text)
             above = section
-        self.highlighted = at if at is not None and at < len(self._found) else None
 
     @property
     def chosen(self) -> SearchResult | None:
@@ -84,10 +92,10 @@ def _named(one: SearchResult, columns: int) -> Text:
     return names.append("\n")
 
 
-def _passage_of(one: SearchResult, columns: int, most: int) -> Text:
+def _passage_of(one: SearchResult, columns: int, most: int, asked: re.Pattern[str] | None) -> Text:
     """Return the beginning of an answer, as an item of a list."""
-    lines = beginning(one, columns - len(_ITEM), most)
-    return Text(_ITEM + f"\n{' ' * len(_ITEM)}".join(lines).removeprefix(_ITEM), _TEXT, no_wrap=True)
+    lines = beginning(one, columns - len(_ITEM), most, asked)
+    return Text(_ITEM + f"\n{' ' * len(_ITEM)}".join(lines), _TEXT, no_wrap=True)
 
 
 def _pattern_of(question: str) -> re.Pattern[str] | None:

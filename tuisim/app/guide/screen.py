@@ -12,6 +12,7 @@ from textual import events, on
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, VerticalScroll
+from textual.geometry import Size
 from textual.widgets import Input, Static, Tree
 from textual.widgets.tree import TreeNode
 
@@ -72,6 +73,8 @@ TOPICS: Mapping[str, Topic] = {
 _SIDE_BY_SIDE, _PREVIEW = 100, 66
 """Columns from which the contents stay beside a page that is being read, and from which a page is shown beside them."""
 _SEARCH_AGAIN_S = 0.15
+_CORNERS = 4
+"""Columns of a frame beside its title."""
 
 _FOUND = Style(bgcolor=palette.CHOSEN)
 """What a search has found."""
@@ -211,6 +214,8 @@ class GuideScreen(Dialog[None]):
         Binding("left", "contents", "Contents", show=False),
         Binding("down", "down", "Contents or next answer", show=False),
         Binding("right", "page", "Page", show=False),
+        Binding("pagedown", "scroll_answers(1)", "Next answers", show=False),
+        Binding("pageup", "scroll_answers(-1)", "Previous answers", show=False),
     ]
 
     def __init__(self, keys: KeyPage, topic: Topic) -> None:
@@ -273,11 +278,11 @@ class GuideScreen(Dialog[None]):
 
     def on_resize(self, event: events.Resize) -> None:
         self._arrange(self._page.has_focus)
-        self.call_after_refresh(lambda: self._answers.fit(self._columns))
+        self.call_after_refresh(lambda: self._answers.fit(self._room))
 
     @property
-    def _columns(self) -> int:
-        return self.query_one("#both").size.width
+    def _room(self) -> Size:
+        return self.query_one("#both").size
 
     def on_descendant_focus(self, event: events.DescendantFocus) -> None:
         self._arrange(event.widget is self._page)
@@ -297,8 +302,14 @@ class GuideScreen(Dialog[None]):
         if self._found and not reading:
             frame.border_subtitle = "↑ ↓ answers · Enter opens · / search · esc back"
         elif self._found and one is not None:
-            frame.border_title = " · ".join(filter(None, (self.TITLE_TEXT, *reversed(name_of(one)))))
+            frame.border_title = self._title_of(one)
             frame.border_subtitle = "esc back to the answers · / search"
+
+    def _title_of(self, one: SearchResult) -> str:
+        """Return the names of an answer's page and section, the last of them if there is no room for all."""
+        names = [self.TITLE_TEXT, *filter(None, reversed(name_of(one)))]
+        titles = [" · ".join(names[first:]) for first in range(len(names))]
+        return next((title for title in titles if len(title) <= self._room.width - _CORNERS), titles[-1])
 
     @on(Tree.NodeHighlighted)
     def _preview(self, event: Tree.NodeHighlighted[Place | None]) -> None:
@@ -343,7 +354,7 @@ class GuideScreen(Dialog[None]):
             return
         self._found = found
         self._arrange(self._page.has_focus)
-        self._answers.show(question, found, self._columns)
+        self._answers.show(question, found, self._room)
         if not found:
             self._contents.show_nothing()
         self._now_answered(question)
@@ -368,6 +379,13 @@ class GuideScreen(Dialog[None]):
         if self._search.has_focus and len(self._found) > 1:
             self._answers.highlighted = 1
         self.action_contents()
+
+    def action_scroll_answers(self, pages: int) -> None:
+        """Go to the answers below or above those in sight, also while the question has the focus."""
+        self.action_contents()
+        if self._found:
+            move = self._answers.action_page_down if pages > 0 else self._answers.action_page_up
+            move()  # type: ignore[no-untyped-call]
 
     def action_contents(self) -> None:
         """Go to the contents, or to the answers."""
