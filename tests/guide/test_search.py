@@ -150,7 +150,7 @@ def test_what_introduces_a_list_shows_its_items() -> None:
 def test_the_lines_of_a_long_code_that_have_the_words_of_the_question_are_in_sight() -> None:
     (first, *_) = search("explorer.toml left_port outD gyro = false ultrasonic = false")
     lines = beginning(first, 90, 9, re.compile("left_port|outD|gyro"))
-    assert 'left_port = "outD"                      # the motor of the left wheel' in lines
+    assert 'left_port = "outD"  # the motor of the left wheel' in lines
     assert "gyro = false" in lines and len(lines) == 9
 
 

@@ -26,6 +26,8 @@ _CODE_BELOW = re.compile(r"(?<=:)\n\s*\n|\n\s*\n(?=    )")
 """Before the code that belongs to a passage."""
 _CODE = "    "
 """Begins each line of code in a passage."""
+_NOTE = re.compile(r" {2,}#")
+"""Before a comment beside code, in a column with others."""
 _SENTENCE_END = re.compile(r"(?<=[.:!?]) (?=[\w`*])")
 _TOLD_BY = 4
 """Letters that tell one word of a question from another."""
@@ -97,7 +99,7 @@ def beginning(one: SearchResult, width: int, most: int, asked: re.Pattern[str] |
     lines = wrap(text, width, max_lines=most_of_text, placeholder=" …")
     room = most - len(lines)
     first = _line_with_most(below, room, asked) if asked and room >= _LEAST else 0
-    return lines + [cut(line, width) for line in below[first : first + room]]
+    return lines + [cut(_NOTE.sub("  #", line), width) for line in below[first : first + room]]
 
 
 def _from_sentence(text: str, letters: int, asked: re.Pattern[str]) -> str:
