@@ -18,6 +18,8 @@ from tuisim.errors import ConfigError, nearest
 
 _PAGES = Path(__file__).resolve().parent / "pages"
 _PARTS = re.compile(r"\A\+\+\+\n(?P<head>.*?)\n\+\+\+\n\n# (?P<title>[^\n]+)\n(?P<text>.*)\Z", re.DOTALL)
+LINK = re.compile(r"\[([^\[\]]+)\]\(([\w-]+)\.md\)")
+"""In Markdown, a link to another page: its text, and the name of the page."""
 
 
 class GuidePart(StrEnum):

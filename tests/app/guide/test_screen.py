@@ -16,8 +16,9 @@ from tuisim.app.guide.answers import STANDS_OUT, AnswerList
 from tuisim.app.guide.screen import KEYS, TOPICS, GuideScreen
 from tuisim.app.panels import PANELS
 from tuisim.guide.catalogue import pages
+from tuisim.guide.excerpt import excerpt_of, passage_text
 from tuisim.guide.search import SearchResult
-from tuisim.guide.text import beginning, headings_in, passage_text
+from tuisim.guide.text import headings_in
 
 SMALL, MEDIUM = (80, 24), (120, 40)
 DOWN_TO_PAGE = ["down"] * 2
@@ -48,7 +49,7 @@ async def asked(pilot: Pilot[Any], question: str) -> list[SearchResult]:
 
 def first_words(one: SearchResult) -> str:
     """How an answer begins in the list."""
-    return beginning(one, 33, 1)[0].removesuffix(" …")
+    return excerpt_of(one, 33, 1).lines[0].removesuffix(" …")
 
 
 async def opened(pilot: Pilot[Any], *keys: str) -> GuideScreen:

@@ -13,8 +13,8 @@ from textual.widgets.option_list import Option
 
 from tuisim import palette
 from tuisim.guide.catalogue import pages
+from tuisim.guide.excerpt import excerpt_of
 from tuisim.guide.search import SearchResult
-from tuisim.guide.text import beginning
 from tuisim.guide.words import words_of
 
 _FIRST_LINES, _LINES = 9, (9, 6, 4, 3)
@@ -27,7 +27,8 @@ _LEAST_LETTERS, _ENDING = 4, 2
 """Letters that tell a word, and those at its end that may be others in another form of it."""
 STANDS_OUT = Style(bold=True, color=palette.WHITE)
 """A word of the question."""
-_SECTION, _PAGE, _TEXT = Style(bold=True, color=palette.BLUE), Style(color=palette.SOFT), Style(color=palette.INK)
+_SECTION, _PAGE = Style(bold=True, color=palette.BLUE), Style(color=palette.SOFT)
+_TEXT, _CODE = Style(color=palette.INK), Style(color=palette.YELLOW)
 
 
 class AnswerList(OptionList):
@@ -93,9 +94,10 @@ def _named(one: SearchResult, columns: int) -> Text:
 
 
 def _passage_of(one: SearchResult, columns: int, most: int, asked: re.Pattern[str] | None) -> Text:
-    """Return the beginning of an answer, as an item of a list."""
-    lines = beginning(one, columns - len(_ITEM), most, asked)
-    return Text(_ITEM + f"\n{' ' * len(_ITEM)}".join(lines), _TEXT, no_wrap=True)
+    """Return what is shown of an answer, as an item of a list."""
+    shown = excerpt_of(one, columns - len(_ITEM), most, asked)
+    lines = [Text(line, _TEXT) for line in shown.text] + [Text(line, _CODE) for line in shown.code]
+    return Text(_ITEM, _TEXT, no_wrap=True).append_text(Text(f"\n{' ' * len(_ITEM)}").join(lines))
 
 
 def _pattern_of(question: str) -> re.Pattern[str] | None:

@@ -1,0 +1,104 @@
+"""What is shown of a passage among the answers to a question."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from textwrap import dedent, wrap
+from typing import NamedTuple
+
+from tuisim.guide.catalogue import LINK
+from tuisim.guide.search import SearchResult
+from tuisim.lessons.markdown import plain_text
+from tuisim.terminal.text_runs import cut
+
+_CLEAR_COLUMNS = 2
+"""Rows of a table with so many columns need no heads."""
+_CODE_BELOW = re.compile(r"(?<=:)\n\s*\n|\n\s*\n(?=    )")
+"""Before the code that belongs to a passage."""
+_CODE = "    "
+"""Begins each line of code in a passage."""
+_NOTE = re.compile(r" {2,}#")
+"""Before a comment beside code, in a column with others."""
+_SENTENCE_END = re.compile(r"(?<=[.:!?]) (?=[\w`*])")
+_TOLD_BY = 4
+"""Letters that tell one word of a question from another."""
+_FOR_SCRIPTS = ("group", "id")
+"""Columns of the keys that say nothing to a reader of one of them."""
+_LEAST = 3
+"""Lines that make sense by themselves, of a text as of code."""
+
+
+class Excerpt(NamedTuple):
+    """Lines of plain text."""
+
+    text: list[str]
+    """Also the items of a list that it introduces."""
+    code: list[str]
+    """What is below the text."""
+
+    @property
+    def lines(self) -> list[str]:
+        return self.text + self.code
+
+
+def excerpt_of(one: SearchResult, width: int, most: int, asked: re.Pattern[str] | None = None) -> Excerpt:
+    """Return what is shown of a passage that was found: its beginning, or what the question is about.
+
+    Args:
+        one: What was found.
+        width: Columns.
+        most: So many lines at most; what is left out is an ellipsis.
+        asked: Finds the words of the question. A longer passage begins where most of them follow: at a sentence,
+            and its code at a line.
+    """
+    words, *set_in = ("", one.passage) if one.passage.startswith(_CODE) else _CODE_BELOW.split(one.passage)
+    code = [line for line in dedent("\n".join(set_in)).split("\n") if line.strip()]
+    items = [f"• {passage_text(item)}" for item in one.below]
+    text = passage_text(_with_head(words, one.head))
+    most_of_text = min(most, max(most - len(code) - len(items), most - _LEAST, _LEAST))
+    if asked and len(wrap(text, width)) > most_of_text:
+        text = _from_sentence(text, width * most_of_text, asked)
+    lines = wrap(text, width, max_lines=most_of_text, placeholder=" …")
+    lines += [cut(item, width) for item in items[: most - len(lines)]]
+    room = most - len(lines)
+    first = _line_with_most(code, room, asked) if asked and room >= _LEAST else 0
+    return Excerpt(lines, [cut(_NOTE.sub("  #", line), width) for line in code[first : first + room]])
+
+
+def _from_sentence(text: str, letters: int, asked: re.Pattern[str]) -> str:
+    """Return a text from the sentence on from which a number of letters has most words of a question."""
+    starts = [0, *(found.end() for found in _SENTENCE_END.finditer(text))]
+    start = max(starts, key=lambda at: (_words_in(text[at : at + letters], asked), -at))
+    return f"… {text[start:]}" if start else text
+
+
+def _line_with_most(lines: Sequence[str], count: int, asked: re.Pattern[str]) -> int:
+    """Return the line from which on a number of lines has most words of a question."""
+    starts = range(max(1, len(lines) - count + 1))
+    return max(starts, key=lambda at: (_words_in("\n".join(lines[at : at + count]), asked), -at))
+
+
+def _words_in(text: str, asked: re.Pattern[str]) -> int:
+    return len({word[:_TOLD_BY].lower() for word in asked.findall(text)})
+
+
+def _with_head(passage: str, head: str) -> str:
+    """Return a row of a table of more than two columns with the heads of its columns, but for the first."""
+    cells, heads = cells_of(passage), cells_of(head)
+    if not head or len(cells) <= _CLEAR_COLUMNS or len(heads) != len(cells):
+        return passage
+    said = [(name, cell) for name, cell in zip(heads[1:], cells[1:], strict=True) if cell and name not in _FOR_SCRIPTS]
+    named = [f"{name}: {cell}" for name, cell in said] if len(said) > 1 else [cell for _, cell in said]
+    return "| " + " | ".join([cells[0], *named]) + " |"
+
+
+def passage_text(markdown: str) -> str:
+    """Return a passage of a page as one line of plain text."""
+    text = LINK.sub(lambda link: link[1], " · ".join(filter(None, cells_of(markdown))))
+    return " ".join(plain_text(text).removeprefix(" •").split())
+
+
+def cells_of(markdown: str) -> list[str]:
+    """Return the cells of a passage that is a row of a table, else the passage."""
+    return [cell.strip() for cell in markdown.strip("|").split(" | ")] if markdown.startswith("|") else [markdown]
