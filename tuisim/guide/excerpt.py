@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from textwrap import dedent, wrap
-from typing import NamedTuple
+from itertools import chain
+from textwrap import dedent
 
 from tuisim.guide.catalogue import LINK
 from tuisim.guide.search import SearchResult
-from tuisim.lessons.markdown import plain_text
-from tuisim.terminal.text_runs import cut
+from tuisim.lessons.markdown import CODE, PLAIN, markdown_lines, plain_text
+from tuisim.terminal.text_runs import Line, cut, cut_line
 
 _CLEAR_COLUMNS = 2
 """Rows of a table with so many columns need no heads."""
@@ -18,6 +18,9 @@ _CODE_BELOW = re.compile(r"(?<=:)\n\s*\n|\n\s*\n(?=    )")
 """Before the code that belongs to a passage."""
 _CODE = "    "
 """Begins each line of code in a passage."""
+_MARK = re.compile(r"- |\d+\. ")
+_ELLIPSIS = " …"
+_ANY_LENGTH = 10_000
 _NOTE = re.compile(r" {2,}#")
 """Before a comment beside code, in a column with others."""
 _SENTENCE_END = re.compile(r"(?<=[.:!?]) (?=[\w`*])")
@@ -29,20 +32,7 @@ _LEAST = 3
 """Lines that make sense by themselves, of a text as of code."""
 
 
-class Excerpt(NamedTuple):
-    """Lines of plain text."""
-
-    text: list[str]
-    """Also the items of a list that it introduces."""
-    code: list[str]
-    """What is below the text."""
-
-    @property
-    def lines(self) -> list[str]:
-        return self.text + self.code
-
-
-def excerpt_of(one: SearchResult, width: int, most: int, asked: re.Pattern[str] | None = None) -> Excerpt:
+def excerpt_of(one: SearchResult, width: int, most: int, asked: re.Pattern[str] | None = None) -> list[Line]:
     """Return what is shown of a passage that was found: its beginning, or what the question is about.
 
     Args:
@@ -53,17 +43,30 @@ def excerpt_of(one: SearchResult, width: int, most: int, asked: re.Pattern[str] 
             and its code at a line.
     """
     words, *set_in = ("", one.passage) if one.passage.startswith(_CODE) else _CODE_BELOW.split(one.passage)
-    code = [line for line in dedent("\n".join(set_in)).split("\n") if line.strip()]
-    items = [f"• {passage_text(item)}" for item in one.below]
-    text = passage_text(_with_head(words, one.head))
-    most_of_text = min(most, max(most - len(code) - len(items), most - _LEAST, _LEAST))
-    if asked and len(wrap(text, width)) > most_of_text:
-        text = _from_sentence(text, width * most_of_text, asked)
-    lines = wrap(text, width, max_lines=most_of_text, placeholder=" …")
-    lines += [cut(item, width) for item in items[: most - len(lines)]]
+    code = [_NOTE.sub("  #", line) for line in dedent("\n".join(set_in)).split("\n") if line.strip()]
+    markdown = _as_sentences(_with_head(words, one.head))
+    most_of_text = min(most, max(most - len(code) - len(one.below), most - _LEAST, _LEAST))
+    if asked and len(markdown_lines(markdown, width)) > most_of_text:
+        markdown = _from_sentence(markdown, width * most_of_text, asked)
+    lines = _shortened(markdown, width, most_of_text)
+    lines += [list(cut_line(_item_line(item), width)) for item in one.below[: most - len(lines)]]
     room = most - len(lines)
     first = _line_with_most(code, room, asked) if asked and room >= _LEAST else 0
-    return Excerpt(lines, [cut(_NOTE.sub("  #", line), width) for line in code[first : first + room]])
+    return lines + [[(cut(line, width), CODE)] for line in code[first : first + room]]
+
+
+def _shortened(markdown: str, width: int, most: int) -> list[Line]:
+    """Return the first lines, with an ellipsis at their end if there are more."""
+    lines = markdown_lines(markdown, width)
+    if len(lines) > most:
+        lines = markdown_lines(markdown, width - len(_ELLIPSIS))[:most]
+        lines[-1].append((_ELLIPSIS, PLAIN))
+    return lines
+
+
+def _item_line(item: str) -> Line:
+    """Return an item of a list, or a row of a table, as one line of any length."""
+    return [("• ", PLAIN), *chain.from_iterable(markdown_lines(_as_sentences(item), _ANY_LENGTH))]
 
 
 def _from_sentence(text: str, letters: int, asked: re.Pattern[str]) -> str:
@@ -95,8 +98,13 @@ def _with_head(passage: str, head: str) -> str:
 
 def passage_text(markdown: str) -> str:
     """Return a passage of a page as one line of plain text."""
-    text = LINK.sub(lambda link: link[1], " · ".join(filter(None, cells_of(markdown))))
-    return " ".join(plain_text(text).removeprefix(" •").split())
+    return " ".join(plain_text(_as_sentences(markdown)).split())
+
+
+def _as_sentences(markdown: str) -> str:
+    """Return a passage of a page without the mark of an item, the cells of a row and the targets of links."""
+    text = " · ".join(filter(None, cells_of(_MARK.sub("", markdown))))
+    return LINK.sub(lambda link: link[1], text)
 
 
 def cells_of(markdown: str) -> list[str]:

@@ -46,7 +46,7 @@ _COMMON = 0.05
 """The least weight of a word, however common it is."""
 _MOST = 12
 """So many passages are found; further ones share common words only."""
-_FIRST, _LEAST_SHARE = 2, 0.4
+_FIRST, _LEAST_SHARE = 2, 0.5
 """So many are found however well they answer; each further one answers at least this much as well as the best one."""
 _JOINT = re.compile(r"[?!.;,]+\s+|\b(?:and|or|but|then)\b")
 """Between two questions in one."""

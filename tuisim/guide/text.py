@@ -57,8 +57,8 @@ def result_lines(found: list[SearchResult], width: int) -> list[Line]:
     lines = []
     for one in found:
         title = f"- `{one.name}` **{pages()[one.name].title}**{f': {one.heading}' if one.heading else ''}"
-        passage = excerpt_of(one, max(20, width - 3), _PASSAGE_LINES).lines
-        lines += [*markdown_lines(title, width), *([("   " + line, PLAIN)] for line in passage)]
+        passage = excerpt_of(one, max(20, width - 3), _PASSAGE_LINES)
+        lines += [*markdown_lines(title, width), *([("   ", PLAIN), *line] for line in passage)]
     return lines
 
 

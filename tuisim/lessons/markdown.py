@@ -14,10 +14,11 @@ from tuisim import palette
 from tuisim.lessons.markdown_table import WholeTable
 from tuisim.terminal.text_runs import Line, Run
 
+CODE = Style(color=palette.YELLOW)
 _THEME = Theme(
     {
-        "markdown.code": Style(color=palette.YELLOW),
-        "markdown.code_block": Style(color=palette.YELLOW),
+        "markdown.code": CODE,
+        "markdown.code_block": CODE,
         "markdown.strong": Style(color=palette.WHITE, bold=True),
         "markdown.item.bullet": Style(color=palette.GREEN),
         "markdown.item.number": Style(color=palette.GREEN),

@@ -49,7 +49,7 @@ async def asked(pilot: Pilot[Any], question: str) -> list[SearchResult]:
 
 def first_words(one: SearchResult) -> str:
     """How an answer begins in the list."""
-    return excerpt_of(one, 33, 1).lines[0].removesuffix(" …")
+    return "".join(text for text, _ in excerpt_of(one, 33, 1)[0]).removesuffix(" …")
 
 
 async def opened(pilot: Pilot[Any], *keys: str) -> GuideScreen:
@@ -162,7 +162,7 @@ async def test_escape_goes_from_a_page_to_the_answers_and_from_these_to_the_cont
         await pilot.press("down", "down", "enter")
         await until(pilot, lambda: screen._page.has_focus)
         assert screen.place == (answers[2].name, answers[2].heading)
-        await until_shown(pilot, f"Guide · {pages()[answers[2].name].title}")
+        await until_shown(pilot, answers[2].heading or f"Guide · {pages()[answers[2].name].title}")
         await pilot.press("escape")
         await until_shown(pilot, first_words(answers[0]))
         await pilot.press("escape")
@@ -222,7 +222,7 @@ async def test_the_best_answers_are_in_sight_below_each_other(size: tuple[int, i
         answers = await asked(pilot, "How do I make the robot slower?")
         await until_shown(pilot, first_words(answers[0]))
         shown = [one for one in answers if first_words(one) in screen_text(lab(pilot))]
-        assert shown == answers[: len(shown)] and len(shown) >= (3 if size != (40, 12) else 1)
+        assert shown == answers[: len(shown)] and len(shown) >= (2 if size != (40, 12) else 1)
 
 
 @pytest.mark.parametrize(

@@ -17,8 +17,8 @@ from tuisim.guide.excerpt import excerpt_of
 from tuisim.guide.search import SearchResult
 from tuisim.guide.words import words_of
 
-_FIRST_LINES, _LINES = 9, (9, 6, 4, 3)
-"""Lines of the best answer, and of each other: as many as leave all in sight, else the fewest."""
+_FIRST_LINES, _LINES = 9, ((9, 1), (6, 1), (4, 1), (3, 1), (4, 0), (3, 0))
+"""Lines of the best answer; of each other, with those between two: as many as leave all in sight, else the fewest."""
 _EDGES = 3
 """Columns beside the text: a space at each side, and the scroll bar."""
 _LEAST_COLUMNS = 20
@@ -27,8 +27,7 @@ _LEAST_LETTERS, _ENDING = 4, 2
 """Letters that tell a word, and those at its end that may be others in another form of it."""
 STANDS_OUT = Style(bold=True, color=palette.WHITE)
 """A word of the question."""
-_SECTION, _PAGE = Style(bold=True, color=palette.BLUE), Style(color=palette.SOFT)
-_TEXT, _CODE = Style(color=palette.INK), Style(color=palette.YELLOW)
+_SECTION, _PAGE, _TEXT = Style(bold=True, color=palette.BLUE), Style(color=palette.SOFT), Style(color=palette.INK)
 
 
 class AnswerList(OptionList):
@@ -55,15 +54,16 @@ class AnswerList(OptionList):
     def fit(self, size: Size) -> None:
         """Draw the answers for a number of columns and rows."""
         columns, at = max(size.width - _EDGES, _LEAST_COLUMNS), self.highlighted
-        for lines in _LINES:
-            drawn = list(self._drawn(columns, lines))
-            if sum(len(text.plain.split("\n")) for text in drawn) <= size.height:
+        for lines, gap in _LINES:
+            drawn = list(self._drawn(columns, lines, gap))
+            if sum(len(text.plain.split("\n")) for text in drawn) <= size.height + gap:
                 break
         self.clear_options()
         self.add_options(Option(text) for text in drawn)
         self.highlighted = at if at is not None and at < len(self._found) else None
 
-    def _drawn(self, columns: int, lines: int) -> Iterator[Text]:
+    def _drawn(self, columns: int, lines: int, gap: int) -> Iterator[Text]:
+        """Yield the answers; a gap is below each, so that the highlight begins with it."""
         above = ("", "")
         for row, one in enumerate(self._found):
             section = one.name, one.heading
@@ -71,7 +71,8 @@ class AnswerList(OptionList):
             if self._asked:
                 text.highlight_regex(self._asked, STANDS_OUT)
             # A section is named once above the answers in it that follow each other.
-            yield text if section == above else _named(one, columns).append_text(text)
+            shown = text if section == above else _named(one, columns).append_text(text)
+            yield shown.append("\n" * gap)
             above = section
 
     @property
@@ -95,8 +96,7 @@ def _named(one: SearchResult, columns: int) -> Text:
 
 def _passage_of(one: SearchResult, columns: int, most: int, asked: re.Pattern[str] | None) -> Text:
     """Return what is shown of an answer, as an item of a list."""
-    shown = excerpt_of(one, columns - len(_ITEM), most, asked)
-    lines = [Text(line, _TEXT) for line in shown.text] + [Text(line, _CODE) for line in shown.code]
+    lines = [Text.assemble(*line) for line in excerpt_of(one, columns - len(_ITEM), most, asked)]
     return Text(_ITEM, _TEXT, no_wrap=True).append_text(Text(f"\n{' ' * len(_ITEM)}").join(lines))
 
 
