@@ -157,7 +157,19 @@ def test_the_lines_of_a_long_code_that_have_the_words_of_the_question_are_in_sig
     (first, *_) = search("explorer.toml left_port outD gyro = false ultrasonic = false")
     lines = shown_of(first, 90, 9, re.compile("left_port|outD|gyro"))
     assert 'left_port = "outD"  # the motor of the left wheel' in lines
-    assert "gyro = false" in lines and len(lines) == 9
+    assert "gyro = false" in lines and lines[-1] == "…" and len(lines) == 9
+
+
+def test_a_number_in_a_sentence_is_no_item_of_a_list() -> None:
+    one = SearchResult("keys", "", "- It grows - by\n  90. Then it stops.")
+    assert shown_of(one, 60, 9) == ["It grows - by 90. Then it stops."]
+
+
+def test_a_long_line_of_code_is_broken_and_a_command_has_its_prompt() -> None:
+    one = SearchResult("keys", "", "    tank_drive.on_for_rotations(30, -30, 180 / 56 / 4)")
+    assert shown_of(one, 44, 9) == ["tank_drive.on_for_rotations(30, -30, 180 /", "    56 / 4)"]
+    (export, *_) = search("tuisim runs export last")
+    assert "    $ tuisim runs export last" in export.passage
 
 
 def test_code_alone_keeps_its_lines() -> None:

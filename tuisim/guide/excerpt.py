@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from itertools import chain
-from textwrap import dedent
+from textwrap import dedent, wrap
 
 from tuisim.guide.catalogue import LINK
 from tuisim.guide.search import SearchResult
 from tuisim.lessons.markdown import CODE, PLAIN, markdown_lines, plain_text
-from tuisim.terminal.text_runs import Line, cut, cut_line
+from tuisim.terminal.text_runs import Line, cut_line
 
 _CLEAR_COLUMNS = 2
 """Rows of a table with so many columns need no heads."""
@@ -18,7 +18,7 @@ _CODE_BELOW = re.compile(r"(?<=:)\n\s*\n|\n\s*\n(?=    )")
 """Before the code that belongs to a passage."""
 _CODE = "    "
 """Begins each line of code in a passage."""
-_MARK = re.compile(r"- |\d+\. ")
+_MARK = re.compile(r"\A(?:- |\d+\. )")
 _ELLIPSIS = " …"
 _ANY_LENGTH = 10_000
 _NOTE = re.compile(r" {2,}#")
@@ -43,16 +43,29 @@ def excerpt_of(one: SearchResult, width: int, most: int, asked: re.Pattern[str] 
             and its code at a line.
     """
     words, *set_in = ("", one.passage) if one.passage.startswith(_CODE) else _CODE_BELOW.split(one.passage)
-    code = [_NOTE.sub("  #", line) for line in dedent("\n".join(set_in)).split("\n") if line.strip()]
+    code = [part for line in dedent("\n".join(set_in)).split("\n") for part in _wrapped(line, width)]
     markdown = _as_sentences(_with_head(words, one.head))
     most_of_text = min(most, max(most - len(code) - len(one.below), most - _LEAST, _LEAST))
     if asked and len(markdown_lines(markdown, width)) > most_of_text:
         markdown = _from_sentence(markdown, width * most_of_text, asked)
     lines = _shortened(markdown, width, most_of_text)
     lines += [list(cut_line(_item_line(item), width)) for item in one.below[: most - len(lines)]]
-    room = most - len(lines)
-    first = _line_with_most(code, room, asked) if asked and room >= _LEAST else 0
-    return lines + [[(cut(line, width), CODE)] for line in code[first : first + room]]
+    return lines + [[(line, CODE)] for line in _lines_of_code(code, most - len(lines), asked)]
+
+
+def _lines_of_code(code: list[str], most: int, asked: re.Pattern[str] | None) -> list[str]:
+    """Return the lines that have most words of a question, with an ellipsis below them if there are more."""
+    if len(code) <= most or most < _LEAST:
+        return code[:most]
+    first = _line_with_most(code, most - 1, asked) if asked else 0
+    shown = code[first : first + most - 1]
+    return [*shown, _ELLIPSIS.strip()] if first + len(shown) < len(code) else code[-most:]
+
+
+def _wrapped(line: str, width: int) -> list[str]:
+    """Return a line of code as lines of at most a number of columns; none if it is empty."""
+    further = " " * (len(line) - len(line.lstrip()) + 4)
+    return wrap(_NOTE.sub("  #", line), width, subsequent_indent=further, replace_whitespace=False)
 
 
 def _shortened(markdown: str, width: int, most: int) -> list[Line]:
@@ -104,7 +117,8 @@ def passage_text(markdown: str) -> str:
 def _as_sentences(markdown: str) -> str:
     """Return a passage of a page without the mark of an item, the cells of a row and the targets of links."""
     text = " · ".join(filter(None, cells_of(_MARK.sub("", markdown))))
-    return LINK.sub(lambda link: link[1], text)
+    # In one line: a number at the beginning of a line would begin a list.
+    return " ".join(LINK.sub(lambda link: link[1], text).split())
 
 
 def cells_of(markdown: str) -> list[str]:

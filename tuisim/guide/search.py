@@ -25,7 +25,7 @@ from tuisim.guide.tables import markdown_of
 from tuisim.guide.words import stems_of, words_of
 
 _HEADING = re.compile(r"^##+ (.+)$", re.MULTILINE)
-_FENCED = re.compile(r"^```.*\n((?:.*\n)*?)```$\n?", re.MULTILINE)
+_FENCED = re.compile(r"^```(.*)\n((?:.*\n)*?)```$\n?", re.MULTILINE)
 _PASSAGE_END = re.compile(r"(?<!:)\n\s*\n(?!    )|\n(?=- |\| |\d+\. )")
 """A passage is a paragraph, with a text set in below it or what follows its colon, an item of a list or a row of a
 table."""
@@ -173,8 +173,12 @@ def _passages() -> Iterator[SearchResult]:
 
 
 def _set_in(fenced: re.Match[str]) -> str:
-    """Return a text between fences as one that is set in, so that it stays with the passage above it."""
-    return indent(fenced[1], _SET_IN, lambda _: True)
+    """Return a text between fences as one that is set in, so that it stays with the passage above it.
+
+    What belongs into a shell has its prompt.
+    """
+    prompt = "$ " if fenced[1].startswith("sh") else ""
+    return indent(fenced[2], _SET_IN + prompt, lambda _: True)
 
 
 def _with_heads(passages: Sequence[str]) -> Iterator[tuple[str, str]]:
