@@ -11,7 +11,6 @@ import re
 from collections.abc import Iterable
 
 from tuisim.core.conditions import ValueCondition, ValueSource, comparison_form, finite_number, run_condition_in
-from tuisim.core.sensors import named_column
 from tuisim.core.spec import RobotSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, see_page
@@ -199,6 +198,9 @@ def _column(text: str, written: str, robot: RobotSpec | None) -> str:
             raise _refuse(text, f"there is no {written!r}")
         return written
     try:
+        # Imported on demand: most runs have no breakpoints, and nothing else in a host needs the sensors.
+        from tuisim.core.sensors import named_column
+
         return named_column(written, robot)
     except ConfigError as error:
         raise _refuse(text, error.message, error.hint) from None

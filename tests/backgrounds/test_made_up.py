@@ -11,7 +11,8 @@ from digits import CELL, digit_ink
 from mats import picture
 from terrain import MAP_BOX, PALETTE
 
-from tuisim.core.sensors.color import COLOR_NAMES, color_code
+from tuisim.core.columns import COLOR_NAMES
+from tuisim.core.sensors.color import color_code
 
 SHEETS = {"MNIST_Digits": (WHITE_SHEET, 255), "MNIST_Digits_Black": (BLACK_SHEET, 0)}
 SHEET_IDS = list(SHEETS)

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from tuisim.core.state import Instant
 
 
+COLOR_NAMES = ("NoColor", "Black", "Blue", "Green", "Yellow", "Red", "White", "Brown")
+"""Names by colour code, as in ev3dev2."""
+
+
 @dataclass(frozen=True, slots=True)
 class Column:
     """A value at each tick. What is measured with others comes first among the columns of its owner, in that order."""

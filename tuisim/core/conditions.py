@@ -13,7 +13,7 @@ from dataclasses import replace
 from enum import StrEnum
 from typing import Any
 
-from tuisim.core.sensors.color import COLOR_NAMES
+from tuisim.core.columns import COLOR_NAMES
 from tuisim.data_class import dataclass
 
 

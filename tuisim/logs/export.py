@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
@@ -13,9 +12,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 from tuisim.atomic import replacing
 from tuisim.core.tree import to_plain
 from tuisim.errors import ConfigError, ExportError
-from tuisim.logs.csv_cells import write_csv
 from tuisim.logs.units import TIMEDELTA, WHOLE, unit_of
-from tuisim.runs.frames import samples_frame, telemetry_frame
 from tuisim.runs.run_folder import StoredRun
 
 if TYPE_CHECKING:
@@ -73,6 +70,8 @@ def check_place(place: Path) -> None:
     Raises:
         ExportError: no such folder, a folder that cannot be written, or an existing target that may not be replaced.
     """
+    import tempfile
+
     try:
         if os.path.isdir(place):
             raise ExportError(f"cannot write {place}: it is a folder")
@@ -119,6 +118,8 @@ def export_samples(runs: Sequence[StoredRun], path: str | Path) -> None:
         LogError: a recording is damaged.
     """
     check_target(path)
+    from tuisim.runs.frames import samples_frame
+
     frame = samples_frame(runs)
     export_frame(frame, path, log_metadata("samples", frame, runs))
 
@@ -131,6 +132,8 @@ def export_telemetry(run: StoredRun, path: str | Path, field: Field | None = Non
         LogError: a recording is damaged, or the mat cannot be found any more.
     """
     check_target(path)
+    from tuisim.runs.frames import telemetry_frame
+
     frame = telemetry_frame(run, field)
     export_frame(frame, path, log_metadata("telemetry", frame, [run]))
 
@@ -249,6 +252,8 @@ class Exporter(NamedTuple):
 
 
 def _write_csv(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> None:
+    from tuisim.logs.csv_cells import write_csv
+
     write_csv(frame, handle)
 
 

@@ -10,9 +10,6 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from tuisim.core.collision import PoseTuple, Solids
-from tuisim.core.motion import stall_ticks
-from tuisim.core.motors import STANDSTILL_DEG
 from tuisim.core.profile import NS_PER_S, due_ns
 from tuisim.core.spec import RunSpec
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
@@ -22,6 +19,8 @@ from tuisim.runs.views import TelemetryView
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from tuisim.core.collision import PoseTuple, Solids
 
 _CONTACT_MM = 0.01
 """A robot that is closer than this touches; collisions end within a small part of it."""
@@ -112,7 +111,12 @@ def _stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
 
     Noise lets the wheels turn a little between ticks in which they are stopped: those are one stretch.
     """
+    # Imported on demand: in most worlds nothing is solid.
     import numpy as np
+
+    from tuisim.core.collision import Solids
+    from tuisim.core.motion import stall_ticks
+    from tuisim.core.motors import STANDSTILL_DEG
 
     runs = (records["flags"] & (FLAG_LEFT_RUNNING | FLAG_RIGHT_RUNNING)) != 0
     # The first record is the state before any motion.

@@ -13,7 +13,8 @@ from tuisim.config.program_robot.mentions import Mention, Mentions, mentions_in
 from tuisim.config.program_robot.scopes import Bound, Scope
 from tuisim.config.program_robot.source import Module, data_files, parsed, read_modules
 from tuisim.config.program_robot.values import Instance
-from tuisim.core.sensors.color import COLOR_NAMES, LightRead
+from tuisim.core.columns import COLOR_NAMES
+from tuisim.core.sensors.color import LightRead
 from tuisim.core.spec import RobotSpec
 from tuisim.data_class import dataclass
 from tuisim.source import PRELUDE_TEXTS, Program

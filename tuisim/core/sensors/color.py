@@ -8,7 +8,7 @@ from functools import lru_cache
 from math import cos, radians, sin
 from typing import TYPE_CHECKING, assert_never
 
-from tuisim.core.columns import Column
+from tuisim.core.columns import COLOR_NAMES, Column
 from tuisim.core.drift import light_share
 from tuisim.core.field import OUTSIDE_DISC_RGB, Field, disc_pixels, disc_weights, weighted_mean
 from tuisim.core.geometry import Pose, world_point
@@ -18,9 +18,6 @@ from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
     from tuisim.core.state import Instant
-
-COLOR_NAMES = ("NoColor", "Black", "Blue", "Green", "Yellow", "Red", "White", "Brown")
-"""Names by colour code, as in ev3dev2."""
 
 WHITE = 255
 """Maximum of a channel."""
