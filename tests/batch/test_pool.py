@@ -64,21 +64,21 @@ def test_results_do_not_depend_on_the_number_of_jobs() -> None:
     assert len({one.x_mm for one in alone}) == 12
 
 
-@pytest.mark.parametrize("interrupted", ["shutil.copyfileobj", "write_run_file"])
+@pytest.mark.parametrize("interrupted", ["shutil.copyfileobj", "tuisim.runs.store.write_run_file"])
 def test_a_run_whose_storing_is_interrupted_is_not_listed(
     tmp_path: Path, home: Path, monkeypatch: pytest.MonkeyPatch, interrupted: str
 ) -> None:
     folder = tmp_path / "batch"
     folder.mkdir()
     where, _, name = interrupted.rpartition(".")
-    real = getattr(shutil if where else store, name)
+    real = getattr(shutil if where == "shutil" else store, name)
 
     def interrupt(*arguments: Any, **how: Any) -> None:
         real(*arguments, **how)
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr(f"tuisim.runs.store.{interrupted}", interrupt)
+        patch.setattr(interrupted, interrupt)
         with pytest.raises(KeyboardInterrupt):
             execute(task("x = 1", keep=Keep.ALL), folder)
     assert RunStore().runs() == []

@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import shutil
 import sys
 import threading
 import time
@@ -35,8 +34,16 @@ def echo(line: str = "") -> None:
 
 def echo_wrapped(line: str) -> None:
     """Write one line to stdout, broken between words where a terminal is narrower."""
-    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else len(line)
+    width = _columns() if sys.stdout.isatty() else len(line)
     echo_lines("\n".join(wrap(line, max(width, 1), break_long_words=False, break_on_hyphens=False)))
+
+
+def _columns() -> int:
+    """Return the width of the terminal."""
+    # Imported on demand: what is not written to a terminal is as wide as it is.
+    import shutil
+
+    return shutil.get_terminal_size().columns
 
 
 def echo_lines(text: str) -> None:
@@ -179,7 +186,7 @@ def table_lines(heads: Sequence[str], columns: Sequence[Sequence[str]], right: S
         right: Which columns are right-aligned.
     """
     body = [column if "".join(column).isprintable() else list(map(printable, column)) for column in columns]
-    room = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
+    room = _columns() if sys.stdout.isatty() else None
     above = _stacked(heads)
     for lines, gap, least in (([[*heads]], "  ", _GOOD_CELLS), (above, "  ", _GOOD_CELLS), (above, " ", _LEAST_CELLS)):
         cells = [[*head, *column] for head, column in zip(zip(*lines, strict=True), body, strict=True)]

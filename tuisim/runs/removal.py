@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 from contextlib import suppress
 from pathlib import Path
 
@@ -20,6 +19,8 @@ def remove_tree(folder: Path, ignore_errors: bool = True) -> None:
     Raises:
         OSError: it cannot be deleted, unless errors are ignored.
     """
+    import shutil
+
     # Folders may be nested deeper than calls can be.
     with suppress(RecursionError):
         shutil.rmtree(folder, ignore_errors=True)

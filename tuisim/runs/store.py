@@ -9,7 +9,6 @@ from __future__ import annotations
 import fcntl
 import os
 import reprlib
-import shutil
 import subprocess
 import sys
 import threading
@@ -135,7 +134,7 @@ class RunStore:
         # Interrupted, too: nobody else closes the lock.
         except BaseException:
             os.close(lock_fd)
-            shutil.rmtree(folder, ignore_errors=True)
+            remove_tree(folder)
             raise
         return NewRun(run_id, number, folder, lock_fd, data)
 
@@ -153,11 +152,11 @@ class RunStore:
             number = self._catalogue.add(info)
             write_run_file(place, {**data, "id": run_id, "number": number})
         except OSError as error:
-            shutil.rmtree(place, ignore_errors=True)
+            remove_tree(place)
             raise LogError(f"cannot be stored: {error.strerror or error}", HOME_HINT, file=str(place)) from error
         # Interrupted: a half of it must not be listed.
         except BaseException:
-            shutil.rmtree(place, ignore_errors=True)
+            remove_tree(place)
             raise
         finally:
             os.close(lock_fd)
@@ -203,7 +202,7 @@ class RunStore:
 
     def forget(self, run_id: str) -> None:
         """Delete a run that could not be started."""
-        shutil.rmtree(self.folder(run_id), ignore_errors=True)
+        remove_tree(self.folder(run_id))
         with suppress(LogError):
             self._catalogue.remove([run_id])
 
@@ -339,7 +338,7 @@ class RunStore:
             except FileExistsError:
                 continue
             except OSError as error:
-                shutil.rmtree(folder, ignore_errors=True)
+                remove_tree(folder)
                 what = error.strerror or str(error)
                 raise LogError(f"runs cannot be stored here: {what}", HOME_HINT, file=str(self.home)) from error
             return run_id, folder, lock_fd
@@ -511,6 +510,8 @@ def _copy_files(folder: Path, place: Path) -> None:
 
     A link would be followed with the rights of this process, which the program may not have had.
     """
+    import shutil
+
     recordings = (TELEMETRY_FILE, OUTPUT_FILE)
     for name in (*recordings, *(name + PACKED_SUFFIX for name in recordings), *SIDE_FILES):
         try:

@@ -21,7 +21,6 @@ from stat import S_IRUSR
 from typing import TYPE_CHECKING, Any, ClassVar
 from weakref import finalize
 
-from tuisim.core.drift import sensed_turn_rate_dps
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import Instant
@@ -86,6 +85,8 @@ class TickRecord:
 
 def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
     """Return the instant of a record with the noise at its tick, for the functions of `core.sensors`."""
+    from tuisim.core.drift import sensed_turn_rate_dps
+
     return Instant(
         tick=record.tick,
         pose=record.pose,

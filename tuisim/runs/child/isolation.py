@@ -9,7 +9,6 @@ from __future__ import annotations
 import errno
 import json
 import os
-import shutil
 import stat
 import subprocess
 import sys
@@ -65,6 +64,8 @@ def check_isolation() -> None:
     Raises:
         ConfigError: it is not installed, or cannot start here.
     """
+    import shutil
+
     hint = "--no-isolate goes without"
     if shutil.which(BWRAP) is None:
         raise ConfigError(f"{BWRAP} is not installed", f"install bubblewrap; {hint}", key=_KEY)
