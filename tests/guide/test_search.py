@@ -149,8 +149,10 @@ def test_a_longer_answer_begins_at_the_sentence_that_has_the_words_of_the_questi
 
 def test_what_introduces_a_list_shows_its_items() -> None:
     (first, *_) = search("the robot does not move")
-    lines = shown_of(first, 60, 9)
-    assert first.passage.endswith(":") and sum(line.startswith("• ") for line in lines) > 3
+    lines = shown_of(first, 100, 9)
+    assert first.passage.endswith(":") and sum(line.startswith("• ") for line in lines) > 2
+    assert lines[-1] == "…" and len(lines) == 9
+    assert len(shown_of(first, 100, 2)) == 2
 
 
 def test_the_lines_of_a_long_code_that_have_the_words_of_the_question_are_in_sight() -> None:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from itertools import chain
 from textwrap import dedent, wrap
 
 from tuisim.guide.catalogue import LINK
 from tuisim.guide.search import SearchResult
 from tuisim.lessons.markdown import CODE, PLAIN, markdown_lines, plain_text
-from tuisim.terminal.text_runs import Line, cut_line
+from tuisim.terminal.text_runs import Line
 
 _CLEAR_COLUMNS = 2
 """Rows of a table with so many columns need no heads."""
@@ -20,7 +19,7 @@ _CODE = "    "
 """Begins each line of code in a passage."""
 _MARK = re.compile(r"\A(?:- |\d+\. )")
 _ELLIPSIS = " …"
-_ANY_LENGTH = 10_000
+_BULLET = "• "
 _NOTE = re.compile(r" {2,}#")
 """Before a comment beside code, in a column with others."""
 _SENTENCE_END = re.compile(r"(?<=[.:!?]) (?=[\w`*])")
@@ -49,8 +48,14 @@ def excerpt_of(one: SearchResult, width: int, most: int, asked: re.Pattern[str] 
     if asked and len(markdown_lines(markdown, width)) > most_of_text:
         markdown = _from_sentence(markdown, width * most_of_text, asked)
     lines = _shortened(markdown, width, most_of_text)
-    lines += [list(cut_line(_item_line(item), width)) for item in one.below[: most - len(lines)]]
+    items = [line for item in one.below for line in _item_lines(item, width)]
+    lines += items if len(items) <= (room := most - len(lines)) else _first_of(items, room)
     return lines + [[(line, CODE)] for line in _lines_of_code(code, most - len(lines), asked)]
+
+
+def _first_of(lines: list[Line], most: int) -> list[Line]:
+    """Return the first of more lines, with an ellipsis below them where it is not all that has room."""
+    return [*lines[: most - 1], [(_ELLIPSIS.strip(), PLAIN)]] if most > 1 else lines[:most]
 
 
 def _lines_of_code(code: list[str], most: int, asked: re.Pattern[str] | None) -> list[str]:
@@ -77,9 +82,10 @@ def _shortened(markdown: str, width: int, most: int) -> list[Line]:
     return lines
 
 
-def _item_line(item: str) -> Line:
-    """Return an item of a list, or a row of a table, as one line of any length."""
-    return [("• ", PLAIN), *chain.from_iterable(markdown_lines(_as_sentences(item), _ANY_LENGTH))]
+def _item_lines(item: str, width: int) -> list[Line]:
+    """Return an item of a list, or a row of a table, as lines."""
+    lines = markdown_lines(_as_sentences(item), width - len(_BULLET))
+    return [[(" " * len(_BULLET) if row else _BULLET, PLAIN), *line] for row, line in enumerate(lines)]
 
 
 def _from_sentence(text: str, letters: int, asked: re.Pattern[str]) -> str:
