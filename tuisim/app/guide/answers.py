@@ -25,6 +25,8 @@ _LEAST_COLUMNS = 20
 _ITEM = "• "
 _LEAST_LETTERS, _ENDING = 4, 2
 """Letters that tell a word, and those at its end that may be others in another form of it."""
+_PLAIN = ("not", "one")
+"""Words of a question that say too little to stand out."""
 STANDS_OUT = Style(bold=True, color=palette.WHITE)
 """A word of the question."""
 _SECTION, _PAGE, _TEXT = Style(bold=True, color=palette.BLUE), Style(color=palette.SOFT), Style(color=palette.INK)
@@ -102,5 +104,6 @@ def _passage_of(one: SearchResult, columns: int, most: int, asked: re.Pattern[st
 
 def _pattern_of(question: str) -> re.Pattern[str] | None:
     """Return what finds the words of a question in an answer, in other forms, too."""
-    begins = [re.escape(word[: max(_LEAST_LETTERS, len(word) - _ENDING)]) for word in words_of(question)]
+    words = [word for word in words_of(question) if word not in _PLAIN]
+    begins = [re.escape(word[: max(_LEAST_LETTERS, len(word) - _ENDING)]) for word in words]
     return re.compile(rf"(?i)\b(?:{'|'.join(begins)})\w*") if begins else None

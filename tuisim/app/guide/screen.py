@@ -192,8 +192,9 @@ class _Page(VerticalScroll):
         drawn = _text_of(lines, range(row, end_of_passage(lines, row, self._passage)))
         groups = {group: self._keys.groups[group] for group in self._topic.groups if self._with_keys}
         self._text.update(key_table(groups, width).append("\n").append_text(drawn) if groups else drawn)
-        # The heading stays in sight where the passage does, too.
-        first = top if row - top < self.scrollable_content_region.height - _ROWS_OF_PASSAGE else row - 1
+        # The heading stays in sight where the passage does, too; the end of another passage does not.
+        near = row - top < self.scrollable_content_region.height - _ROWS_OF_PASSAGE
+        first = top if near else row if lines[row - 1] else row - 1
         self.call_after_refresh(self.scroll_to, y=first, animate=False)
 
 
