@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 from textwrap import dedent, wrap
 
 from tuisim.guide.catalogue import LINK
-from tuisim.guide.search import SearchResult
+from tuisim.guide.search import SET_IN, SearchResult
 from tuisim.lessons.markdown import CODE, PLAIN, markdown_lines, plain_text
 from tuisim.terminal.text_runs import Line
 
@@ -15,8 +16,6 @@ _CLEAR_COLUMNS = 2
 """Rows of a table with so many columns need no heads."""
 _CODE_BELOW = re.compile(r"(?<=:)\n\s*\n|\n\s*\n(?=    )")
 """Before the code that belongs to a passage."""
-_CODE = "    "
-"""Begins each line of code in a passage."""
 _MARK = re.compile(r"\A(?:- |\d+\. )")
 _ELLIPSIS = " …"
 _BULLET = "• "
@@ -27,6 +26,8 @@ _TOLD_BY = 4
 """Letters that tell one word of a question from another."""
 _FOR_SCRIPTS = ("group", "id")
 """Columns of the keys that say nothing to a reader of one of them."""
+_KEPT = 256
+"""Texts that are kept as lines: those of several questions."""
 _LEAST = 3
 """Lines that make sense by themselves, of a text as of code."""
 
@@ -41,13 +42,13 @@ def excerpt_of(one: SearchResult, width: int, most: int, asked: re.Pattern[str] 
         asked: Finds the words of the question. A longer passage begins where most of them follow: at a sentence,
             and its code at a line.
     """
-    words, *set_in = ("", one.passage) if one.passage.startswith(_CODE) else _CODE_BELOW.split(one.passage)
+    words, *set_in = ("", one.passage) if one.passage.startswith(SET_IN) else _CODE_BELOW.split(one.passage)
     code = [part for line in dedent("\n".join(set_in)).split("\n") for part in _wrapped(line, width)]
     markdown = _as_sentences(_with_head(words, one.head))
     most_of_text = min(most, max(most - len(code) - len(one.below), most - _LEAST, _LEAST))
-    if asked and len(markdown_lines(markdown, width)) > most_of_text:
+    if asked and len(_drawn(markdown, width)) > most_of_text:
         markdown = _from_sentence(markdown, width * most_of_text, asked)
-    lines = _shortened(markdown, width, most_of_text)
+    lines = [*_shortened(markdown, width, most_of_text)]
     items = [line for item in one.below for line in _item_lines(item, width)]
     lines += items if len(items) <= (room := most - len(lines)) else _first_of(items, room)
     return lines + [[(line, CODE)] for line in _lines_of_code(code, most - len(lines), asked)]
@@ -75,16 +76,22 @@ def _wrapped(line: str, width: int) -> list[str]:
 
 def _shortened(markdown: str, width: int, most: int) -> list[Line]:
     """Return the first lines, with an ellipsis at their end if there are more."""
-    lines = markdown_lines(markdown, width)
-    if len(lines) > most:
-        lines = markdown_lines(markdown, width - len(_ELLIPSIS))[:most]
-        lines[-1].append((_ELLIPSIS, PLAIN))
-    return lines
+    lines = _drawn(markdown, width)
+    if len(lines) <= most:
+        return lines
+    *above, last = _drawn(markdown, width - len(_ELLIPSIS))[:most]
+    return [*above, [*last, (_ELLIPSIS, PLAIN)]]
+
+
+@lru_cache(_KEPT)
+def _drawn(markdown: str, width: int) -> list[Line]:
+    """Return Markdown as lines, which nobody changes: answers are drawn again until they fit."""
+    return markdown_lines(markdown, width)
 
 
 def _item_lines(item: str, width: int) -> list[Line]:
     """Return an item of a list, or a row of a table, as lines."""
-    lines = markdown_lines(_as_sentences(item), width - len(_BULLET))
+    lines = _drawn(_as_sentences(item), width - len(_BULLET))
     return [[(" " * len(_BULLET) if row else _BULLET, PLAIN), *line] for row, line in enumerate(lines)]
 
 

@@ -30,7 +30,8 @@ _PASSAGE_END = re.compile(r"(?<!:)\n\s*\n(?!    )|\n(?=- |\| |\d+\. )")
 """A passage is a paragraph, with a text set in below it or what follows its colon, an item of a list or a row of a
 table."""
 _ITEM = re.compile(r"- |\| |\d+\. ")
-_SET_IN = "    "
+SET_IN = "    "
+"""Begins each line of a text that is set in, such as code."""
 _RULE = re.compile(r"[-| ]+")
 """The line below the head of a table."""
 _NO_ANSWER = re.compile(r"# .*|")
@@ -178,7 +179,7 @@ def _set_in(fenced: re.Match[str]) -> str:
     What belongs into a shell has its prompt.
     """
     prompt = "$ " if fenced[1].startswith("sh") else ""
-    return indent(fenced[2], _SET_IN + prompt, lambda _: True)
+    return indent(fenced[2], SET_IN + prompt, lambda _: True)
 
 
 def _with_heads(passages: Sequence[str]) -> Iterator[tuple[str, str]]:

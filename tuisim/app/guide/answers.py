@@ -17,7 +17,7 @@ from tuisim.guide.excerpt import excerpt_of
 from tuisim.guide.search import SearchResult
 from tuisim.guide.words import words_of
 
-_FIRST_LINES, _LINES = 11, ((9, 1), (6, 1), (4, 1), (3, 1), (4, 0), (3, 0))
+_FIRST_LINES, _LINES = 11, ((9, 1), (6, 1), (3, 1), (3, 0))
 """Lines of the best answer; of each other, with those between two: as many as leave all in sight, else the fewest."""
 _EDGES = 3
 """Columns beside the text: a space at each side, and the scroll bar."""
