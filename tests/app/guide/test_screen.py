@@ -158,11 +158,11 @@ async def test_escape_leaves_the_search_first() -> None:
 async def test_escape_goes_from_a_page_to_the_answers_and_from_these_to_the_contents() -> None:
     async with LabApp(settings()).run_test(size=SMALL) as pilot:
         screen = await opened(pilot)
-        answers = await asked(pilot, "leave a trace behind the robot")
+        answers = await asked(pilot, "save the program")
         await pilot.press("down", "down", "enter")
         await until(pilot, lambda: screen._page.has_focus)
         assert screen.place == (answers[2].name, answers[2].heading)
-        await until_shown(pilot, answers[2].heading or f"Guide · {pages()[answers[2].name].title}")
+        await until_shown(pilot, f"Guide · {pages()[answers[2].name].title}")
         await pilot.press("escape")
         await until_shown(pilot, first_words(answers[0]))
         await pilot.press("escape")
@@ -219,10 +219,10 @@ async def test_the_keys_of_the_panel_come_first(panel: str, first: str, then: st
 async def test_the_best_answers_are_in_sight_below_each_other(size: tuple[int, int]) -> None:
     async with LabApp(settings()).run_test(size=size) as pilot:
         await opened(pilot)
-        answers = await asked(pilot, "How do I make the robot slower?")
+        answers = await asked(pilot, "save the program")
         await until_shown(pilot, first_words(answers[0]))
         shown = [one for one in answers if first_words(one) in screen_text(lab(pilot))]
-        assert shown == answers[: len(shown)] and len(shown) >= (2 if size != (40, 12) else 1)
+        assert shown == answers[: len(shown)] and len(shown) >= (3 if size != (40, 12) else 1)
 
 
 @pytest.mark.parametrize(
