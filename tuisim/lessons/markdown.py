@@ -45,12 +45,8 @@ def markdown_lines(text: str, width: int) -> list[Line]:
     )
     drawn = _Markdown(text, code_theme="ansi_dark", justify="left")
     lines = console.render_lines(drawn, console.options.update(width=max(10, width)), pad=False)
-    found = [[_run(segment.text, segment.style) for segment in line if segment.text] for line in lines]
-    return [_stripped(line) for line, above in zip(found, [[], *found], strict=False) if _text(line) or _text(above)]
-
-
-def _text(line: Line) -> str:
-    return "".join(text for text, _ in line).strip()
+    found = [_stripped([_run(segment.text, segment.style) for segment in line if segment.text]) for line in lines]
+    return [line for line, above in zip(found, [[], *found], strict=False) if line or above]
 
 
 def _run(text: str, style: Style | None) -> Run:
